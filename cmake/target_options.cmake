@@ -1,0 +1,16 @@
+# Flags of our own targets only.
+function(hb_target_options target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic
+    $<$<BOOL:${HB_WERROR}>:-Werror>
+    # -ffast-math would remove the NaN tests that detect divergence; these three are safe.
+    -fno-math-errno -fcx-limited-range -fno-trapping-math)
+  if(HB_NATIVE)
+    target_compile_options(${target} PRIVATE -march=native)
+  endif()
+  # One alignment whatever the instruction set, so that libraries and their users agree on Eigen's allocations.
+  target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64)
+  if(HB_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PRIVATE -fsanitize=address,undefined)
+  endif()
+endfunction()

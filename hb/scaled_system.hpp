@@ -1,0 +1,33 @@
+// The system at one speed in the coordinates that the solvers work in: mass-normalised, time measured in crank angle,
+//     x'' + G x' + K(tau) x = f(tau),      ' = d/dtau,   q = T x.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lib/hill_system.hpp"
+
+namespace hb {
+
+struct ScaledSystem {
+  double speed = 0;           // Omega, rad per unit time
+  Eigen::MatrixXd T;          // q = T x (diagonal when M is)
+  Eigen::MatrixXd T_inverse;  // x = T_inverse q
+  Eigen::MatrixXd G;          // T^-1 M^-1 B T / Omega
+  FourierSeries K;            // T^-1 M^-1 C T / Omega^2: I*I components column-major; harmonics below rounding cut
+  FourierSeries f;            // T^-1 M^-1 h / (Omega^2 load_scale): I components, largest |coefficient| about 1
+  double load_scale = 0;      // 0: no load; then f is empty
+  bool diagonal_damping = true;
+
+  Eigen::Index num_modes() const { return G.rows(); }
+  // Mean of K, an I x I matrix, and its diagonal w_i^2; diagonal b_i of G.
+  Eigen::MatrixXd mean_stiffness() const;
+  Eigen::VectorXd mean_diagonal() const;
+  Eigen::VectorXd damping_diagonal() const { return G.diagonal(); }
+};
+
+// M diagonal: T = M^-1/2. Full symmetric M (positive definite): T = M^-1/2 turned to the eigenvectors of the mean
+// stiffness if that leaves less coupling. Otherwise T = 1 with M^-1 multiplied from the left.
+// Throws std::invalid_argument if the speed is not positive and finite.
+[[nodiscard]] ScaledSystem scale_system(const HillSystem& system, double speed);
+
+}  // namespace hb

@@ -1,0 +1,50 @@
+// Floquet exponents with error bars and a verdict. Methods differ, the result does not.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "hb/scaled_system.hpp"
+#include "lib/hill_system.hpp"
+
+namespace hb {
+
+enum class Verdict { stable, unstable, undecided };
+
+enum class StabilityMethod {
+  automatic,
+  hill,         // each exponent by Hill iteration in a window centred on its mode
+  slaving,      // fast modes slaved to the slow ones exactly; the slow ones propagated over a turn
+  propagation,  // the whole system propagated by Radau IIA
+};
+
+struct StabilityOptions {
+  double tolerance = 1e-9;  // wanted error of the growth rate, relative to max(|growth|, Omega-scaled 1)
+  StabilityMethod method = StabilityMethod::automatic;
+  bool leading_only = false;  // growth rate and verdict only: skip exponents that cannot lead
+};
+
+// One Floquet exponent lambda: solutions e^{lambda t} p(t), p of period 2 pi/Omega.
+struct Exponent {
+  std::complex<double> value;  // 1/time; imaginary part folded to (-Omega/2, Omega/2]
+  double error = 0;            // bound on |error|
+};
+
+struct Stability {
+  std::vector<Exponent> exponents;  // real part descending, then imaginary part ascending; those resolved (up to 2I)
+  double growth_rate = 0;           // max Re lambda, 1/time
+  double growth_error = 0;          // bound on its error
+  Verdict verdict = Verdict::undecided;
+  bool converged = false;           // growth_error within what was asked
+  StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
+  std::string evidence;             // one sentence: what was done
+};
+
+[[nodiscard]] Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options = {});
+[[nodiscard]] Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options = {});
+
+[[nodiscard]] const char* to_string(Verdict verdict);
+[[nodiscard]] const char* to_string(StabilityMethod method);
+
+}  // namespace hb

@@ -1,0 +1,1 @@
+#include "hb/steady_state.hpp"

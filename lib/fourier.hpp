@@ -1,0 +1,93 @@
+// Periodic functions as Fourier series. The only part of the program that sees FFTW.
+//
+// Convention, stated once: a real, 2*pi-periodic function with values in R^n is
+//     f(tau) = sum_{k=-H}^{H} c_k e^{i k tau},   c_{-k} = conj(c_k),
+// stored as the n x (H+1) matrix of c_0 .. c_H. Samples are taken at tau_j = 2 pi j / N.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <memory>
+
+namespace hb {
+
+struct FourierSeries {
+  Eigen::MatrixXcd c;  // components x (H+1); column k is c_k
+
+  FourierSeries() = default;
+  FourierSeries(Eigen::Index num_components, Eigen::Index num_harmonics)
+      : c(Eigen::MatrixXcd::Zero(num_components, num_harmonics + 1)) {}
+  explicit FourierSeries(Eigen::MatrixXcd coefficients) : c(std::move(coefficients)) {}
+
+  Eigen::Index num_components() const { return c.rows(); }
+  Eigen::Index num_harmonics() const { return c.cols() - 1; }
+};
+
+// Value and place of an extremum over one turn.
+struct Extremum {
+  double value = 0;
+  double crank_angle = 0;  // rad, in [0, 2 pi)
+};
+
+struct Range {
+  Extremum min, max;
+};
+
+namespace fourier {
+
+// Coefficients of the trigonometric interpolant of equally spaced samples (components x N).
+// H = (N-1)/2; for even N the Nyquist term is dropped (it must be below rounding).
+[[nodiscard]] FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples);
+
+// Samples (components x N) of the series; needs N >= 2H+1.
+[[nodiscard]] Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples);
+
+// d^order f / dtau^order.
+[[nodiscard]] FourierSeries derivative(const FourierSeries& series, int order = 1);
+
+// f(tau), one value per component.
+[[nodiscard]] Eigen::VectorXd evaluate(const FourierSeries& series, double tau);
+
+// Same series with harmonics 0..num_harmonics (cut or padded with zeros).
+[[nodiscard]] FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics);
+
+// Smallest H such that every |c_k|, k > H, is <= relative * max|c| (per component's own maximum if
+// `per_component`).
+[[nodiscard]] Eigen::Index significant_harmonics(const FourierSeries& series, double relative);
+
+// True extrema over the turn of one component: the largest and smallest sample of a fine grid, improved by
+// Newton on f' (error of the value: rounding). A constant gives the constant, at angle 0.
+[[nodiscard]] Range range(const FourierSeries& series, Eigen::Index component);
+
+// max |f| of one component over the turn, with its sign dropped.
+[[nodiscard]] Extremum max_abs(const FourierSeries& series, Eigen::Index component);
+
+// Upper bound of max_tau |f_i(tau)|: sum over all harmonics (both signs) of |c_k|.
+[[nodiscard]] double wiener_norm(const FourierSeries& series, Eigen::Index component);
+
+// Real FFT of fixed length for inner loops: owns its FFTW plans and aligned buffers. Construction and destruction
+// take a process-wide lock (FFTW's planner is not thread-safe); forward and backward may run in parallel
+// on distinct objects. Plans are made with FFTW_ESTIMATE: same input, same bits.
+class RealTransform {
+ public:
+  explicit RealTransform(Eigen::Index num_samples, Eigen::Index num_components = 1);
+  ~RealTransform();
+  RealTransform(RealTransform&&) noexcept;
+  RealTransform& operator=(RealTransform&&) noexcept;
+
+  Eigen::Index num_samples() const;     // N
+  Eigen::Index num_components() const;  // n: transforms done at once
+  // N x n, column per component.
+  Eigen::Map<Eigen::MatrixXd> samples();
+  // (N/2+1) x n, column per component.
+  Eigen::Map<Eigen::MatrixXcd> spectrum();
+  void forward();   // samples -> spectrum = c_0..c_{N/2}, normalised; samples are kept
+  void backward();  // spectrum -> samples; the spectrum is destroyed
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fourier
+}  // namespace hb

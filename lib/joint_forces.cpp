@@ -1,0 +1,1 @@
+#include "lib/joint_forces.hpp"

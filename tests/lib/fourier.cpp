@@ -1,0 +1,97 @@
+#include "lib/fourier.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace hb;
+using std::numbers::pi;
+
+namespace {
+
+constexpr double eps = 2.220446049250313e-16;
+
+FourierSeries sampled(double (*f)(double), Eigen::Index N) {
+  Eigen::MatrixXd samples(1, N);
+  for (Eigen::Index j = 0; j < N; ++j) samples(0, j) = f(2 * pi * double(j) / double(N));
+  return fourier::analyse(samples);
+}
+
+// 1/(1.25 - cos tau) = (4/3) sum 2^-|k| e^{ik tau}: maximum 4 at 0, minimum 4/9 at pi.
+double poisson(double tau) { return 1 / (1.25 - std::cos(tau)); }
+
+}  // namespace
+
+TEST(Fourier, CoefficientsOfThePoissonKernelAreItsGeometricSeries) {
+  const FourierSeries series = sampled(poisson, 128);
+  for (int k = 0; k <= 40; ++k) {
+    EXPECT_NEAR(series.c(0, k).real(), 4.0 / 3.0 * std::pow(0.5, k), 8 * eps);
+    EXPECT_NEAR(series.c(0, k).imag(), 0, 8 * eps);
+  }
+}
+
+TEST(Fourier, ThereAndBackReturnsTheSamplesForOddAndEvenLengths) {
+  for (const Eigen::Index N : {1, 2, 3, 8, 27, 64, 101}) {
+    Eigen::MatrixXd samples(2, N);
+    for (Eigen::Index j = 0; j < N; ++j) samples.col(j) << std::sin(1.0 + double(j) * 1.7), double(j % 3);
+    if (N % 2 == 0) {  // take the Nyquist term away, which a series with H = (N-1)/2 cannot hold
+      Eigen::VectorXd alternating(N);
+      for (Eigen::Index j = 0; j < N; ++j) alternating(j) = j % 2 ? -1 : 1;
+      samples -= (samples * alternating / double(N)) * alternating.transpose();
+    }
+    const Eigen::MatrixXd back = fourier::synthesise(fourier::analyse(samples), N);
+    EXPECT_LE((back - samples).cwiseAbs().maxCoeff(), 100 * eps) << "N = " << N;
+  }
+}
+
+TEST(Fourier, DerivativeIsExactForTrigonometricPolynomials) {
+  const FourierSeries series = sampled([](double t) { return std::cos(3 * t) + 0.5 * std::sin(7 * t); }, 32);
+  const FourierSeries first = fourier::derivative(series), second = fourier::derivative(series, 2);
+  for (const double t : {0.0, 0.3, 2.0, 5.9}) {
+    EXPECT_NEAR(fourier::evaluate(first, t)(0), -3 * std::sin(3 * t) + 3.5 * std::cos(7 * t), 500 * eps);
+    EXPECT_NEAR(fourier::evaluate(second, t)(0), -9 * std::cos(3 * t) - 24.5 * std::sin(7 * t), 5000 * eps);
+  }
+}
+
+TEST(Fourier, RangeFindsTrueExtremaBetweenSamples) {
+  const FourierSeries shifted = sampled([](double t) { return poisson(t - 1.2345); }, 256);
+  const Range r = fourier::range(shifted, 0);
+  EXPECT_NEAR(r.max.value, 4, 100 * eps);
+  EXPECT_NEAR(r.max.crank_angle, 1.2345, 1e-8);
+  EXPECT_NEAR(r.min.value, 4.0 / 9, 100 * eps);
+  EXPECT_NEAR(r.min.crank_angle, 1.2345 + pi, 1e-8);
+}
+
+TEST(Fourier, RangeChoosesTheHigherOfTwoNearlyEqualPeaks) {
+  // cos(40 t) peaks equally 40 times; the small cos(t - t0) decides for the peak nearest to t0.
+  const double t0 = 2 * pi * 17 / 40;
+  const FourierSeries series = sampled(
+      [](double t) { return std::cos(40 * t) + 1e-6 * std::cos(t - 2 * pi * 17 / 40); }, 128);
+  const Extremum peak = fourier::max_abs(series, 0);
+  EXPECT_NEAR(peak.value, 1 + 1e-6, 100 * eps);
+  EXPECT_NEAR(peak.crank_angle, t0, 1e-7);
+}
+
+TEST(Fourier, ConstantHasEqualExtremaAndZeroSeriesHasZeroMaximum) {
+  FourierSeries constant(1, 0);
+  constant.c(0, 0) = -2.5;
+  EXPECT_EQ(fourier::range(constant, 0).max.value, -2.5);
+  EXPECT_EQ(fourier::range(constant, 0).min.value, -2.5);
+  EXPECT_EQ(fourier::max_abs(constant, 0).value, 2.5);
+  EXPECT_EQ(fourier::max_abs(FourierSeries(1, 4), 0).value, 0);
+}
+
+TEST(Fourier, WienerNormBoundsTheMaximum) {
+  const FourierSeries series = sampled(poisson, 128);
+  EXPECT_NEAR(fourier::wiener_norm(series, 0), 4, 100 * eps);
+}
+
+TEST(Fourier, SignificantHarmonicsFollowTheDecay) {
+  EXPECT_EQ(fourier::significant_harmonics(sampled(poisson, 128), std::pow(0.5, 10.5)), 10);
+  EXPECT_EQ(fourier::significant_harmonics(FourierSeries(1, 5), 1e-16), 0);
+}
+
+TEST(Fourier, SynthesiseRefusesTooFewSamples) {
+  EXPECT_THROW((void)fourier::synthesise(FourierSeries(1, 4), 8), std::invalid_argument);
+}
