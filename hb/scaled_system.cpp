@@ -89,12 +89,13 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
     }
   }
 
-  // Turn to the eigenvectors of the mean stiffness where that leaves less coupling in stiffness and damping together.
+  // Turn to the eigenvectors of the mean stiffness where that leaves far less coupling in stiffness and damping
+  // together (factor by experience: a diagonal damping matrix is worth keeping).
   const Eigen::MatrixXd K0 = L * mean_of(C, I) * T, B0 = L * system.damping * T;
   if (I > 1 && is_symmetric(K0)) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(K0);
     const Eigen::MatrixXd& Q = modes.eigenvectors();
-    if (coupling(Q.transpose() * B0 * Q) < coupling(K0) + coupling(B0)) {
+    if (coupling(Q.transpose() * B0 * Q) < 0.1 * (coupling(K0) + coupling(B0))) {
       L = Q.transpose() * L;
       T = T * Q;
     }
