@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <numbers>
 #include <stdexcept>
@@ -94,7 +95,7 @@ Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eige
 FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
   const Eigen::Index n = samples.rows(), N = samples.cols();
   if (N < 1) throw std::invalid_argument("fourier::analyse: no samples");
-  RealTransform transform(N, n);
+  RealTransform& transform = thread_transform(N, n);
   transform.samples() = samples.transpose();
   transform.forward();
   FourierSeries series(n, (N - 1) / 2);
@@ -105,7 +106,7 @@ FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
 Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples) {
   const Eigen::Index H = series.num_harmonics();
   if (num_samples < 2 * H + 1) throw std::invalid_argument("fourier::synthesise: fewer samples than 2H+1");
-  RealTransform transform(num_samples, series.num_components());
+  RealTransform& transform = thread_transform(num_samples, series.num_components());
   auto spectrum = transform.spectrum();
   spectrum.setZero();
   spectrum.topRows(H + 1) = series.c.transpose();
@@ -209,5 +210,13 @@ void RealTransform::forward() {
 }
 
 void RealTransform::backward() { fftw_execute(impl_->to_samples); }
+
+RealTransform& thread_transform(Eigen::Index num_samples, Eigen::Index num_components) {
+  thread_local std::map<std::pair<Eigen::Index, Eigen::Index>, RealTransform> transforms;
+  const auto key = std::pair(num_samples, num_components);
+  const auto found = transforms.find(key);
+  if (found != transforms.end()) return found->second;
+  return transforms.emplace(key, RealTransform(num_samples, num_components)).first->second;
+}
 
 }  // namespace hb::fourier

@@ -89,5 +89,9 @@ class RealTransform {
   std::unique_ptr<Impl> impl_;
 };
 
+// This thread's own RealTransform of the given size, planned at its first use and kept: planning costs far more than a
+// short transform. The buffers belong to whoever asked last; do not hold on to it across other calls.
+[[nodiscard]] RealTransform& thread_transform(Eigen::Index num_samples, Eigen::Index num_components = 1);
+
 }  // namespace fourier
 }  // namespace hb
