@@ -1,17 +1,14 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(tomlplusplus REQUIRED)
+find_package(fmt REQUIRED)
 
-# Debian's FFTW comes with pkg-config only; one imported target for it.
-find_path(FFTW3_INCLUDE_DIR fftw3.h REQUIRED)
-find_library(FFTW3_LIBRARY fftw3 REQUIRED)
-mark_as_advanced(FFTW3_INCLUDE_DIR FFTW3_LIBRARY)
+include(${CMAKE_CURRENT_LIST_DIR}/fftw3.cmake)
 if(NOT TARGET hb::fftw3)
-  add_library(hb::fftw3 UNKNOWN IMPORTED)
-  set_target_properties(hb::fftw3 PROPERTIES
-    IMPORTED_LOCATION "${FFTW3_LIBRARY}"
-    INTERFACE_INCLUDE_DIRECTORIES "${FFTW3_INCLUDE_DIR}")
+  message(FATAL_ERROR "FFTW not found (Debian: libfftw3-dev)")
 endif()
 
-find_package(fmt REQUIRED)
-find_package(CLI11 REQUIRED)
-find_package(nlohmann_json REQUIRED)
+# Of the command and the tests only.
+if(PROJECT_IS_TOP_LEVEL)
+  find_package(CLI11 REQUIRED)
+  find_package(nlohmann_json REQUIRED)
+endif()

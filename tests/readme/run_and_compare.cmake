@@ -1,0 +1,8 @@
+execute_process(COMMAND ${program} OUTPUT_VARIABLE printed RESULT_VARIABLE result)
+if(NOT result EQUAL 0)
+  message(FATAL_ERROR "exit status ${result}")
+endif()
+file(READ ${expected} text)
+if(NOT printed STREQUAL text)
+  message(FATAL_ERROR "README says:\n${text}\nprinted:\n${printed}")
+endif()
