@@ -1,1 +1,319 @@
 #include "hb/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <optional>
+
+#include "hb/propagation.hpp"
+#include "hb/scalar_hill.hpp"
+#include "hb/slaving.hpp"
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+constexpr double eps = 2.220446049250313e-16;
+
+// Exponents per radian of crank angle (s = lambda/Omega) with their bars.
+struct Exponents {
+  std::vector<cplx> s;
+  std::vector<double> error;
+  bool converged = false;  // the leading one is as accurate as asked
+
+  void add(cplx value, double bar) {
+    s.push_back(value);
+    error.push_back(bar);
+  }
+  void append(const Exponents& other) {
+    s.insert(s.end(), other.s.begin(), other.s.end());
+    error.insert(error.end(), other.error.begin(), other.error.end());
+  }
+};
+
+// Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
+double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
+
+// Constant coefficients: s^2 + G s + K = 0.
+Exponents constant_coefficients(const ScaledSystem& system) {
+  const Index I = system.num_modes();
+  const MatrixXd K = system.mean_stiffness();
+  Exponents result;
+  result.converged = true;
+  const bool diagonal = system.diagonal_damping && (K - MatrixXd(K.diagonal().asDiagonal())).isZero(0);
+  if (diagonal) {
+    for (Index i = 0; i < I; ++i) {
+      const double b = system.G(i, i), w2 = K(i, i), Q = w2 - b * b / 4;
+      const double rounding = 4 * eps * (std::abs(w2) + b * b / 2);
+      const double root = std::sqrt(std::abs(Q));
+      const double root_error = Q == 0 ? 0 : std::min(rounding / (2 * root), std::sqrt(rounding));
+      if (Q > 0) {
+        const double bar = 2 * eps * std::abs(b);
+        result.add({-b / 2, root}, bar + (rounding >= Q ? root_error : 0) + 2 * eps * root);
+        result.add({-b / 2, -root}, bar + (rounding >= Q ? root_error : 0) + 2 * eps * root);
+      } else {
+        // The root that nearly cancels from the product of both.
+        const double far = b >= 0 ? -b / 2 - root : -b / 2 + root;
+        const double near = far == 0 ? 0 : w2 / far;
+        const double relative = far == 0 ? 0 : (root_error / std::abs(far) + 4 * eps);
+        result.add(near, relative * std::abs(near) + (rounding >= -Q ? root_error : 0));
+        result.add(far, relative * std::abs(far) + (rounding >= -Q ? root_error : 0));
+      }
+    }
+    return result;
+  }
+  // First-order form in (W x, x'), W = diag(w), whose norm is that of the largest frequency, not of its square.
+  VectorXd W(I);
+  for (Index i = 0; i < I; ++i) W(i) = std::max(std::sqrt(std::abs(K(i, i))), 1e-3);
+  MatrixXd A = MatrixXd::Zero(2 * I, 2 * I);
+  A.topRightCorner(I, I) = W.asDiagonal();
+  A.bottomLeftCorner(I, I) = -K * W.cwiseInverse().asDiagonal();
+  A.bottomRightCorner(I, I) = -system.G;
+  const Eigen::EigenSolver<MatrixXd> solver(A);
+  const Eigen::MatrixXcd V = solver.eigenvectors();
+  const Eigen::MatrixXcd left = V.inverse();
+  const double change = 8 * eps * double(2 * I) * A.norm();
+  for (Index i = 0; i < 2 * I; ++i) {
+    // Condition number of the eigenvalue; a defective pair moves by the square root at most (n = 2).
+    const double condition = left.row(i).norm() * V.col(i).norm();
+    const double linear = change * condition;
+    const double root = std::isfinite(condition) ? 2 * std::sqrt(change * A.norm()) : HUGE_VAL;
+    result.add(solver.eigenvalues()(i), linear <= root && std::isfinite(linear) ? linear : root);
+  }
+  return result;
+}
+
+// Exponents of a reduced system by propagation with growing numbers of cells.
+Exponents propagated(const ReducedSystem& reduced, double tolerance) {
+  const Index m = reduced.num_modes;
+  // Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
+  VectorXd W(m);
+  for (Index i = 0; i < m; ++i) W(i) = std::max(1.0, std::sqrt(std::abs(reduced.alpha.c(i + m * i, 0))));
+  double fastest2 = 1;
+  for (Index i = 0; i < m; ++i) {
+    double row = 0;
+    for (Index j = 0; j < m; ++j) row += fourier::wiener_norm(reduced.alpha, i + m * j) / (W(i) * W(j)) * W(i) * W(i);
+    fastest2 = std::max(fastest2, row);
+  }
+  const double fastest = std::sqrt(fastest2);
+  const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
+
+  Index cells = std::max<Index>(12, Index(std::ceil(2 * fastest)));
+  const Index most = std::max<Index>(512, 8 * cells);
+  Exponents result;
+  std::optional<TurnExponents> coarse;
+  while (cells <= most && cells * m * m * m < Index(2e8)) {
+    const double per_cell = 8 * eps * double(2 * m) + input_error / double(cells);
+    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell);
+    if (coarse) {
+      result.s = fine.s;
+      result.error.assign(fine.s.size(), HUGE_VAL);
+      for (std::size_t i = 0; i < fine.s.size(); ++i) {
+        // The nearest coarse exponent; angles modulo 1.
+        double nearest = HUGE_VAL;
+        for (const cplx other : coarse->s) {
+          double turn = std::abs(fine.s[i].imag() - other.imag());
+          turn = std::min(turn, std::abs(1 - turn));
+          nearest = std::min(nearest, std::hypot(fine.s[i].real() - other.real(), turn));
+        }
+        result.error[i] = nearest + fine.error[i];
+      }
+      const double integration = result.error[0] - fine.error[0];
+      result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
+      if (result.converged || integration <= fine.error[0]) break;
+    }
+    coarse = std::move(fine);
+    cells = cells + cells / 2;
+  }
+  if (result.s.empty() && coarse) {
+    result.s = coarse->s;
+    result.error.assign(coarse->s.size(), HUGE_VAL);
+  }
+  return result;
+}
+
+// Exponents of the modes kept by one reduction.
+Exponents of_reduction(const ReducedSystem& reduced, double tolerance) {
+  if (reduced.num_modes == 1) {
+    const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+    if (frequency > 3) {
+      const double wanted = std::max(0.1 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01),
+                                     1e-12 * frequency);
+      if (const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted)) {
+        Exponents result;
+        for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
+        result.converged = true;
+        return result;
+      }
+    }
+  }
+  return propagated(reduced, tolerance);
+}
+
+struct Search {
+  Exponents exponents;
+  StabilityMethod method = StabilityMethod::automatic;
+  std::string evidence;
+  bool complete = false;  // all 2I exponents accounted for
+};
+
+Search propagate_all(const ScaledSystem& system, double tolerance) {
+  std::vector<Index> all(std::size_t(system.num_modes()));
+  std::iota(all.begin(), all.end(), Index(0));
+  Search search;
+  search.exponents = propagated(slave_to(system, all), tolerance);
+  search.method = StabilityMethod::propagation;
+  search.evidence = "all modes propagated over a turn by Radau IIA";
+  search.complete = true;
+  return search;
+}
+
+// Sum of all exponents is -tr G (Liouville): holds exactly for a complete set, and for no other.
+bool liouville_holds(const ScaledSystem& system, const Exponents& exponents) {
+  double sum = 0, bars = 0, size = 0;
+  for (std::size_t i = 0; i < exponents.s.size(); ++i) {
+    sum += exponents.s[i].real();
+    bars += exponents.error[i];
+    size += std::abs(exponents.s[i]);
+  }
+  return std::abs(sum + system.G.trace()) <= bars + 16 * eps * size;
+}
+
+// Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
+// reduction converges.
+Search by_slaving(const ScaledSystem& system, double tolerance) {
+  const Index I = system.num_modes();
+  Search search;
+  std::vector<Index> together;
+  std::vector<Exponents> alone(std::size_t(I), Exponents{});
+  for (Index g = 0; g < I; ++g) {
+    const std::array<Index, 1> one{g};
+    const ReducedSystem reduced = slave_to(system, one);
+    if (reduced.converged) alone[std::size_t(g)] = of_reduction(reduced, tolerance);
+    if (!reduced.converged || alone[std::size_t(g)].s.empty()) together.push_back(g);
+  }
+  search.method = StabilityMethod::slaving;
+  if (!together.empty()) {
+    while (Index(together.size()) < I) {
+      const ReducedSystem reduced = slave_to(system, together);
+      if (reduced.converged) {
+        search.exponents = of_reduction(reduced, tolerance);
+        break;
+      }
+      const VectorXd strength = resonance_strength(system, together);
+      Index next = 0;
+      strength.maxCoeff(&next);
+      together.push_back(next);
+    }
+    if (Index(together.size()) == I) return propagate_all(system, tolerance);
+    search.evidence = fmt::format("{} modes propagated over a turn by Radau IIA, the others slaved to them; {} modes "
+                                  "each with the others slaved to it",
+                                  together.size(), I - Index(together.size()));
+  } else {
+    search.evidence = fmt::format("{} modes, each with the others slaved to it, their exponents from {}", I,
+                                  "the phase function or one turn's propagation");
+    search.exponents.converged = true;
+  }
+  for (Index g = 0; g < I; ++g)
+    if (std::find(together.begin(), together.end(), g) == together.end()) {
+      search.exponents.append(alone[std::size_t(g)]);
+      search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
+    }
+  search.complete = Index(search.exponents.s.size()) == 2 * I && liouville_holds(system, search.exponents);
+  return search;
+}
+
+// Imaginary part to (-Omega/2, Omega/2].
+double folded(double s) {
+  double f = s - std::floor(s + 0.5);  // [-1/2, 1/2)
+  return f <= -0.5 ? f + 1 : f;
+}
+
+Stability finished(const ScaledSystem& system, const Search& search, double tolerance) {
+  const double Omega = system.speed;
+  Stability result;
+  result.method = search.method;
+  result.evidence = search.evidence;
+  double upper = -HUGE_VAL, lower = -HUGE_VAL, growth = -HUGE_VAL;
+  for (std::size_t i = 0; i < search.exponents.s.size(); ++i) {
+    const cplx s = search.exponents.s[i];
+    const double error = search.exponents.error[i];
+    growth = std::max(growth, s.real());
+    upper = std::max(upper, s.real() + error);
+    lower = std::max(lower, s.real() - error);
+    if (error <= 1e-6 * std::max(std::abs(s), 1.0))
+      result.exponents.push_back({{Omega * s.real(), Omega * folded(s.imag())}, Omega * error});
+  }
+  std::stable_sort(result.exponents.begin(), result.exponents.end(), [](const Exponent& a, const Exponent& b) {
+    if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
+    return a.value.imag() < b.value.imag();
+  });
+  const bool known = search.complete && std::isfinite(growth);
+  const double bar = known ? std::max(upper - growth, growth - lower) : HUGE_VAL;
+  result.growth_rate = Omega * growth;
+  result.growth_error = Omega * bar;
+  result.converged = bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 0.01);
+  if (known && upper < 0) result.verdict = Verdict::stable;
+  if (known && lower > 0) result.verdict = Verdict::unstable;
+  return result;
+}
+
+}  // namespace
+
+Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options) {
+  Search search;
+  if (system.K.num_harmonics() == 0) {
+    search.exponents = constant_coefficients(system);
+    search.method = StabilityMethod::hill;
+    search.evidence = "constant coefficients: roots of the characteristic equation";
+    search.complete = true;
+    return finished(system, search, options.tolerance);
+  }
+  if (options.method == StabilityMethod::propagation) return finished(system, propagate_all(system, options.tolerance), options.tolerance);
+  search = by_slaving(system, options.tolerance);
+  Stability result = finished(system, search, options.tolerance);
+  if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
+  if (!search.complete || result.verdict == Verdict::undecided) {
+    Stability second = finished(system, propagate_all(system, std::min(options.tolerance, 1e-11)), options.tolerance);
+    if (!(second.growth_error >= result.growth_error)) {
+      second.evidence += search.complete ? " (second method after an undecided first)"
+                                         : " (the reduction did not account for all exponents)";
+      return second;
+    }
+  }
+  return result;
+}
+
+Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options) {
+  return analyse_stability(scale_system(system, speed), options);
+}
+
+const char* to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::stable: return "stable";
+    case Verdict::unstable: return "unstable";
+    case Verdict::undecided: return "undecided";
+  }
+  return "";
+}
+
+const char* to_string(StabilityMethod method) {
+  switch (method) {
+    case StabilityMethod::automatic: return "automatic";
+    case StabilityMethod::hill: return "hill";
+    case StabilityMethod::slaving: return "slaving";
+    case StabilityMethod::propagation: return "propagation";
+  }
+  return "";
+}
+
+}  // namespace hb

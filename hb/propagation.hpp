@@ -1,0 +1,32 @@
+// Propagation of x'' + beta(tau) x' + alpha(tau) x = 0 over one turn by Radau IIA collocation (stiffly accurate,
+// R(infinity) = 0: unresolved fast modes vanish instead of faking a multiplier of 1), and exponents from the product of
+// cell maps by QR sweeps, never from the product itself: tiny and huge multipliers keep their digits.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "lib/fourier.hpp"
+
+namespace hb {
+
+// Maps of the scaled state (W x, x') over consecutive cells of one turn; W = diag(scale).
+struct TurnMaps {
+  std::vector<Eigen::MatrixXd> cells;  // 2m x 2m
+  Eigen::VectorXd scale;
+};
+
+// s = 8 stages, order 15. alpha and beta have m*m components (column-major).
+[[nodiscard]] TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Eigen::Index num_modes,
+                                  Eigen::Index num_cells);
+
+// Floquet exponents per radian of crank angle, real part descending; imaginary part in (-1/2, 1/2].
+struct TurnExponents {
+  std::vector<std::complex<double>> s;
+  std::vector<double> error;  // effect on each of a relative change `cell_error` of every cell map, amplified by the
+                              // turn's transient growth; defective pairs get the square root that they need
+};
+[[nodiscard]] TurnExponents turn_exponents(const TurnMaps& maps, double cell_error);
+
+}  // namespace hb

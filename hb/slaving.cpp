@@ -1,0 +1,369 @@
+#include "hb/slaving.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <deque>
+#include <vector>
+
+namespace hb {
+
+namespace {
+
+using Eigen::ArrayXcd;
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+constexpr double eps = 2.220446049250313e-16;
+
+// Smallest 2^a 3^b >= n: lengths that FFTW handles fast.
+Index fft_length(Index n) {
+  Index best = 4;
+  while (best < n) best *= 2;
+  for (Index three = 3; three <= best; three *= 3)
+    for (Index length = 4 * three; length <= best; length *= 2)
+      if (length >= n) best = std::min(best, length);
+  return best;
+}
+
+// Root of D(z) = z^2 + b z + w2 with the larger imaginary part, or the slower one of two real roots.
+cplx root(double b, double w2) {
+  const cplx r = std::sqrt(cplx(b * b / 4 - w2, 0));
+  return b >= 0 && r.imag() == 0 ? cplx(-w2 / (b / 2 + r.real()), 0) : -b / 2 + r;
+}
+
+// Anderson mixing of depth 4 for x <- x + f(x).
+class Anderson {
+ public:
+  VectorXd step(const VectorXd& x, const VectorXd& f) {
+    if (last_x_.size() > 0) {
+      dx_.push_back(x - last_x_);
+      df_.push_back(f - last_f_);
+      if (dx_.size() > depth) {
+        dx_.pop_front();
+        df_.pop_front();
+      }
+    }
+    last_x_ = x;
+    last_f_ = f;
+    VectorXd next = x + f;
+    if (dx_.empty()) return next;
+    const Index d = static_cast<Index>(df_.size());
+    MatrixXd F(f.size(), d);
+    for (Index i = 0; i < d; ++i) F.col(i) = df_[static_cast<std::size_t>(i)];
+    const VectorXd gamma = F.colPivHouseholderQr().solve(f);
+    if (!gamma.allFinite()) return next;
+    for (Index i = 0; i < d; ++i)
+      next -= gamma(i) * (dx_[static_cast<std::size_t>(i)] + df_[static_cast<std::size_t>(i)]);
+    return next;
+  }
+
+ private:
+  static constexpr std::size_t depth = 4;
+  std::deque<VectorXd> dx_, df_;
+  VectorXd last_x_, last_f_;
+};
+
+struct Partition {
+  std::vector<Index> S, F;
+};
+
+Partition partition(Index I, std::span<const Index> slow) {
+  Partition p{{slow.begin(), slow.end()}, {}};
+  for (Index i = 0; i < I; ++i)
+    if (std::find(p.S.begin(), p.S.end(), i) == p.S.end()) p.F.push_back(i);
+  return p;
+}
+
+// One attempt with N samples of the turn.
+class Iteration {
+  // Samples of k_ij over the turn.
+  auto K(Index i, Index j) const { return K_.col(i + I_ * j).array(); }
+
+ public:
+  Iteration(const ScaledSystem& system, const Partition& p, Index num_samples)
+      : S_(p.S), F_(p.F), m_(Index(p.S.size())), n_(Index(p.F.size())), N_(num_samples), H_((num_samples - 1) / 2),
+        G_(system.G), diagonal_damping_(system.diagonal_damping),
+        I_(system.num_modes()), K_(fourier::synthesise(system.K, num_samples).transpose()), alpha_(N_, m_ * m_), beta_(N_, m_ * m_),
+        P_(MatrixXd::Zero(N_, n_ * m_)), R_(MatrixXd::Zero(N_, n_ * m_)) {
+    const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+    for (const Index s : S_) weight_.push_back(std::max(1.0, std::abs(root(b(s), w2(s)))));
+    // kappa: what an error of A does to alpha.
+    for (Index s = 0; s < m_; ++s) {
+      double sum = 0;
+      for (Index j = 0; j < n_; ++j) sum += K(S_[s], F_[j]).abs().maxCoeff() + std::abs(G_(S_[s], F_[j])) * H_;
+      kappa_ = std::max(kappa_, sum);
+    }
+    // Inverse of the constant part per (j, l, k); see below.
+    inverse_.resize(std::size_t(n_ * m_ * (H_ + 1)));
+    for (Index l = 0; l < m_; ++l)
+      for (Index j = 0; j < n_; ++j)
+        for (Index k = 0; k <= H_; ++k) {
+          const double wg = w2(S_[l]), bg = b(S_[l]), wj = w2(F_[j]), bj = b(F_[j]);
+          const cplx ik(0, double(k));
+          // P = ik a - wg c, R = a + (ik - bg) c:
+          //   (ik + bj) P - wg R + wj a = -r1,   P + (ik - bg + bj) R + wj c = -r2.
+          Eigen::Matrix2cd A;
+          A << (ik + bj) * ik - wg + wj, -(ik + bj) * wg - wg * (ik - bg),  //
+              ik + (ik - bg + bj), -wg + (ik - bg + bj) * (ik - bg) + wj;
+          inverse_[slot(j, l, k)] = -A.inverse();
+        }
+  }
+
+  // Solves for A, C; false if it diverges. `change` is then a bound on the remaining error of alpha.
+  bool run(int& iterations) {
+    const Index nm = n_ * m_;
+    VectorXd x = VectorXd::Zero(nm * 2 * 2 * (H_ + 1));
+    Anderson anderson;
+    bool mixing = false;
+    double previous = HUGE_VAL, best = HUGE_VAL;
+    int stalled = 0;
+    for (int iteration = 1; iteration <= 80; ++iteration) {
+      ++iterations;
+      const VectorXd f = correction(x);
+      if (!f.allFinite()) return false;
+      const double change = kappa_ * norm(f);
+      const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
+      const double rho = change / previous;
+      contraction_ = iteration > 1 ? std::max(rho, 0.05) : 0.5;
+      if (change <= 2 * eps * scale || (change <= 1e-11 * scale && rho > 0.5)) {
+        change_ = change + tail(x);
+        needs_more_samples_ = !(tail(x) <= 1e-13 * scale);
+        return !needs_more_samples_;
+      }
+      stalled = change < 0.9 * best ? 0 : stalled + 1;
+      best = std::min(best, change);
+      if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 12) return false;
+      if (iteration >= 4 && rho > 0.25) mixing = true;
+      x = mixing ? anderson.step(x, f) : VectorXd(x + f);
+      previous = change;
+    }
+    return false;
+  }
+
+  ReducedSystem result() const {
+    ReducedSystem reduced;
+    reduced.converged = true;
+    reduced.num_modes = m_;
+    reduced.alpha = fourier::analyse(alpha_.transpose());
+    reduced.beta = fourier::analyse(beta_.transpose());
+    const double ratio = std::min(contraction_, 0.9);
+    const double iteration = 2 * change_ / (1 - ratio);
+    reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * largest_A_);
+    reduced.beta_error = iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * largest_C_);
+    return reduced;
+  }
+
+  bool needs_more_samples() const { return needs_more_samples_; }
+
+  double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
+
+ private:
+  std::size_t slot(Index j, Index l, Index k) const { return std::size_t((j + n_ * l) * (H_ + 1) + k); }
+
+  // The vector x holds A_k then weight * C_k for every (j, l): real and imaginary parts.
+  Eigen::Map<const Eigen::VectorXcd> A_of(const VectorXd& x, Index q) const {
+    return {reinterpret_cast<const cplx*>(x.data()) + q * 2 * (H_ + 1), H_ + 1};
+  }
+  Eigen::Map<const Eigen::VectorXcd> C_of(const VectorXd& x, Index q) const {
+    return {reinterpret_cast<const cplx*>(x.data()) + (q * 2 + 1) * (H_ + 1), H_ + 1};
+  }
+
+  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k.
+  double norm(const VectorXd& x) const {
+    double largest = 0;
+    for (Index q = 0; q < n_ * m_; ++q)
+      largest = std::max(largest, 2 * (A_of(x, q).cwiseAbs().sum() + C_of(x, q).cwiseAbs().sum()));
+    return largest;
+  }
+
+  // What the last quarter of the harmonics carries: the truncation's share.
+  double tail(const VectorXd& x) const {
+    double largest = 0;
+    const Index count = std::max<Index>(1, H_ / 4);
+    for (Index q = 0; q < n_ * m_; ++q)
+      largest = std::max(largest, 2 * (A_of(x, q).tail(count).cwiseAbs().sum() + C_of(x, q).tail(count).cwiseAbs().sum()));
+    return kappa_ * largest;
+  }
+
+  // Residual of the two invariance equations, pushed through the inverse of their constant part:
+  //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
+  //   x_F'  = P x_S + R x_S',             P = A' - C alpha,   R = A + C' - C beta
+  //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
+  VectorXd correction(const VectorXd& x) {
+    const Index nm = n_ * m_;
+    auto& back = fourier::thread_transform(N_, 4 * nm);
+    {
+      auto spectrum = back.spectrum();
+      spectrum.setZero();
+      for (Index q = 0; q < nm; ++q) {
+        const double weight = weight_[std::size_t(q / n_)];
+        const auto a = A_of(x, q), c = C_of(x, q);
+        for (Index k = 0; k <= H_; ++k) {
+          const cplx ik(0, double(k));
+          spectrum(k, q) = a(k);
+          spectrum(k, nm + q) = ik * a(k);
+          spectrum(k, 2 * nm + q) = c(k) / weight;
+          spectrum(k, 3 * nm + q) = ik * c(k) / weight;
+        }
+      }
+    }
+    back.backward();
+    const MatrixXd samples = back.samples();
+    const auto A = [&](Index j, Index l) { return samples.col(j + n_ * l).array(); };
+    const auto A1 = [&](Index j, Index l) { return samples.col(nm + j + n_ * l).array(); };
+    const auto C = [&](Index j, Index l) { return samples.col(2 * nm + j + n_ * l).array(); };
+    const auto C1 = [&](Index j, Index l) { return samples.col(3 * nm + j + n_ * l).array(); };
+    largest_A_ = samples.leftCols(nm).cwiseAbs().maxCoeff();
+    largest_C_ = samples.middleCols(2 * nm, nm).cwiseAbs().maxCoeff();
+
+    for (int pass = 0; pass < (diagonal_damping_ ? 1 : 3); ++pass) {
+      for (Index l = 0; l < m_; ++l)
+        for (Index s = 0; s < m_; ++s) {
+          auto alpha = alpha_.col(s + m_ * l).array();
+          auto beta = beta_.col(s + m_ * l).array();
+          alpha = K(S_[s], S_[l]);
+          beta = ArrayXd::Constant(N_, G_(S_[s], S_[l]));
+          for (Index j = 0; j < n_; ++j) {
+            alpha += K(S_[s], F_[j]) * A(j, l);
+            beta += K(S_[s], F_[j]) * C(j, l);
+            if (!diagonal_damping_) {
+              alpha += G_(S_[s], F_[j]) * P_.col(j + n_ * l).array();
+              beta += G_(S_[s], F_[j]) * R_.col(j + n_ * l).array();
+            }
+          }
+        }
+      for (Index l = 0; l < m_; ++l)
+        for (Index j = 0; j < n_; ++j) {
+          auto P = P_.col(j + n_ * l).array();
+          auto R = R_.col(j + n_ * l).array();
+          P = A1(j, l);
+          R = A(j, l) + C1(j, l);
+          for (Index s = 0; s < m_; ++s) {
+            P -= C(j, s) * alpha_.col(s + m_ * l).array();
+            R -= C(j, s) * beta_.col(s + m_ * l).array();
+          }
+        }
+    }
+
+    auto& forward = fourier::thread_transform(N_, 4 * nm);
+    auto out = forward.samples();
+    out.leftCols(nm) = P_;
+    out.middleCols(nm, nm) = R_;
+    for (Index l = 0; l < m_; ++l)
+      for (Index j = 0; j < n_; ++j) {
+        auto r1 = out.col(2 * nm + j + n_ * l).array();
+        auto r2 = out.col(3 * nm + j + n_ * l).array();
+        r1 = K(F_[j], S_[l]) + G_(F_[j], F_[j]) * P_.col(j + n_ * l).array();
+        r2 = P_.col(j + n_ * l).array() + G_(F_[j], S_[l]) + G_(F_[j], F_[j]) * R_.col(j + n_ * l).array();
+        for (Index s = 0; s < m_; ++s) {
+          r1 -= R_.col(j + n_ * s).array() * alpha_.col(s + m_ * l).array();
+          r2 -= R_.col(j + n_ * s).array() * beta_.col(s + m_ * l).array();
+        }
+        for (Index i = 0; i < n_; ++i) {
+          r1 += K(F_[j], F_[i]) * A(i, l);
+          r2 += K(F_[j], F_[i]) * C(i, l);
+          if (!diagonal_damping_ && i != j) {
+            r1 += G_(F_[j], F_[i]) * P_.col(i + n_ * l).array();
+            r2 += G_(F_[j], F_[i]) * R_.col(i + n_ * l).array();
+          }
+        }
+      }
+    forward.forward();
+    const auto spectrum = forward.spectrum();
+
+    VectorXd f(x.size());
+    cplx* data = reinterpret_cast<cplx*>(f.data());
+    for (Index l = 0; l < m_; ++l)
+      for (Index j = 0; j < n_; ++j) {
+        const Index q = j + n_ * l;
+        for (Index k = 0; k <= H_; ++k) {
+          const cplx ik(0, double(k));
+          const cplx r1 = spectrum(k, 2 * nm + q) + ik * spectrum(k, q);
+          const cplx r2 = spectrum(k, 3 * nm + q) + ik * spectrum(k, nm + q);
+          const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
+          data[q * 2 * (H_ + 1) + k] = M(0, 0) * r1 + M(0, 1) * r2;
+          data[(q * 2 + 1) * (H_ + 1) + k] = weight_[std::size_t(l)] * (M(1, 0) * r1 + M(1, 1) * r2);
+        }
+      }
+    return f;
+  }
+
+  std::vector<Index> S_, F_;
+  Index m_, n_, N_, H_;
+  const MatrixXd& G_;
+  bool diagonal_damping_;
+  Index I_;
+  MatrixXd K_;            // N x I*I
+  MatrixXd alpha_, beta_;  // N x m*m
+  MatrixXd P_, R_;         // N x n*m
+  std::vector<double> weight_;
+  std::vector<Eigen::Matrix2cd> inverse_;
+  bool needs_more_samples_ = false;
+  double kappa_ = 0, change_ = 0, contraction_ = 0, largest_A_ = 0, largest_C_ = 0;
+};
+
+}  // namespace
+
+ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow) {
+  const Index I = system.num_modes();
+  const Partition p = partition(I, slow);
+  if (p.F.empty()) {
+    ReducedSystem all;
+    all.converged = true;
+    all.num_modes = I;
+    all.alpha = FourierSeries(I * I, system.K.num_harmonics());
+    all.beta = FourierSeries(I * I, 0);
+    for (Index l = 0; l < I; ++l)
+      for (Index s = 0; s < I; ++s) {
+        all.alpha.c.row(s + I * l) = system.K.c.row(p.S[s] + I * p.S[l]);
+        all.beta.c(s + I * l, 0) = system.G(p.S[s], p.S[l]);
+      }
+    all.alpha_error = 4 * eps * system.K.c.cwiseAbs().rowwise().sum().maxCoeff();
+    all.beta_error = 4 * eps * system.G.cwiseAbs().maxCoeff();
+    return all;
+  }
+  ReducedSystem reduced;
+  const Index start = fft_length(2 * system.K.num_harmonics() + 16);
+  for (Index N = start; N <= 4 * start && N <= 4096; N *= 2) {
+    Iteration iteration(system, p, N);
+    if (iteration.run(reduced.iterations)) {
+      const int iterations = reduced.iterations;
+      reduced = iteration.result();
+      reduced.iterations = iterations;
+      return reduced;
+    }
+    // Only a tail that has not decayed is worth a finer grid; divergence is not.
+    if (!iteration.needs_more_samples()) break;
+  }
+  return reduced;
+}
+
+VectorXd resonance_strength(const ScaledSystem& system, std::span<const Index> slow) {
+  const Index I = system.num_modes(), P = system.K.num_harmonics();
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  VectorXd strength = VectorXd::Constant(I, -1);
+  for (const Index j : partition(I, slow).F) {
+    strength(j) = 0;
+    for (const Index s : slow) {
+      const cplx lambda = root(b(s), w2(s));
+      for (Index k = -P; k <= P; ++k) {
+        const cplx z = lambda + cplx(0, double(k));
+        const double coupling = std::abs(system.K.c(s + I * j, std::abs(k))) * std::abs(system.K.c(j + I * s, std::abs(k))) +
+                                std::abs(system.G(s, j) * system.G(j, s)) * (k == 0 ? std::norm(z) : 0);
+        const double denominator =
+            std::abs(z * z + b(j) * z + w2(j)) * std::max(std::abs(2.0 * lambda + b(s)), 1e-3);
+        strength(j) = std::max(strength(j), coupling / std::max(denominator, 1e-300));
+      }
+    }
+  }
+  return strength;
+}
+
+}  // namespace hb
