@@ -1,0 +1,496 @@
+// The library against an independent model (tests/newton_euler.hpp), on random linkages of every kind and on the
+// six-link mechanism's reference numbers.
+#include "tests/newton_euler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "lib/fourier.hpp"
+#include "lib/hill_system.hpp"
+#include "lib/joint_forces.hpp"
+#include "lib/kinematics.hpp"
+#include "lib/rod.hpp"
+#include "tests/random_linkage.hpp"
+
+namespace hb {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double pi = std::numbers::pi;
+constexpr double tolerance = 1e-10;  // relative, of everything compared
+
+const std::vector<RandomLinkage>& linkages() {
+  static const std::vector<RandomLinkage> list = random_linkages(80, 20240607);
+  return list;
+}
+
+const std::vector<double>& crank_angles() {
+  static const std::vector<double> list = {0.0, 0.7, 1.9, 3.3, 4.6, 5.9};
+  return list;
+}
+
+// Largest difference and largest value of quantities of one kind.
+struct Comparison {
+  double difference = 0, size = 0;
+  void add(Complex a, Complex b) {
+    keep_larger(difference, std::abs(a - b));
+    keep_larger(size, std::abs(b));
+  }
+  bool agrees(double floor = 0) const { return difference <= tolerance * size + floor; }
+  static void keep_larger(double& largest, double value) {
+    if (!(value <= largest)) largest = value;  // keeps NaN
+  }
+};
+
+std::ostream& operator<<(std::ostream& out, const Comparison& c) {
+  return out << "differs by " << c.difference << " of " << c.size;
+}
+
+std::string label(const RandomLinkage& random, std::size_t number) {
+  return "linkage " + std::to_string(number) + " (" + random.kind + ")";
+}
+
+TEST(RandomLinkages, HaveEveryKindOfLink) {
+  int elastic_couplers = 0, elastic_rockers = 0, sliders = 0, on_couplers = 0, on_sliders = 0, long_chains = 0;
+  int positive = 0, negative = 0;
+  for (const auto& [kind, linkage, speed] : linkages()) {
+    EXPECT_FALSE(elastic_links(linkage).empty() && linkage.dyads.size() < 3) << kind;
+    if (linkage.dyads.size() >= 4) ++long_chains;
+    for (const Dyad& dyad : linkage.dyads) {
+      ++(dyad.branch > 0 ? positive : negative);
+      if (dyad.coupler.elastic) ++elastic_couplers;
+      const auto* rocker = std::get_if<Rocker>(&dyad.closing);
+      if (!rocker) ++sliders;
+      if (rocker && rocker->body.elastic) ++elastic_rockers;
+      if (dyad.on.body % 2 == 1) ++on_couplers;
+      if (dyad.on.body > 0 && !body_at(linkage, dyad.on.body)) ++on_sliders;
+    }
+  }
+  for (const int count : {elastic_couplers, elastic_rockers, sliders, on_couplers, on_sliders, long_chains, positive,
+                          negative})
+    EXPECT_GE(count, 10);
+}
+
+TEST(RandomLinkages, CloseTheirLoopsAtEveryCrankAngle) {
+  for (const auto& [kind, linkage, speed] : linkages())
+    for (const double tau : crank_angles()) {
+      const std::vector<BodyMotion> motion = motion_at(linkage, tau);
+      for (int d = 0; d < static_cast<int>(linkage.dyads.size()); ++d) {
+        const Dyad& dyad = linkage.dyads[static_cast<std::size_t>(d)];
+        const BodyMotion& coupler = motion[static_cast<std::size_t>(coupler_index(d))];
+        const BodyMotion& closing = motion[static_cast<std::size_t>(closing_index(d))];
+        const auto* rocker = std::get_if<Rocker>(&dyad.closing);
+        const Complex end = rocker ? closing.position(rocker->body.length) : closing.z;
+        const double scale = std::abs(coupler.z) + dyad.coupler.length + std::abs(end);
+        EXPECT_LE(std::abs(coupler.position(dyad.coupler.length) - end), 1e-13 * scale) << kind;
+        EXPECT_LE(std::abs(std::abs(coupler.e) - 1), 1e-13) << kind;
+        const Complex e = coupler.e;
+        if (rocker) {
+          EXPECT_GT(dyad.branch * (std::conj(coupler.z - rocker->pivot) * closing.e).imag(), 0) << kind;
+        } else {
+          const auto& slider = std::get<Slider>(dyad.closing);
+          const Complex guide = std::polar(1.0, slider.direction);
+          EXPECT_LE(std::abs((std::conj(guide) * (end - slider.guide)).imag()), 1e-13 * (scale + std::abs(slider.guide)))
+              << kind;
+          EXPECT_GT(dyad.branch * (std::conj(guide) * e).real(), 0) << kind;
+        }
+      }
+    }
+}
+
+TEST(Kinematics, DerivativesAreThoseOfThePositions) {
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    Comparison z, z1, z2, e, turn1, turn2;
+    for (const double tau : crank_angles()) {
+      const std::vector<BodyMotion> ours = motion_at(linkage, tau);
+      const std::vector<BodyMotion> theirs = newton_euler::motion(linkage, tau);
+      ASSERT_EQ(ours.size(), theirs.size());
+      for (std::size_t b = 0; b < ours.size(); ++b) {
+        z.add(ours[b].z, theirs[b].z);
+        z1.add(ours[b].z1, theirs[b].z1);
+        z2.add(ours[b].z2, theirs[b].z2);
+        turn1.add(ours[b].phi1, theirs[b].phi1);
+        turn2.add(ours[b].phi2, theirs[b].phi2);
+        e.add(ours[b].e, theirs[b].e);
+      }
+    }
+    for (const Comparison& c : {z, z1, z2, e, turn1, turn2}) EXPECT_TRUE(c.agrees()) << label(linkages()[n], n) << c;
+  }
+}
+
+// Joint forces of the three powers of the speed, added up.
+MechanismForces rigid_forces(const Linkage& linkage, double tau, double speed) {
+  const std::vector<BodyMotion> motion = motion_at(linkage, tau);
+  const std::array<std::vector<BodyLoad>, 3> loads = rigid_loads(linkage, motion, tau);
+  std::vector<BodyLoad> sum = loads[0];
+  for (std::size_t b = 0; b < sum.size(); ++b) {
+    sum[b].force += speed * (loads[1][b].force + speed * loads[2][b].force);
+    sum[b].moment += speed * (loads[1][b].moment + speed * loads[2][b].moment);
+  }
+  return balance(linkage, motion, sum);
+}
+
+void compare(const MechanismForces& ours, const MechanismForces& theirs, Comparison& force, Comparison& torque) {
+  ASSERT_EQ(ours.dyads.size(), theirs.dyads.size());
+  for (std::size_t d = 0; d < ours.dyads.size(); ++d) {
+    force.add(ours.dyads[d].joint0, theirs.dyads[d].joint0);
+    force.add(ours.dyads[d].joint1, theirs.dyads[d].joint1);
+    force.add(ours.dyads[d].ground, theirs.dyads[d].ground);
+  }
+  force.add(ours.crank_pivot, theirs.crank_pivot);
+  torque.add(ours.torque, theirs.torque);
+}
+
+TEST(JointForces, RigidOnesBalanceEveryBodyAtOnce) {
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    for (const double factor : {0.0, 0.03, 1.0, 30.0}) {
+      const double speed = factor * linkages()[n].speed;
+      Comparison force, torque;
+      for (const double tau : crank_angles())
+        compare(rigid_forces(linkage, tau, speed), newton_euler::forces(linkage, tau, speed), force, torque);
+      EXPECT_TRUE(force.agrees()) << label(linkages()[n], n) << " at " << factor << ": force " << force;
+      EXPECT_TRUE(torque.agrees()) << label(linkages()[n], n) << " at " << factor << ": torque " << torque;
+    }
+  }
+}
+
+TEST(Rod, RitzMatricesAreTheWeakFormOfTheBeamEquation) {
+  constexpr Eigen::Index I = 6;
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+    ASSERT_EQ(coefficients.links, elastic_links(linkage));
+    for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
+      const int link = coefficients.links[r];
+      const Body& rod = *body_at(linkage, link);
+      const HillSystem system = ritz_system(rod, coefficients.rods[r], I);
+      for (const double factor : {0.1, 1.0, 4.0}) {
+        const double speed = factor * linkages()[n].speed;
+        const FourierSeries C = stiffness_at(system, speed), h = load_at(system, speed);
+        std::vector<Comparison> stiffness(I * I), load(I), mass(I * I), damping(I * I);
+        for (const double tau : crank_angles()) {
+          const newton_euler::Ritz ritz = newton_euler::ritz(linkage, link, tau, speed, I);
+          const Eigen::VectorXd c = fourier::evaluate(C, tau), load_now = fourier::evaluate(h, tau);
+          for (Eigen::Index i = 0; i < I; ++i) {
+            load[static_cast<std::size_t>(i)].add(load_now(i), ritz.load(i));
+            for (Eigen::Index k = 0; k < I; ++k) {
+              // Bending's own (i pi/l)^4 taken off, so that it hides nothing.
+              const double bending = i == k ? std::pow(static_cast<double>(i + 1) * pi / rod.length, 4) : 0;
+              const auto ik = static_cast<std::size_t>(i + I * k);
+              stiffness[ik].add(c(i + I * k) - bending, ritz.stiffness(i, k) - bending);
+              mass[ik].add(system.mass(i, k), ritz.mass(i, k));
+              damping[ik].add(system.damping(i, k), ritz.damping(i, k));
+            }
+          }
+        }
+        const auto where = [&] { return label(linkages()[n], n) + " " + rod.name + " at " + std::to_string(factor); };
+        constexpr double eps = std::numeric_limits<double>::epsilon();
+        for (Eigen::Index i = 0; i < I; ++i) {
+          EXPECT_TRUE(load[static_cast<std::size_t>(i)].agrees()) << where() << " h " << i + 1 << ' ' << load[i];
+          for (Eigen::Index k = 0; k < I; ++k) {
+            const auto ik = static_cast<std::size_t>(i + I * k);
+            const double rows = static_cast<double>((i + 1) * (k + 1));
+            const double bending = std::pow(rows, 2) * std::pow(pi / rod.length, 4);
+            EXPECT_TRUE(stiffness[ik].agrees(20 * eps * bending))
+                << where() << " C " << i + 1 << ' ' << k + 1 << ' ' << stiffness[ik];
+            EXPECT_TRUE(mass[ik].agrees(100 * eps * rows * system.mass(0, 0))) << where() << " M " << mass[ik];
+            EXPECT_TRUE(damping[ik].agrees(100 * eps * rows * rows * system.damping(0, 0)))
+                << where() << " B " << damping[ik];
+          }
+        }
+      }
+    }
+  }
+}
+
+// The JSON contract's components of all joints at one crank angle.
+std::map<std::string, std::vector<double>> components(const Linkage& linkage, double tau,
+                                                      const MechanismForces& forces) {
+  const std::vector<BodyMotion> motion = newton_euler::motion(linkage, tau);
+  std::map<std::string, std::vector<double>> result;
+  const auto put = [&](const std::string& name, Complex force, int frame) {
+    const Complex resolved = std::conj(motion[static_cast<std::size_t>(frame)].e) * force;
+    result[name] = {resolved.real(), resolved.imag()};
+  };
+  put("crank.pivot", forces.crank_pivot, coupler_index(0));
+  for (int d = 0; d < static_cast<int>(linkage.dyads.size()); ++d) {
+    const Dyad& dyad = linkage.dyads[static_cast<std::size_t>(d)];
+    const DyadForces& at = forces.dyads[static_cast<std::size_t>(d)];
+    put(dyad.coupler.name + ".0", at.joint0, coupler_index(d));
+    put(dyad.coupler.name + ".1", at.joint1, coupler_index(d));
+    if (const auto* rocker = std::get_if<Rocker>(&dyad.closing)) {
+      put(rocker->body.name + ".pivot", at.ground, coupler_index(d));
+      if (rocker->body.elastic) {
+        put(rocker->body.name + ".0", -at.ground, closing_index(d));
+        put(rocker->body.name + ".1", -at.joint1, closing_index(d));
+      }
+    } else {
+      const Complex e = motion[static_cast<std::size_t>(closing_index(d))].e;
+      result[std::get<Slider>(dyad.closing).name + ".guide"] = {(std::conj(e) * at.ground).imag()};
+    }
+  }
+  return result;
+}
+
+TEST(JointForces, ElasticOnesKeepEveryTermLinearInTheDeflection) {
+  Random random(7);
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    const double speed = linkages()[n].speed;
+    std::vector<LinkResponse> responses;
+    for (const int link : elastic_links(linkage))
+      responses.push_back({link, random_deflection(*body_at(linkage, link), 3, random)});
+    const JointForces ours = joint_forces(linkage, speed, responses);
+    Comparison force, added, torque, added_torque;
+    for (const double tau : crank_angles()) {
+      const MechanismForces elastic = newton_euler::forces(linkage, tau, speed, responses);
+      const MechanismForces rigid = newton_euler::forces(linkage, tau, speed);
+      const auto elastic_parts = components(linkage, tau, elastic), rigid_parts = components(linkage, tau, rigid);
+      ASSERT_EQ(ours.joints.size(), elastic_parts.size()) << label(linkages()[n], n);
+      for (const JointForce& joint : ours.joints) {
+        ASSERT_TRUE(elastic_parts.contains(joint.name)) << joint.name;
+        const std::vector<double>&full = elastic_parts.at(joint.name), &stiff = rigid_parts.at(joint.name);
+        ASSERT_EQ(static_cast<std::size_t>(joint.elastic.num_components()), full.size()) << joint.name;
+        const Eigen::VectorXd bent = fourier::evaluate(joint.elastic, tau), straight = fourier::evaluate(joint.rigid, tau);
+        for (std::size_t k = 0; k < full.size(); ++k) {
+          const auto row = static_cast<Eigen::Index>(k);
+          force.add(bent(row), full[k]);
+          added.add(bent(row) - straight(row), full[k] - stiff[k]);
+        }
+      }
+      const double bent = fourier::evaluate(ours.torque, tau)(0), straight = fourier::evaluate(ours.torque_rigid, tau)(0);
+      torque.add(bent, elastic.torque);
+      added_torque.add(bent - straight, elastic.torque - rigid.torque);
+    }
+    for (const Comparison& c : {force, added, torque, added_torque})
+      EXPECT_TRUE(c.agrees()) << label(linkages()[n], n) << ' ' << c;
+  }
+}
+
+TEST(JointForces, MeanTorqueFeedsDampingAndSliders) {
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    const double speed = linkages()[n].speed;
+    const FourierSeries torque = joint_forces(linkage, speed, {}).torque_rigid;
+    constexpr int N = 256;
+    double lost = 0;
+    for (int j = 0; j < N; ++j) lost += newton_euler::lost_power(linkage, 2 * pi * j / N, speed) / N;
+    const double size = fourier::max_abs(torque, 0).value * speed;
+    EXPECT_LE(std::abs(torque.c(0, 0).real() * speed - lost), 1e-10 * std::abs(size)) << label(linkages()[n], n);
+  }
+}
+
+TEST(JointForces, DrivingTorqueDoesTheVirtualWorkOfAnyLoads) {
+  Random random(11);
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    const double L = linkage.crank.body.length;
+    for (const double tau : crank_angles()) {
+      const std::vector<BodyMotion> motion = motion_at(linkage, tau);
+      std::vector<BodyLoad> loads;
+      double work = 0, size = 0;
+      for (const BodyMotion& body : motion) {
+        loads.push_back({Complex(random.uniform(-1, 1), random.uniform(-1, 1)), L * random.uniform(-1, 1)});
+        const double part = (std::conj(body.z1) * loads.back().force).real() + body.phi1 * loads.back().moment;
+        work += part;
+        size += std::abs(part);
+      }
+      EXPECT_LE(std::abs(balance(linkage, motion, loads).torque - work), 1e-11 * size) << label(linkages()[n], n);
+    }
+  }
+}
+
+// The linkage seen in a mirror along the x-axis: at crank angle -tau it stands as the mirror image at tau.
+Linkage mirrored(Linkage linkage) {
+  const auto mirror_points = [](auto& points) {
+    for (auto& [name, point] : points) point = std::conj(point);
+  };
+  const auto mirror_body = [&](Body& body) {
+    body.com = std::conj(body.com);
+    mirror_points(body.points);
+  };
+  linkage.gravity = -linkage.gravity;
+  linkage.crank.pivot = std::conj(linkage.crank.pivot);
+  mirror_body(linkage.crank.body);
+  for (Dyad& dyad : linkage.dyads) {
+    dyad.on.point = std::conj(dyad.on.point);
+    mirror_body(dyad.coupler);
+    if (auto* rocker = std::get_if<Rocker>(&dyad.closing)) {
+      rocker->pivot = std::conj(rocker->pivot);
+      mirror_body(rocker->body);
+      dyad.branch = -dyad.branch;
+    } else {
+      auto& slider = std::get<Slider>(dyad.closing);
+      slider.guide = std::conj(slider.guide);
+      slider.direction = -slider.direction;
+      mirror_points(slider.points);
+      slider.force.c = slider.force.c.conjugate().eval();
+    }
+  }
+  return linkage;
+}
+
+TEST(JointForces, MirroredLinkageHasMirroredForces) {
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    const Linkage& linkage = linkages()[n].linkage;
+    const double speed = linkages()[n].speed;
+    const Linkage mirror = mirrored(linkage);
+    Comparison force, torque;
+    for (const double tau : crank_angles()) {
+      MechanismForces image = rigid_forces(mirror, -tau, -speed);  // the crank's image turns the other way
+      for (DyadForces& dyad : image.dyads)
+        dyad = {std::conj(dyad.joint0), std::conj(dyad.joint1), std::conj(dyad.ground)};
+      image.crank_pivot = std::conj(image.crank_pivot);
+      image.torque = -image.torque;
+      compare(image, rigid_forces(linkage, tau, speed), force, torque);
+    }
+    EXPECT_TRUE(force.agrees()) << label(linkages()[n], n) << " force " << force;
+    EXPECT_TRUE(torque.agrees()) << label(linkages()[n], n) << " torque " << torque;
+  }
+}
+
+TEST(JointForces, AreLinearInGravity) {
+  for (std::size_t n = 0; n < linkages().size(); ++n) {
+    Linkage upright = linkages()[n].linkage;
+    Linkage weightless = upright, reversed = upright;
+    weightless.gravity = 0;
+    reversed.gravity = -upright.gravity;
+    const double speed = linkages()[n].speed;
+    Comparison force, torque;
+    for (const double tau : crank_angles()) {
+      const MechanismForces down = rigid_forces(upright, tau, speed), up = rigid_forces(reversed, tau, speed);
+      MechanismForces mean = down;
+      for (std::size_t d = 0; d < mean.dyads.size(); ++d)
+        mean.dyads[d] = {(down.dyads[d].joint0 + up.dyads[d].joint0) / 2.0,
+                         (down.dyads[d].joint1 + up.dyads[d].joint1) / 2.0,
+                         (down.dyads[d].ground + up.dyads[d].ground) / 2.0};
+      mean.crank_pivot = (down.crank_pivot + up.crank_pivot) / 2.0;
+      mean.torque = (down.torque + up.torque) / 2.0;
+      compare(mean, rigid_forces(weightless, tau, speed), force, torque);
+    }
+    EXPECT_TRUE(force.agrees()) << label(linkages()[n], n) << " force " << force;
+    EXPECT_TRUE(torque.agrees()) << label(linkages()[n], n) << " torque " << torque;
+  }
+}
+
+// ------------------------------------------------------------------------------------------------ six-link mechanism
+
+Body rod(const std::string& name, double length, double mass, double area, double J) {
+  Body body;
+  body.name = name;
+  body.length = length;
+  body.mass = mass;
+  body.com = length / 2;
+  body.elastic = Elastic{21e7, area, J, mass / (length * area), 1e-4, 1e-6, 1e-6};
+  body.inertia = mass * length * length / 12 + body.elastic->density * J * length;
+  return body;
+}
+
+Body rocker(const std::string& name, double length, double mass, Complex com, double inertia_pivot) {
+  Body body;
+  body.name = name;
+  body.length = length;
+  body.mass = mass;
+  body.com = com;
+  body.inertia = inertia_pivot - mass * std::norm(com);
+  return body;
+}
+
+// mm, kg, s; second moment J of both rods.
+Linkage six_link(double J) {
+  const Complex C = std::polar(200.0, -0.3);
+  Linkage linkage;
+  linkage.gravity = 9810;
+  linkage.crank.body.name = "crank";
+  linkage.crank.body.length = 55;
+  Rocker O2BC{rocker("O2BC", 200, 1.84, std::polar(118.0, -0.15), 18300), {270, 0}};
+  O2BC.body.points["C"] = C;
+  const Rocker O3D{rocker("O3D", 220, 1.35, 113, 11500), {570, 0}};
+  linkage.dyads.push_back({{0, 55, "crank"}, rod("AB", 259, 0.165, 10, J), O2BC, -1});
+  linkage.dyads.push_back({{2, C, "O2BC.C"}, rod("CD", 258, 0.163, 9, J), O3D, -1});
+  return linkage;
+}
+
+class SixLink : public testing::TestWithParam<int> {};
+
+TEST_P(SixLink, ReferenceNumbersAreThoseOfPositionsAlone) {
+  std::ifstream file(HB_SOURCE_DIR "/tests/reference/six_link.json");
+  const nlohmann::json reference = nlohmann::json::parse(file)["cases"][static_cast<std::size_t>(GetParam())];
+  const Linkage linkage = six_link(reference["J"]);
+  const double speed = reference["rpm"].get<double>() * 2 * pi / 60;
+  const Eigen::Index I = reference["modes"];
+  constexpr Eigen::Index H = 32;
+  constexpr Eigen::Index N = 2 * H + 1;
+
+  std::vector<LinkResponse> responses;
+  for (const int link : {1, 3}) {
+    const auto& expected = reference["rods"][body_name(linkage, link)];
+    const FourierSeries q = newton_euler::steady_state(linkage, link, speed, I, H);
+    for (Eigen::Index i = 0; i < I; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      const double size = expected["max_abs_q"][row];
+      EXPECT_NEAR(std::abs(fourier::max_abs(q, i).value), size, 2e-7 * size);  // true maximum against 8192 angles
+      for (Eigen::Index n = 0; n <= 10; ++n) {
+        const auto& c = expected["fourier"][row][static_cast<std::size_t>(n)];
+        EXPECT_LE(std::abs(q.c(i, n) - Complex(c[0], c[1])), 1e-9 * size) << i + 1 << ' ' << n;
+      }
+    }
+    Eigen::MatrixXd C11(1, N);
+    for (Eigen::Index j = 0; j < N; ++j)
+      C11(0, j) = newton_euler::ritz(linkage, link, 2 * pi * static_cast<double>(j) / N, speed, 1).stiffness(0, 0);
+    const FourierSeries series = fourier::analyse(C11);
+    for (Eigen::Index n = 0; n <= 10; ++n) {
+      const auto& c = expected["stiffness_11_fourier"][static_cast<std::size_t>(n)];
+      EXPECT_LE(std::abs(series.c(0, n) - Complex(c[0], c[1])), 1e-10 * std::abs(series.c(0, 0))) << n;
+    }
+    responses.push_back({link, q});
+  }
+
+  std::map<std::string, Eigen::MatrixXd> samples, samples_rigid;
+  Eigen::MatrixXd torque(2, N);
+  for (Eigen::Index j = 0; j < N; ++j) {
+    const double tau = 2 * pi * static_cast<double>(j) / N;
+    const MechanismForces rigid = newton_euler::forces(linkage, tau, speed);
+    const MechanismForces elastic = newton_euler::forces(linkage, tau, speed, responses);
+    const auto put = [&](const MechanismForces& forces, std::map<std::string, Eigen::MatrixXd>& into) {
+      for (const auto& [name, values] : components(linkage, tau, forces)) {
+        Eigen::MatrixXd& rows = into.try_emplace(name, 2, N).first->second;
+        rows.col(j) << values[0], values[1];
+      }
+    };
+    put(rigid, samples_rigid);
+    put(elastic, samples);
+    torque.col(j) << rigid.torque, elastic.torque;
+  }
+  // Extrema of the reference are those on 8192 angles: within (2 pi/8192)^2/8 times the curvature of the true ones.
+  const auto expect_range = [](const Eigen::MatrixXd& rows, Eigen::Index row, const nlohmann::json& expected) {
+    const Range range = fourier::range(fourier::analyse(rows), row);
+    const double size = std::max(std::abs(expected[0].get<double>()), std::abs(expected[1].get<double>()));
+    EXPECT_NEAR(range.min.value, expected[0].get<double>(), 2e-6 * size);
+    EXPECT_NEAR(range.max.value, expected[1].get<double>(), 2e-6 * size);
+  };
+  for (const auto& [name, expected] : reference["joints"].items()) {
+    SCOPED_TRACE(name);
+    expect_range(samples_rigid.at(name), 0, expected["x_rigid"]);
+    expect_range(samples_rigid.at(name), 1, expected["y_rigid"]);
+    expect_range(samples.at(name), 0, expected["x"]);
+    expect_range(samples.at(name), 1, expected["y"]);
+  }
+  expect_range(torque, 0, reference["torque"]["rigid"]);
+  expect_range(torque, 1, reference["torque"]["elastic"]);
+}
+
+INSTANTIATE_TEST_SUITE_P(AllCases, SixLink, testing::Range(0, 7));
+
+}  // namespace
+}  // namespace hb
