@@ -1,0 +1,5 @@
+#!/usr/bin/env bash
+set -euo pipefail
+for rpm in 300 1500 2400 3000; do
+  hb steady scene.toml --rpm $rpm --out ${rpm}rpm >${rpm}rpm.txt
+done
