@@ -1,0 +1,97 @@
+#include "lib/joint_forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "lib/rod.hpp"
+#include "tests/six_link.hpp"
+
+namespace {
+
+using namespace hb;
+using Complex = std::complex<double>;
+using nlohmann::json;
+
+const json& reference() {
+  static const json document = json::parse(std::ifstream(HB_SOURCE_DIR "/tests/reference/six_link.json"));
+  return document;
+}
+
+// Dense harmonic balance, -H..H in one linear system: slow, plain, for these tests only.
+FourierSeries dense_steady_state(const HillSystem& system, double Omega, int H) {
+  const Eigen::Index I = system.num_modes();
+  const FourierSeries C = stiffness_at(system, Omega), h = load_at(system, Omega);
+  const auto coefficient = [](const FourierSeries& s, Eigen::Index row, int k) -> Complex {
+    if (std::abs(k) > s.num_harmonics()) return 0;
+    return k >= 0 ? s.c(row, k) : std::conj(s.c(row, -k));
+  };
+  const Eigen::Index n = I * (2 * H + 1);
+  Eigen::MatrixXcd A = Eigen::MatrixXcd::Zero(n, n);
+  Eigen::VectorXcd b(n);
+  for (int k = -H; k <= H; ++k) {
+    for (int m = -H; m <= H; ++m)
+      for (Eigen::Index i = 0; i < I; ++i)
+        for (Eigen::Index j = 0; j < I; ++j) A((k + H) * I + i, (m + H) * I + j) = coefficient(C, i + I * j, k - m);
+    A.block((k + H) * I, (k + H) * I, I, I) +=
+        -k * k * Omega * Omega * system.mass + Complex(0, k * Omega) * system.damping;
+    for (Eigen::Index i = 0; i < I; ++i) b((k + H) * I + i) = coefficient(h, i, k);
+  }
+  const Eigen::VectorXcd x = A.partialPivLu().solve(b);
+  FourierSeries q(I, H);
+  for (int k = 0; k <= H; ++k) q.c.col(k) = x.segment((k + H) * I, I);
+  return q;
+}
+
+// The reference holds extrema over this many crank angles.
+constexpr Eigen::Index reference_samples = 8192;
+
+void expect_range(const json& expected, const FourierSeries& series, Eigen::Index component, double relative,
+                  const std::string& what) {
+  const double low = expected[0], high = expected[1], scale = std::max(std::abs(low), std::abs(high));
+  const Eigen::RowVectorXd samples = fourier::synthesise(series, reference_samples).row(component);
+  EXPECT_NEAR(samples.minCoeff(), low, relative * scale) << what;
+  EXPECT_NEAR(samples.maxCoeff(), high, relative * scale) << what;
+}
+
+TEST(JointForces, AgreeWithAnIndependentFormulationOfTheSixLinkMechanism) {
+  for (const json& wanted : reference().at("cases")) {
+    const Linkage linkage = six_link::linkage({.J = wanted["J"]});
+    const double Omega = wanted["rpm"].get<double>() * std::numbers::pi / 30;
+    const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+    std::vector<LinkResponse> responses;
+    for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
+      const Body& body = *body_at(linkage, coefficients.links[r]);
+      const json& rod = wanted["rods"][body.name];
+      const HillSystem system = ritz_system(body, coefficients.rods[r], wanted["modes"].get<int>());
+      const FourierSeries C = stiffness_at(system, Omega);
+      for (std::size_t k = 0; k < rod["stiffness_11_fourier"].size(); ++k) {
+        const json& c = rod["stiffness_11_fourier"][k];
+        EXPECT_LE(std::abs(C.c(0, static_cast<Eigen::Index>(k)) - Complex(c[0], c[1])), 1e-12 * std::abs(C.c(0, 0)));
+      }
+      responses.push_back({coefficients.links[r], dense_steady_state(system, Omega, 40)});
+      const Eigen::MatrixXd q = fourier::synthesise(responses.back().q, reference_samples);
+      for (std::size_t i = 0; i < rod["max_abs_q"].size(); ++i) {
+        const double peak = q.row(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff();
+        EXPECT_NEAR(peak, rod["max_abs_q"][i].get<double>(), 1e-10 * peak) << body.name << " q" << i + 1;
+      }
+    }
+    const JointForces forces = joint_forces(linkage, Omega, responses);
+    for (const JointForce& joint : forces.joints) {
+      if (!wanted["joints"].contains(joint.name)) continue;
+      const json& ranges = wanted["joints"][joint.name];
+      const std::string what = joint.name + " at rpm " + wanted["rpm"].dump();
+      expect_range(ranges["x_rigid"], joint.rigid, 0, 1e-11, what + " x rigid");
+      expect_range(ranges["y_rigid"], joint.rigid, 1, 1e-11, what + " y rigid");
+      expect_range(ranges["x"], joint.elastic, 0, 1e-11, what + " x");
+      expect_range(ranges["y"], joint.elastic, 1, 1e-11, what + " y");
+    }
+    expect_range(wanted["torque"]["rigid"], forces.torque_rigid, 0, 1e-11, "rigid torque");
+    expect_range(wanted["torque"]["elastic"], forces.torque, 0, 1e-11, "torque");
+  }
+}
+
+}  // namespace
