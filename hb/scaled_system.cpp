@@ -59,6 +59,18 @@ FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
   return fourier::resized(K, H);
 }
 
+// Sum over the powers of Omega and all harmonics of the size of every component: what rounding errors are relative to.
+Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index num_components, double speed) {
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
+  double factor = 1;
+  for (const FourierSeries& part : powers) {
+    if (part.c.size() > 0)
+      size += 2 * factor * (part.c.real().cwiseAbs() + part.c.imag().cwiseAbs()).rowwise().sum();
+    factor *= speed;
+  }
+  return size;
+}
+
 }  // namespace
 
 Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
@@ -110,6 +122,13 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   scaled.K = transformed(C, L, T);
   scaled.K.c /= speed * speed;
   scaled.K = without_rounding(scaled.K, I);
+  // Adding three powers, products with L and T (none but scaling when they are diagonal), and the cut.
+  const bool scaling = is_diagonal(L) && is_diagonal(T);
+  const double steps = scaling ? 4 : 4 + 2 * static_cast<double>(I);
+  const Eigen::VectorXd stiffness_size = sizes(system.stiffness, I * I, speed);
+  scaled.K_rounding = steps * eps / (speed * speed) * L.cwiseAbs() *
+                      Eigen::Map<const Eigen::MatrixXd>(stiffness_size.data(), I, I) * T.cwiseAbs();
+  scaled.f_rounding = Eigen::VectorXd::Zero(I);
 
   FourierSeries h = load_at(system, speed);
   if (h.c.size() > 0) {
@@ -121,6 +140,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
       const double scale = h.c.cwiseAbs().maxCoeff();
       h.c /= scale;
       scaled.load_scale = largest * (scale / (speed * speed));
+      scaled.f_rounding = steps * eps * L.cwiseAbs() * (sizes(system.load, I, speed) / largest) / scale;
       scaled.f = fourier::resized(h, fourier::significant_harmonics(h, 1e-18));
     }
   }

@@ -1,1 +1,304 @@
 #include "hb/steady_state.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "hb/steady_bound.hpp"
+#include "hb/steady_direct.hpp"
+#include "hb/steady_iterative.hpp"
+#include "hb/steady_operator.hpp"
+#include "hb/steady_residual.hpp"
+#include "hb/truncation.hpp"
+
+namespace hb {
+
+namespace {
+
+using Index = Eigen::Index;
+using steady::Spectrum;
+
+constexpr double eps = 2.220446049250313e-16;
+// Share of the tolerance that the harmonics left out may take.
+constexpr double truncation_share = 0.3;
+// Below this many flops elimination beats iteration (measured).
+constexpr double cheap_elimination = 1e5;
+// Elimination behind the iteration is given up beyond this.
+constexpr double most_bytes = 4e8;
+// Response per load beyond which double precision cannot tell the operator from a singular one.
+constexpr double singular_distance = 64 * eps;
+
+// The equations as given, for residuals in extended precision: u = scale * T x solves `system`, rows scaled by
+// `rows` and 1/scale are those of the scaled system.
+struct Given {
+  const HillSystem* system;
+  double speed;
+  double scale;
+  Eigen::MatrixXd T, rows;
+  bool is_q;  // u is q itself, else q = load_scale * (T of the scaled system) * u
+};
+
+class Solver {
+ public:
+  Solver(const ScaledSystem& scaled, const Given& given, const SteadyOptions& options)
+      : scaled_(scaled), given_(given), options_(options), system_(steady::weighted(scaled)) {
+    T_ = scaled.T * system_.weight.cwiseInverse().asDiagonal();
+  }
+
+  SteadyState run() {
+    const Index most = std::max(1, options_.max_harmonics);
+    const bool chosen = options_.num_harmonics > 0;
+    Index H = chosen ? options_.num_harmonics
+                     : steady::predicted_harmonics(system_, 0.1 * std::max(options_.tolerance, eps), most);
+    Spectrum x;
+    for (;;) {
+      steady::Operator A(system_, H);
+      const bool last = chosen || H >= most;
+      Index wanted = H;
+      SteadyState state = on_window(A, x, last, wanted);
+      products_ += A.num_products();
+      if (wanted <= H || last) {
+        state.iterations = state.method == SteadyMethod::direct ? factorisations_ : products_;
+        return state;
+      }
+      H = std::min(wanted, most);
+    }
+  }
+
+ private:
+  // Solution on harmonics 0..H; `wanted` > H asks for more harmonics instead.
+  SteadyState on_window(steady::Operator& A, Spectrum& x, bool last, Index& wanted) {
+    const Index H = A.num_harmonics();
+    SteadyState state;
+    state.num_harmonics = static_cast<int>(H);
+    std::unique_ptr<steady::Inverse> inverse;
+    const steady::DirectCost cost = steady::DirectInverse::cost(system_, H);
+    bool direct = options_.method == SteadyMethod::direct ||
+                  (options_.method == SteadyMethod::automatic && cost.flops <= cheap_elimination);
+    const bool may_eliminate = options_.method == SteadyMethod::automatic && cost.bytes <= most_bytes;
+
+    if (x.rows() > 0) {
+      const Index before = x.rows();
+      x.conservativeResize(H + 1, Eigen::NoChange);
+      if (H + 1 > before) x.bottomRows(H + 1 - before).setZero();
+    } else {
+      x = Spectrum::Zero(H + 1, system_.I);
+    }
+    const Spectrum start = x;
+
+    for (;;) {
+      if (direct) {
+        auto elimination = std::make_unique<steady::DirectInverse>(A);
+        ++factorisations_;
+        if (!elimination->regular()) return singular(state);
+        inverse = std::move(elimination);
+        state.method = SteadyMethod::direct;
+      } else {
+        inverse = std::make_unique<steady::IterativeInverse>(A);
+        state.method = SteadyMethod::iterative;
+      }
+      x = start;
+      Spectrum r;
+      const bool solved = solve(A, *inverse, x, r);
+      // The last harmonics that the exact residual shows: more of them first, whatever else is wrong.
+      if (solved && !last) {
+        wanted = harmonics_for(A, x, r, 1);
+        if (wanted > H) return state;
+      }
+      const double response = solved ? steady::response(A, *inverse, T_) : HUGE_VAL;
+      if (std::isfinite(response)) {
+        if (!last) {
+          wanted = harmonics_for(A, x, r, response);
+          if (wanted > H) return state;
+        }
+        assess(A, *inverse, x, r, response, state);
+        if (state.status == SteadyStatus::converged) return state;
+      }
+      if (direct || !may_eliminate) {
+        if (!std::isfinite(response) && state.status != SteadyStatus::singular) fail(A, x, state);
+        return state;
+      }
+      direct = true;
+    }
+  }
+
+  // Repeats inverse and exact residual until rounding or the tolerance stops it.
+  bool solve(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, Spectrum& r) {
+    const Index H = A.num_harmonics();
+    const double relative = std::clamp(1e-3 * options_.tolerance, 1e-15, 1e-3);
+    double last = HUGE_VAL;
+    Spectrum change;
+    r = A.residual(x);
+    const double load = A.scaled_norm(r);
+    if (!(load > 0)) return std::isfinite(load);
+    for (int pass = 0; pass < 8; ++pass) {
+      const double now = A.scaled_norm(r);
+      if (!std::isfinite(now)) return false;
+      if (now <= relative * load) return true;
+      if (!(now < 0.3 * last)) return now <= 1e-3 * load;
+      last = now;
+      inverse.solve(r.topRows(H + 1), std::max(relative * load / now, 1e-15), change);
+      if (!change.allFinite()) return false;
+      x += change;
+      r = A.residual(x);
+    }
+    return A.scaled_norm(r) <= 1e-3 * load;
+  }
+
+  // Smallest window whose omitted residual rows, divided by |D|, stay within the share of the tolerance.
+  Index harmonics_for(const steady::Operator& A, const Spectrum& x, const Spectrum& r, double response) const {
+    const Index H = A.num_harmonics();
+    const double allowed = truncation_share * options_.tolerance * steady::largest_over_turn(x * T_.transpose());
+    const double slack = steady::tail_slack(A, response);
+    double sum = 0;
+    Index k = r.rows() - 1;
+    for (; k > H; --k) {
+      sum += 2 * slack * steady::tail_row(A, r, k, T_);
+      if (!(sum <= allowed)) break;
+    }
+    return k > H ? std::max(k + 1, H + 2) : H;
+  }
+
+  void assess(steady::Operator& A, steady::Inverse& inverse, const Spectrum& x, const Spectrum& r, double response,
+              SteadyState& state) {
+    const Index H = A.num_harmonics();
+    state.resonance_distance = std::min(1.0, 1 / response);
+    if (!(1 / response > singular_distance)) {
+      singular(state);
+      return;
+    }
+    const double largest = steady::largest_over_turn(x * T_.transpose());
+    const double load = steady::wiener_norms(system_.f).sum();
+    double tail = 0;
+    for (Index k = H + 1; k < r.rows(); ++k) tail += 2 * steady::tail_slack(A, response) * steady::tail_row(A, r, k, T_);
+    const Eigen::MatrixXd rounding = A.rounding(x);
+    const double inner = steady::amplified(A, r.topRows(H + 1).cwiseAbs() + rounding, response, T_);
+    const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
+    state.residual = steady::wiener_norms(r).sum() / load;
+    state.error_bound = (tail + inner + conversion) / largest;
+    state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
+    Eigen::MatrixXcd u = (given_.T * system_.weight.cwiseInverse().asDiagonal() * x.transpose());
+    u *= given_.scale;
+    if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound)) refine(A, inverse, response, u, state);
+    state.q = result(u);
+  }
+
+  // Residuals in extended precision, of u as it is stored: its own rounding is then part of the residual.
+  void refine(steady::Operator& A, steady::Inverse& inverse, double response, Eigen::MatrixXcd& u, SteadyState& state) {
+    constexpr double solve_accuracy = 1e-4;
+    const Index H = A.num_harmonics();
+    const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd rows = system_.weight.asDiagonal() * given_.rows;
+    const double load = steady::wiener_norms(system_.f).sum();
+    const double slack = steady::tail_slack(A, response);
+    const Eigen::MatrixXd to_x = to_u.inverse();
+    Eigen::MatrixXcd best = u;
+    double last = HUGE_VAL;
+    for (int pass = 0; pass < 8; ++pass) {
+      const steady::AccurateResidual accurate =
+          steady::accurate_residual(*given_.system, given_.speed, FourierSeries(u), given_.scale);
+      const Spectrum r = accurate.r * rows.transpose() / (given_.speed * given_.speed);
+      const Eigen::MatrixXd rounding =
+          accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) + 8 * eps * static_cast<double>(system_.I) * r.cwiseAbs();
+      Spectrum change;
+      inverse.solve(r.topRows(H + 1), solve_accuracy, change);
+      if (!change.allFinite()) break;
+      const Spectrum x = (u / given_.scale).transpose() * to_x.transpose();
+      const double largest = steady::largest_over_turn(x * T_.transpose());
+      double tail = 0;
+      for (Index k = H + 1; k < r.rows(); ++k) tail += 2 * slack * steady::tail_row(A, r, k, T_);
+      // |A^-1 r| <= |change| + |A^-1 (r - A change)|
+      const Spectrum rest = A.window_residual(r, change);
+      const double inner = steady::size_in_q(change, T_) +
+                           steady::amplified(A, rest.cwiseAbs() + rounding.topRows(H + 1), response, T_);
+      // What the last multiplication by T adds when u is not q itself.
+      const double conversion = given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
+      const double bound = (tail + inner + conversion) / largest;
+      if (bound < state.error_bound) {
+        state.error_bound = bound;
+        state.residual = steady::wiener_norms(r).sum() / load;
+        best = u;
+      }
+      if (state.error_bound <= options_.tolerance) {
+        state.status = SteadyStatus::converged;
+        break;
+      }
+      if (!(inner < 0.5 * last)) break;
+      last = inner;
+      u += given_.scale * to_u * change.transpose();
+    }
+    u = best;
+  }
+
+  FourierSeries result(const Eigen::MatrixXcd& u) const {
+    FourierSeries q(given_.is_q ? u : Eigen::MatrixXcd(scaled_.load_scale * scaled_.T * u));
+    q.c.col(0) = q.c.col(0).real().cast<std::complex<double>>().eval();
+    return q;
+  }
+
+  SteadyState& singular(SteadyState& state) const {
+    state.status = SteadyStatus::singular;
+    state.q = FourierSeries();
+    state.error_bound = HUGE_VAL;
+    state.resonance_distance = std::min(state.resonance_distance, singular_distance);
+    return state;
+  }
+
+  // No usable answer: what there is, with no claim about it.
+  void fail(const steady::Operator&, const Spectrum& x, SteadyState& state) const {
+    state.status = SteadyStatus::not_reached;
+    state.error_bound = HUGE_VAL;
+    state.residual = HUGE_VAL;
+    state.resonance_distance = 0;
+    state.q = FourierSeries(Eigen::MatrixXcd(scaled_.load_scale * (T_ * x.transpose())));
+  }
+
+  const ScaledSystem& scaled_;
+  const Given& given_;
+  const SteadyOptions& options_;
+  steady::WeightedSystem system_;
+  Eigen::MatrixXd T_;  // q = load_scale T_ x in weighted coordinates
+  int products_ = 0, factorisations_ = 0;
+};
+
+SteadyState at_rest(Index num_modes) {
+  SteadyState state;
+  state.status = SteadyStatus::converged;
+  state.q = FourierSeries(num_modes, 0);
+  return state;
+}
+
+void require(const SteadyOptions& options) {
+  if (!(options.tolerance > 0)) throw std::invalid_argument("SteadyOptions: tolerance must be positive, is " + std::to_string(options.tolerance));
+  if (!(options.num_harmonics >= 0)) throw std::invalid_argument("SteadyOptions: num_harmonics must not be negative, is " + std::to_string(options.num_harmonics));
+  if (!(options.max_harmonics >= 1)) throw std::invalid_argument("SteadyOptions: max_harmonics must be positive, is " + std::to_string(options.max_harmonics));
+}
+
+}  // namespace
+
+SteadyState solve_steady_state(const HillSystem& system, double speed, const SteadyOptions& options) {
+  require(options);
+  const ScaledSystem scaled = scale_system(system, speed);
+  if (scaled.load_scale == 0) return at_rest(system.num_modes());
+  const Given given{&system, speed, scaled.load_scale, scaled.T,
+                    scaled.T_inverse * system.mass.partialPivLu().inverse(), true};
+  return Solver(scaled, given, options).run();
+}
+
+SteadyState solve_steady_state(const ScaledSystem& scaled, const SteadyOptions& options) {
+  require(options);
+  const Index I = scaled.num_modes();
+  if (scaled.load_scale == 0) return at_rest(I);
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(I, I);
+  system.damping = scaled.G;
+  system.stiffness[0] = scaled.K;
+  system.load[0] = scaled.f;
+  const Given given{&system, 1, 1, Eigen::MatrixXd::Identity(I, I), Eigen::MatrixXd::Identity(I, I), false};
+  return Solver(scaled, given, options).run();
+}
+
+}  // namespace hb

@@ -1,0 +1,189 @@
+#include "hb/steady_operator.hpp"
+
+#include <cmath>
+#include <map>
+#include <memory>
+
+namespace hb::steady {
+
+namespace {
+
+constexpr double eps = 2.220446049250313e-16;
+
+// FFT of I components and N samples. Plans are kept per thread: sweeps ask for the same few lengths again and again.
+fourier::RealTransform& transform(Eigen::Index N, Eigen::Index I) {
+  static thread_local std::map<std::pair<Eigen::Index, Eigen::Index>, std::unique_ptr<fourier::RealTransform>> kept;
+  if (kept.size() > 32) kept.clear();
+  auto& entry = kept[{N, I}];
+  if (!entry) entry = std::make_unique<fourier::RealTransform>(N, I);
+  return *entry;
+}
+
+double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
+
+}  // namespace
+
+Eigen::Index fast_length(Eigen::Index n) {
+  for (Eigen::Index N = std::max<Eigen::Index>(2, n + n % 2);; N += 2) {
+    Eigen::Index rest = N;
+    for (const Eigen::Index p : {2, 3, 5})
+      while (rest % p == 0) rest /= p;
+    if (rest == 1) return N;
+  }
+}
+
+Eigen::VectorXd wiener_norms(const Spectrum& x) {
+  if (x.rows() == 0) return Eigen::VectorXd::Zero(x.cols());
+  return x.row(0).cwiseAbs().transpose() + 2 * x.bottomRows(x.rows() - 1).cwiseAbs().colwise().sum().transpose();
+}
+
+WeightedSystem weighted(const ScaledSystem& system) {
+  WeightedSystem s;
+  const Eigen::Index I = system.num_modes();
+  s.I = I;
+  s.P = system.K.num_harmonics();
+  s.weight.resize(I);
+  for (Eigen::Index i = 0; i < I; ++i) s.weight(i) = power_of_two_near(system.T.col(i).cwiseAbs().maxCoeff());
+  const Eigen::MatrixXd ratio = s.weight * s.weight.cwiseInverse().transpose();
+  const Eigen::VectorXd ratios = Eigen::Map<const Eigen::VectorXd>(ratio.data(), I * I);
+  s.K = ratios.asDiagonal() * system.K.c;
+  s.K_rounding = system.K_rounding.cwiseProduct(ratio);
+  s.G = system.G.cwiseProduct(ratio);
+  s.G_off = s.G;
+  s.G_off.diagonal().setZero();
+  s.diagonal_damping = system.diagonal_damping;
+  s.mean = system.mean_diagonal();
+  s.f_rounding = s.weight.cwiseProduct(system.f_rounding);
+  if (system.load_scale != 0) s.f = (s.weight.asDiagonal() * system.f.c).transpose();
+
+  const Eigen::VectorXd norms = s.K.col(0).cwiseAbs() + 2 * s.K.rightCols(s.P).cwiseAbs().rowwise().sum();
+  Eigen::MatrixXd E = Eigen::Map<const Eigen::MatrixXd>(norms.data(), I, I);
+  E.diagonal() -= s.mean.cwiseAbs();
+  s.own_coupling = E.diagonal();
+  s.coupling = E.rowwise().sum();
+  return s;
+}
+
+Operator::Operator(const WeightedSystem& system, Eigen::Index num_harmonics)
+    : system_(&system),
+      H_(num_harmonics),
+      D_(num_harmonics + 1, system.I),
+      magnitude_(num_harmonics + 1, system.I),
+      product_max_(system.I) {
+  for (Eigen::Index i = 0; i < system.I; ++i)
+    for (Eigen::Index k = 0; k <= H_; ++k) {
+      D_(k, i) = system.D(i, k);
+      magnitude_(k, i) = system.magnitude(i, k);
+    }
+}
+
+const Operator::Nodes& Operator::nodes(Eigen::Index N) {
+  Nodes& store = inner_.N == 0 || inner_.N == N ? inner_ : outer_;
+  if (store.N == N) return store;
+  const Eigen::Index I = system_->I, P = system_->P;
+  store.N = N;
+  store.E.resize(N, I * I);
+  fourier::RealTransform& fft = transform(N, I);
+  for (Eigen::Index j = 0; j < I; ++j) {
+    auto spectrum = fft.spectrum();
+    spectrum.setZero();
+    spectrum.topRows(P + 1) = system_->K.middleRows(I * j, I).transpose();
+    spectrum(0, j) = 0;
+    fft.backward();
+    store.E.middleCols(I * j, I) = fft.samples();
+  }
+  return store;
+}
+
+void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {
+  const Eigen::Index I = system_->I, P = system_->P;
+  ++num_products_;
+  result.setZero(num_rows + 1, I);
+  // Harmonics reach H+P; what is folded back lands above num_rows when N > H + P + num_rows.
+  const Eigen::Index N = fast_length(std::max(H_ + P + num_rows + 1, 2 * P + 2));
+  const Nodes& at = nodes(N);
+  fourier::RealTransform& fft = transform(N, I);
+  auto spectrum = fft.spectrum();
+  spectrum.topRows(H_ + 1) = x;
+  spectrum.bottomRows(N / 2 - H_).setZero();
+  fft.backward();
+  const auto samples = fft.samples();
+  product_.resize(N, I);
+  const bool full = num_rows > H_;  // sizes are wanted with the exact residual only
+  for (Eigen::Index i = 0; i < I; ++i) {
+    product_.col(i) = at.E.col(i).cwiseProduct(samples.col(0));
+    for (Eigen::Index j = 1; j < I; ++j) product_.col(i) += at.E.col(i + I * j).cwiseProduct(samples.col(j));
+  }
+  if (full)
+    for (Eigen::Index i = 0; i < I; ++i) {
+      Eigen::ArrayXd size = Eigen::ArrayXd::Zero(N);
+      for (Eigen::Index j = 0; j < I; ++j) size += (at.E.col(i + I * j).array() * samples.col(j).array()).abs();
+      product_max_(i) = size.maxCoeff();
+    }
+  fft.samples() = product_;
+  fft.forward();
+  result = fft.spectrum().topRows(num_rows + 1);
+  result.row(0) = result.row(0).real().cast<std::complex<double>>();
+  if (!system_->diagonal_damping) {
+    const Eigen::Index top = std::min(H_, num_rows);
+    for (Eigen::Index k = 1; k <= top; ++k)
+      result.row(k) += std::complex<double>(0, static_cast<double>(k)) *
+                       (x.row(k) * system_->G_off.transpose().cast<std::complex<double>>());
+  }
+}
+
+Spectrum Operator::residual(const Spectrum& x) {
+  Spectrum r;
+  couple(x, last_row(), r);
+  r.topRows(H_ + 1) += D_.cwiseProduct(x);
+  const Eigen::Index F = system_->f.rows() - 1;
+  if (F > last_row()) {
+    const Eigen::Index have = r.rows();
+    r.conservativeResize(F + 1, Eigen::NoChange);
+    r.bottomRows(F + 1 - have).setZero();
+  }
+  r = -r;
+  r.topRows(F + 1) += system_->f;
+  return r;
+}
+
+Spectrum Operator::window_residual(const Spectrum& rhs, const Spectrum& z) {
+  Spectrum product;
+  couple(z, H_, product);
+  return rhs.topRows(H_ + 1) - D_.cwiseProduct(z) - product;
+}
+
+double Operator::scaled_norm(const Spectrum& r) const {
+  const Eigen::MatrixXd size = r.topRows(H_ + 1).cwiseAbs().cwiseQuotient(magnitude_);
+  return std::sqrt(2 * size.squaredNorm() - size.row(0).squaredNorm());
+}
+
+// Errors of K spread like K x does; those of the transforms are alike on all harmonics, 2 log2 N steps of rounding.
+Eigen::MatrixXd Operator::rounding(const Spectrum& x) const {
+  const Eigen::Index I = system_->I;
+  const Eigen::VectorXd data = system_->K_rounding * wiener_norms(x) + system_->f_rounding;
+  const double steps = 4 + std::log2(static_cast<double>(std::max<Eigen::Index>(outer_.N, inner_.N)));
+  Eigen::MatrixXd result = 4 * eps * magnitude_.cwiseProduct(x.cwiseAbs());
+  for (Eigen::Index i = 0; i < I; ++i) result.col(i).array() += data(i) + 0.5 * steps * eps * product_max_(i);
+  return result;
+}
+
+double largest_over_turn(const Spectrum& x, Eigen::Index* component) {
+  const Eigen::Index H = x.rows() - 1, I = x.cols();
+  fourier::RealTransform& fft = transform(fast_length(4 * (H + 1)), I);
+  auto spectrum = fft.spectrum();
+  spectrum.setZero();
+  spectrum.topRows(H + 1) = x;
+  fft.backward();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < I; ++i) {
+    const double here = fft.samples().col(i).cwiseAbs().maxCoeff();
+    if (here > largest) {
+      largest = here;
+      if (component) *component = i;
+    }
+  }
+  return largest;
+}
+
+}  // namespace hb::steady
