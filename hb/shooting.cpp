@@ -1,0 +1,397 @@
+#include "hb/shooting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "hb/floquet_product.hpp"
+#include "hb/integration_cost.hpp"
+
+namespace hb {
+
+const char* to_string(ShootingStatus status) {
+  switch (status) {
+    case ShootingStatus::converged: return "converged";
+    case ShootingStatus::not_reached: return "tolerance not reached";
+    case ShootingStatus::too_expensive: return "too expensive";
+    case ShootingStatus::time_limit: return "time limit";
+    case ShootingStatus::singular: return "singular";
+    case ShootingStatus::failed: return "failed";
+  }
+  return "";
+}
+
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+constexpr double eps = 2.220446049250313e-16;
+
+double seconds_since(Deadline start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Deadline deadline_after(Deadline start, double seconds) {
+  return start + std::chrono::duration_cast<Deadline::duration>(std::chrono::duration<double>(std::min(seconds, 1e8)));
+}
+
+// What one run over the turn gives.
+struct Run {
+  ShootingStatus status = ShootingStatus::failed;
+  std::string message;
+  Eigen::MatrixXd states;   // (x; v) at the outputs
+  LogMultipliers multipliers;
+  double largest_entry = 0;  // of the segment maps
+  long steps = 0;
+};
+
+struct Precision {
+  double tolerance = 0;  // CVODE
+  int cells = 0;         // collocation, between outputs
+};
+
+// All 2I unit columns and the forced one over every segment; then the cycle.
+Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int num_segments, int num_outputs,
+          Deadline deadline) {
+  const Eigen::Index n = 2 * motion.num_modes();
+  Eigen::MatrixXd Y0 = Eigen::MatrixXd::Zero(n, n + 1);
+  Y0.leftCols(n).setIdentity();
+  const Eigen::VectorXd load = Eigen::VectorXd::Unit(n + 1, n);
+
+  Run run;
+  std::vector<SegmentMap> segments;
+  std::vector<Eigen::MatrixXd> maps;  // from the segment's start to each output
+  const int outputs_per_segment = num_outputs / num_segments;
+  std::vector<double> outputs(static_cast<std::size_t>(outputs_per_segment));
+  for (int k = 0; k < num_segments; ++k) {
+    for (int j = 0; j < outputs_per_segment; ++j)
+      outputs[static_cast<std::size_t>(j)] = turn * (k * outputs_per_segment + j + 1) / num_outputs;
+    const double start = turn * k / num_segments;
+    Trajectory part = integrator == Integrator::collocation
+                          ? integrate_collocation(motion, precision.cells, start, Y0, load, outputs, deadline)
+                          : integrate_cvode(motion, integrator, precision.tolerance, start, Y0, load, outputs, deadline);
+    run.steps += part.steps;
+    if (part.status != IntegrationStatus::finished) {
+      run.status =
+          part.status == IntegrationStatus::time_limit ? ShootingStatus::time_limit : ShootingStatus::failed;
+      run.message = part.message;
+      return run;
+    }
+    const Eigen::MatrixXd& end = part.states.back();
+    segments.push_back({end.leftCols(n), end.col(n)});
+    run.largest_entry = std::max(run.largest_entry, end.leftCols(n).cwiseAbs().maxCoeff());
+    for (Eigen::MatrixXd& state : part.states) maps.push_back(std::move(state));
+  }
+
+  const double noise = integrator == Integrator::collocation ? 1e-10 : 1e3 * precision.tolerance;
+  run.multipliers = log_multipliers(segments, noise);
+  run.states = Eigen::MatrixXd::Zero(n, num_outputs);
+  run.status = ShootingStatus::converged;
+  if (!motion.loaded()) return run;
+  const CyclicSolution cycle = solve_cyclic(segments);
+  if (!(cycle.reciprocal_condition >= 100 * eps)) {
+    run.status = ShootingStatus::singular;
+    run.message = "a multiplier is 1 to working accuracy: no unique periodic solution";
+    return run;
+  }
+  // states(j) belongs to tau_j; the map to tau_(j+1) starts at its segment's first state.
+  for (int j = 0; j < num_outputs; ++j) {
+    const Eigen::VectorXd& first = cycle.states[static_cast<std::size_t>(j / outputs_per_segment)];
+    const Eigen::MatrixXd& map = maps[static_cast<std::size_t>(j)];
+    run.states.col((j + 1) % num_outputs) = map.leftCols(n) * first + map.col(n);
+  }
+  return run;
+}
+
+PeriodicOrbit orbit_of(ScaledMotion& motion, const Eigen::MatrixXd& states) {
+  const Eigen::Index I = motion.num_modes();
+  PeriodicOrbit orbit;
+  orbit.q = states.topRows(I) * motion.q_scale();
+  orbit.q1 = motion.w().asDiagonal() * states.bottomRows(I) * motion.q_scale();
+  orbit.q2.resize(I, states.cols());
+  for (Eigen::Index j = 0; j < states.cols(); ++j) {
+    motion.evaluate(turn * static_cast<double>(j) / static_cast<double>(states.cols()));
+    orbit.q2.col(j) = motion.w().cwiseProduct(motion.f() - motion.K() * states.col(j).head(I) -
+                                              motion.G() * states.col(j).tail(I)) *
+                      motion.q_scale();
+  }
+  return orbit;
+}
+
+double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const double size = std::max(a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff());
+  return size > 0 ? (a - b).cwiseAbs().maxCoeff() / size : 0;
+}
+
+// Distance of exponents (times a turn) whose imaginary parts count modulo 2 pi.
+double folded_distance(std::complex<double> a, std::complex<double> b) {
+  return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), turn));
+}
+
+std::vector<Exponent> exponents_of(const Run& run, const Run* coarser, double Omega) {
+  std::vector<Exponent> exponents;
+  for (const std::complex<double>& log_mu : run.multipliers.values) {
+    double error = 0;
+    if (coarser != nullptr) {
+      error = INFINITY;
+      for (const std::complex<double>& other : coarser->multipliers.values)
+        error = std::min(error, folded_distance(log_mu, other));
+      error += 1e-14 * std::max(1.0, std::abs(log_mu.real())) + 1e-16 * static_cast<double>(run.steps);
+    }
+    exponents.push_back({log_mu * Omega / turn, error * Omega / turn});
+  }
+  return exponents;
+}
+
+int power_of_two_at_least(double number, int limit) {
+  int power = 1;
+  while (power < number && power < limit) power *= 2;
+  return power;
+}
+
+struct Plan {
+  Integrator integrator = Integrator::automatic;
+  Precision fine, coarse;
+  int num_segments = 1, num_outputs = 128;
+  double predicted_seconds = 0;
+};
+
+Plan plan_shooting(ScaledMotion& motion, const FrozenSpectrum& spectrum, Integrator integrator, double tolerance,
+                   double single_run) {
+  Plan plan;
+  plan.integrator = integrator;
+  // A segment in which the slow modes change by no more than e^4 keeps them above the integrator's noise.
+  plan.num_segments = power_of_two_at_least(turn * spectrum.slowest / 4, 4096);
+  plan.num_outputs = std::max(128, plan.num_segments);
+  const Eigen::Index columns = 2 * motion.num_modes() + 1;
+  double steps = 0;
+  if (integrator == Integrator::collocation) {
+    const int cells = single_run > 0
+                          ? std::max(1, static_cast<int>(std::ceil(turn / single_run / plan.num_outputs)))
+                          : collocation_cells(spectrum, plan.num_outputs);
+    plan.coarse.cells = cells;
+    plan.fine.cells = single_run > 0 ? cells : 2 * cells;
+    steps = static_cast<double>(plan.num_outputs) * (plan.fine.cells + (single_run > 0 ? 0 : plan.coarse.cells));
+  } else {
+    // Global errors of some hundred local tolerances (BDF), some ten (Adams); below 1e-13 rounding takes over.
+    const double below = integrator == Integrator::bdf ? 1000 : 100;
+    plan.fine.tolerance = single_run > 0 ? single_run : std::clamp(tolerance / below, 1e-13, 1e-3);
+    plan.coarse.tolerance = single_run > 0 ? single_run : 8 * plan.fine.tolerance;
+    steps = predicted_steps(spectrum, integrator, plan.fine.tolerance, plan.num_segments);
+    if (single_run <= 0) steps += predicted_steps(spectrum, integrator, plan.coarse.tolerance, plan.num_segments);
+  }
+  plan.predicted_seconds = steps * seconds_per_step(motion, integrator, columns);
+  return plan;
+}
+
+// What SUNDIALS does is preferred while it is affordable.
+Plan choose_plan(ScaledMotion& motion, const FrozenSpectrum& spectrum, const ShootingOptions& options) {
+  if (options.integrator != Integrator::automatic)
+    return plan_shooting(motion, spectrum, options.integrator, options.tolerance, options.single_run);
+  const Plan adams = plan_shooting(motion, spectrum, Integrator::adams, options.tolerance, options.single_run);
+  const Plan bdf = plan_shooting(motion, spectrum, Integrator::bdf, options.tolerance, options.single_run);
+  const Plan& cvode = adams.predicted_seconds <= bdf.predicted_seconds ? adams : bdf;
+  if (cvode.predicted_seconds <= options.time_limit / 4 || options.single_run > 0) return cvode;
+  const Plan collocation = plan_shooting(motion, spectrum, Integrator::collocation, options.tolerance, 0);
+  return collocation.predicted_seconds < cvode.predicted_seconds ? collocation : cvode;
+}
+
+void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& options, double Omega, Deadline deadline,
+              ShootingResult& result) {
+  const bool single = options.single_run > 0;
+  const bool collocation = plan.integrator == Integrator::collocation;
+  result.integrator = plan.integrator;
+  result.num_segments = plan.num_segments;
+  result.integrator_tolerance =
+      collocation ? turn / (static_cast<double>(plan.num_outputs) * plan.fine.cells) : plan.fine.tolerance;
+  result.message.clear();
+
+  const auto run_with = [&](Precision precision) {
+    Run run = shoot(motion, plan.integrator, precision, plan.num_segments, plan.num_outputs, deadline);
+    result.steps += run.steps;
+    return run;
+  };
+  Run coarse, fine = run_with(single ? plan.fine : plan.coarse);
+  if (!single && fine.status == ShootingStatus::converged) {
+    coarse = std::move(fine);
+    fine = run_with(plan.fine);
+    if (fine.status != ShootingStatus::converged) {
+      // Keep the coarser answer; its error is not known.
+      result.status = fine.status;
+      result.message = fine.message;
+      fine = std::move(coarse);
+      result.orbit = orbit_of(motion, fine.states);
+      result.exponents = exponents_of(fine, nullptr, Omega);
+      result.q_error = result.q1_error = result.growth_error = INFINITY;
+      if (!result.exponents.empty()) result.growth_rate = result.exponents.front().value.real();
+      return;
+    }
+  }
+  result.status = fine.status;
+  result.message = fine.message;
+  if (fine.status != ShootingStatus::converged) return;
+
+  result.orbit = orbit_of(motion, fine.states);
+  result.exponents = exponents_of(fine, single ? nullptr : &coarse, Omega);
+  result.some_below = fine.multipliers.some_below;
+  if (!single) {
+    const PeriodicOrbit coarse_orbit = orbit_of(motion, coarse.states);
+    const double rounding = 1e-14 + eps * std::sqrt(static_cast<double>(fine.steps));
+    result.q_error = relative_difference(result.orbit.q, coarse_orbit.q) + rounding;
+    result.q1_error = relative_difference(result.orbit.q1, coarse_orbit.q1) + rounding;
+    // Exponents on which two accuracies disagree grossly are those of modes that were not resolved.
+    const auto resolved = [&](const Exponent& e) { return e.error <= 1e-3 * (Omega + std::abs(e.value.real())); };
+    while (result.exponents.size() > 1 && !resolved(result.exponents.back())) {
+      result.exponents.pop_back();
+      result.some_below = true;
+    }
+  }
+  if (result.exponents.empty()) {
+    result.status = ShootingStatus::not_reached;
+    result.message = "every mode decays below the integrator's noise within a segment";
+    result.growth_error = INFINITY;
+    return;
+  }
+  result.growth_rate = result.exponents.front().value.real();
+  result.growth_error = result.exponents.front().error;
+  for (const Exponent& e : result.exponents)
+    if (e.value.real() + e.error > result.growth_rate)
+      result.growth_error = std::max(result.growth_error, e.value.real() + e.error - result.growth_rate);
+  result.verdict = result.growth_rate - result.growth_error > 0   ? Verdict::unstable
+                   : result.growth_rate + result.growth_error < 0 ? Verdict::stable
+                                                                  : Verdict::undecided;
+  const double growth_scale = std::max(std::abs(result.growth_rate), Omega);
+  const bool reached =
+      single || (result.q_error <= options.tolerance && result.growth_error <= options.tolerance * growth_scale);
+  if (!reached) {
+    result.status = ShootingStatus::not_reached;
+    result.message = std::string(to_string(plan.integrator)) + " does not reach the tolerance";
+  }
+}
+
+}  // namespace
+
+ShootingResult solve_by_shooting(const TimeDomainSystem& system, const ShootingOptions& options) {
+  const Deadline start = std::chrono::steady_clock::now();
+  const Deadline deadline = deadline_after(start, options.time_limit);
+  ScaledMotion motion(system);
+  const FrozenSpectrum spectrum = frozen_spectrum(motion);
+  Plan plan = choose_plan(motion, spectrum, options);
+
+  ShootingResult result;
+  const auto affordable = [&](const Plan& candidate) {
+    return candidate.predicted_seconds <= options.time_limit - seconds_since(start);
+  };
+  result.integrator = plan.integrator;
+  result.predicted_seconds = plan.predicted_seconds;
+  if (!affordable(plan)) {
+    result.status = ShootingStatus::too_expensive;
+    result.message = std::string(to_string(plan.integrator)) + " would need about " +
+                     std::to_string(static_cast<long long>(std::min(std::ceil(plan.predicted_seconds), 1e15))) +
+                     " s, more than the time limit";
+  } else {
+    solve_by(motion, plan, options, system.speed, deadline, result);
+    // What CVODE cannot reach, collocation of order 17 usually can.
+    const bool may_supplement = options.integrator == Integrator::automatic && options.single_run <= 0 &&
+                                plan.integrator != Integrator::collocation &&
+                                (result.status == ShootingStatus::not_reached || result.status == ShootingStatus::failed);
+    if (may_supplement) {
+      plan = plan_shooting(motion, spectrum, Integrator::collocation, options.tolerance, 0);
+      if (affordable(plan)) {
+        ShootingResult supplement;
+        supplement.steps = result.steps;
+        supplement.predicted_seconds = result.predicted_seconds + plan.predicted_seconds;
+        solve_by(motion, plan, options, system.speed, deadline, supplement);
+        const bool better = supplement.status == ShootingStatus::converged ||
+                            (supplement.status == ShootingStatus::not_reached && supplement.q_error < result.q_error);
+        if (better) result = std::move(supplement);
+      }
+    }
+  }
+  result.evaluations = motion.evaluations();
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOptions& options) {
+  const Deadline start = std::chrono::steady_clock::now();
+  const Deadline deadline = deadline_after(start, options.time_limit);
+  ScaledMotion motion(system);
+  const FrozenSpectrum spectrum = frozen_spectrum(motion);
+  const Eigen::Index n = 2 * motion.num_modes();
+  const double tolerance = options.integrator_tolerance > 0 ? options.integrator_tolerance
+                                                            : std::clamp(options.tolerance / 100, 1e-13, 1e-3);
+  MarchingResult result;
+  result.integrator = options.integrator;
+  if (result.integrator != Integrator::adams && result.integrator != Integrator::bdf)
+    result.integrator = predicted_steps(spectrum, Integrator::adams, tolerance, 1) <=
+                                predicted_steps(spectrum, Integrator::bdf, tolerance, 1)
+                            ? Integrator::adams
+                            : Integrator::bdf;
+
+  // The transient shrinks by e^{growth_rate T} per turn.
+  const double per_turn = options.growth_rate != 0 ? options.growth_rate * turn / system.speed : 0;
+  if (per_turn > 0) {
+    result.status = ShootingStatus::not_reached;
+    result.message = "the motion is unstable: marching never settles";
+    result.seconds = seconds_since(start);
+    return result;
+  }
+  const double turns = per_turn < 0 ? std::max(1.0, std::log(options.tolerance) / per_turn) : 1;
+  const double predicted = turns * predicted_steps(spectrum, result.integrator, tolerance, 1) *
+                           seconds_per_step(motion, result.integrator, 1);
+  if (!(predicted <= options.time_limit)) {
+    result.status = ShootingStatus::too_expensive;
+    result.message = "marching would need about " + std::to_string(static_cast<long long>(std::min(predicted, 1e15))) +
+                     " s (" + std::to_string(static_cast<long long>(std::min(turns, 1e15))) +
+                     " turns), more than the time limit";
+    result.seconds = seconds_since(start);
+    return result;
+  }
+
+  constexpr int num_outputs = 128;
+  std::vector<double> outputs(num_outputs);
+  for (int j = 0; j < num_outputs; ++j) outputs[static_cast<std::size_t>(j)] = turn * (j + 1) / num_outputs;
+  Eigen::MatrixXd state = Eigen::MatrixXd::Zero(n, 1), states(n, num_outputs), before;
+  const Eigen::VectorXd load = Eigen::VectorXd::Ones(1);
+  double change_before = 0;
+  result.status = ShootingStatus::time_limit;
+  while (true) {
+    // Each turn starts at tau = 0 again: the coefficients are periodic and a large tau would cost digits.
+    const Trajectory trajectory =
+        integrate_cvode(motion, result.integrator, tolerance, 0, state, load, outputs, deadline);
+    result.steps += trajectory.steps;
+    if (trajectory.status != IntegrationStatus::finished) {
+      result.message = trajectory.message;
+      result.status = trajectory.status == IntegrationStatus::time_limit ? ShootingStatus::time_limit
+                                                                         : ShootingStatus::failed;
+      break;
+    }
+    ++result.turns;
+    before = states;
+    states.col(0) = state;
+    for (int j = 0; j + 1 < num_outputs; ++j) states.col(j + 1) = trajectory.states[static_cast<std::size_t>(j)];
+    state = trajectory.states.back();
+    const double size = states.cwiseAbs().maxCoeff();
+    result.change = size > 0 ? (state - states.col(0)).cwiseAbs().maxCoeff() / size : 0;
+    if (result.turns > 1 && change_before > 0) result.decay_per_turn = result.change / change_before;
+    change_before = result.change;
+    // The rest of the transient sums to change/(1 - decay).
+    const double rest = result.change / std::max(1e-3, 1 - std::min(result.decay_per_turn, 1.0));
+    result.q_error = rest + 100 * tolerance;
+    if (rest <= options.tolerance) {
+      result.status = ShootingStatus::converged;
+      break;
+    }
+    if (!(size <= 1e12)) {
+      result.status = ShootingStatus::not_reached;
+      result.message = "the motion grows: marching does not settle";
+      break;
+    }
+  }
+  if (result.turns > 0) result.orbit = orbit_of(motion, states);
+  result.evaluations = motion.evaluations();
+  result.seconds = seconds_since(start);
+  return result;
+}
+
+}  // namespace hb

@@ -1,0 +1,83 @@
+// Integration of a time-domain system over a stretch of crank angle, several solutions side by side: by CVODE (Adams,
+// BDF) with its own step and order, or by collocation (Radau IIA) on equal cells. The only part of the program that
+// sees SUNDIALS is time_integration.cpp.
+#pragma once
+
+#include <Eigen/Core>
+#include <chrono>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lib/time_domain.hpp"
+
+namespace hb {
+
+enum class Integrator {
+  automatic,
+  adams,        // CVODE, order 1-12, for mild systems
+  bdf,          // CVODE, order 1-5, for stiff systems
+  collocation,  // Radau IIA, 9 stages, order 17, L-stable: reaches rounding where CVODE's order 5 cannot
+};
+
+[[nodiscard]] const char* to_string(Integrator integrator);
+
+using Deadline = std::chrono::steady_clock::time_point;
+
+// First-order form in numbers of order one: x = q/q_scale, v_i = q_i'/(q_scale w_i), ' = d/dtau,
+//     x' = W v,   v' = -K(tau) x - G v + load f(tau),
+//     K = W^-1 M^-1 C/Omega^2,   G = W^-1 M^-1 B W/Omega,   f = W^-1 M^-1 h/(Omega^2 q_scale).
+// w_i is about the frequency of mode i in units of Omega, q_scale about the size of the forced response.
+class ScaledMotion {
+ public:
+  explicit ScaledMotion(const TimeDomainSystem& system);
+
+  Eigen::Index num_modes() const { return w_.size(); }
+  const Eigen::VectorXd& w() const { return w_; }
+  double q_scale() const { return q_scale_; }
+  bool loaded() const { return q_scale_ > 0; }
+
+  // Afterwards K(), f() are those of tau. A repeated angle costs nothing.
+  void evaluate(double tau);
+  const Eigen::MatrixXd& K() const { return K_; }
+  const Eigen::MatrixXd& G() const { return G_; }
+  const Eigen::VectorXd& f() const { return f_; }
+  long evaluations() const { return evaluations_; }
+
+  // Eigenvalues of the system frozen at tau, per radian of crank angle.
+  Eigen::VectorXcd frozen_eigenvalues(double tau);
+
+ private:
+  const TimeDomainSystem& system_;
+  Eigen::MatrixXd mass_inverse_, C_, K_, G_;
+  Eigen::VectorXd w_, h_, f_;
+  double q_scale_ = 1, tau_;
+  long evaluations_ = 0;
+};
+
+enum class IntegrationStatus {
+  finished,
+  time_limit,  // the deadline passed
+  failed,      // the integrator gave up; `message` says where
+};
+
+struct Trajectory {
+  IntegrationStatus status = IntegrationStatus::failed;
+  std::vector<Eigen::MatrixXd> states;  // (x; v) per column of the initial state, at each output angle reached
+  long steps = 0;
+  std::string message;
+};
+
+// Solutions from Y0 (2I x m) at tau0; column j feels load(j) times the load. Outputs ascend and are > tau0.
+// CVODE's local error per step is held at `tolerance` (relative, and absolute in the scaled numbers); the global error is
+// larger, with BDF some hundred times.
+[[nodiscard]] Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double tolerance, double tau0,
+                                         const Eigen::MatrixXd& Y0, const Eigen::VectorXd& load,
+                                         std::span<const double> outputs, Deadline deadline);
+
+// The same by collocation with `cells_between` equal cells between neighbouring outputs.
+[[nodiscard]] Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double tau0,
+                                               const Eigen::MatrixXd& Y0, const Eigen::VectorXd& load,
+                                               std::span<const double> outputs, Deadline deadline);
+
+}  // namespace hb
