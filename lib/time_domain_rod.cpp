@@ -276,13 +276,12 @@ TimeDomainSystem time_domain_rod(const Linkage& linkage, int link, Eigen::Index 
 
   TimeDomainSystem system;
   system.speed = speed;
-  system.mass = mu / EJ * shapes.product + elastic.density / elastic.youngs_modulus * shapes.slope[0];
-  system.damping = elastic.internal_damping * shapes.bend + elastic.damping_y / EJ * shapes.product;
   // Orthogonal shapes: what quadrature leaves beside the diagonal is rounding.
-  system.mass = system.mass.diagonal().asDiagonal();
-  system.damping = system.damping.diagonal().asDiagonal();
-  const Eigen::MatrixXd bend = shapes.bend.diagonal().asDiagonal();
   const Eigen::MatrixXd product = shapes.product.diagonal().asDiagonal();
+  const Eigen::MatrixXd slope = shapes.slope[0].diagonal().asDiagonal();
+  const Eigen::MatrixXd bend = shapes.bend.diagonal().asDiagonal();
+  system.mass = mu / EJ * product + elastic.density / elastic.youngs_modulus * slope;
+  system.damping = elastic.internal_damping * bend + elastic.damping_y / EJ * product;
   const Layout layout(linkage);
   std::vector<BodyMotion> motion;
 
