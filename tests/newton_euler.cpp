@@ -75,10 +75,11 @@ struct Jet {
 };
 
 // Central differences on 2p+1 points: f' = sum_k a_k [f(kh) - f(-kh)]/h, a_k = (-1)^{k+1} p!^2/(k (p-k)! (p+k)!), and
-// f'' = sum_k (2 a_k/k) [f(kh) + f(-kh) - 2 f(0)]/h^2. Harmonic n is wrong by about (n h/2)^{2p}; rounding is 1e-19/h^2.
+// f'' = sum_k (2 a_k/k) [f(kh) + f(-kh) - 2 f(0)]/h^2. Harmonic n is wrong by about (n h/2)^{2p}; rounding is
+// 1e-19/h^2.
 Jet differences(const std::function<std::vector<Complex>(Real)>& f, Real tau) {
   constexpr int p = 12;
-  constexpr Real h = 0.01L;
+  constexpr Real h = 0.003L;
   Jet jet{f(tau), {}, {}};
   jet.f1.assign(jet.f.size(), 0);
   jet.f2.assign(jet.f.size(), 0);
@@ -185,7 +186,8 @@ Complex load_density(const Linkage& linkage, const Body& rod, Complex e, Complex
 }
 
 // The rod bent to z + e (x + i w): q[k] the jets of e q_k, sign = +1, 0, -1 times w.
-Load bent_rod_load(const Linkage& linkage, const Body& rod, const Motion& motion, Real Omega, const Jet& eq, Real sign) {
+Load bent_rod_load(const Linkage& linkage, const Body& rod, const Motion& motion, Real Omega, const Jet& eq,
+                   Real sign) {
   const Real l = rod.length;
   const Real rho_J = Real(rod.elastic->density) * Real(rod.elastic->second_moment);
   Load load{motion.position(l / 2), 0, 0};
@@ -342,6 +344,11 @@ double closing_margin(const Linkage& linkage, double crank_angle) {
   return static_cast<double>(margin);
 }
 
+std::complex<double> place(const Linkage& linkage, double crank_angle, int body, std::complex<double> point) {
+  const Frame frame = positions(linkage, crank_angle)[static_cast<std::size_t>(body)];
+  return narrow(frame.z + frame.e * wide(point));
+}
+
 std::vector<BodyMotion> motion(const Linkage& linkage, double crank_angle) {
   std::vector<BodyMotion> result;
   for (const Motion& m : motions(linkage, crank_angle))
@@ -354,7 +361,8 @@ MechanismForces forces(const Linkage& linkage, double crank_angle, double speed,
                        const std::vector<LinkResponse>& responses) {
   const WideForces wide_forces = solve(linkage, crank_angle, speed, responses);
   MechanismForces result;
-  for (const auto& dyad : wide_forces.dyads) result.dyads.push_back({narrow(dyad[0]), narrow(dyad[1]), narrow(dyad[2])});
+  for (const auto& dyad : wide_forces.dyads)
+    result.dyads.push_back({narrow(dyad[0]), narrow(dyad[1]), narrow(dyad[2])});
   result.crank_pivot = narrow(wide_forces.crank_pivot);
   result.torque = static_cast<double>(wide_forces.torque);
   return result;
@@ -417,7 +425,8 @@ Ritz ritz(const Linkage& linkage, int link, double crank_angle, double speed, Ei
       s1(k) = kappa * std::cos(kappa * x);
       s2(k) = -kappa * kappa * s(k);
     }
-    M += dx * (Real(elastic.density) / Real(elastic.youngs_modulus) * s1 * s1.transpose() + mu / EJ * s * s.transpose());
+    M +=
+        dx * (Real(elastic.density) / Real(elastic.youngs_modulus) * s1 * s1.transpose() + mu / EJ * s * s.transpose());
     B += dx * (Real(elastic.internal_damping) * s2 * s2.transpose() + Real(elastic.damping_y) / EJ * s * s.transpose());
     C += dx * (s2 * s2.transpose() + N / EJ * s1 * s1.transpose() + mu / EJ * frozen * s * s.transpose());
     h -= dx * p(x).imag() / EJ * s;
@@ -450,7 +459,8 @@ FourierSeries steady_state(const Linkage& linkage, int link, double speed, Eigen
   FourierSeries q(I, num_harmonics);
   for (Eigen::Index n = 0; n <= num_harmonics; ++n)
     for (Eigen::Index j = 0; j < N; ++j)
-      q.c.col(n) += u.segment(I * j, I) * std::polar(1.0 / static_cast<double>(N), -step * static_cast<double>(n * j % N));
+      q.c.col(n) +=
+          u.segment(I * j, I) * std::polar(1.0 / static_cast<double>(N), -step * static_cast<double>(n * j % N));
   return q;
 }
 

@@ -1,7 +1,7 @@
 // An independent model of the same mechanism, for tests only. It knows positions and nothing else: velocities and
 // accelerations are high-order differences of positions, forces come from one Newton-Euler system of all bodies at
-// once, and every integral along a rod is a quadrature. Long double throughout; good to about 1e-13 relative where the
-// linkage stays clear of dead centres.
+// once, and every integral along a rod is a quadrature. Long double throughout; good to about 1e-12 relative for
+// functions of up to 300 harmonics.
 #pragma once
 
 #include <vector>
@@ -16,6 +16,10 @@ namespace hb::newton_euler {
 // linkage does not close.
 [[nodiscard]] double closing_margin(const Linkage& linkage, double crank_angle);
 
+// Place of a point of a body, given in the body's frame.
+[[nodiscard]] std::complex<double> place(const Linkage& linkage, double crank_angle, int body,
+                                         std::complex<double> point);
+
 // All bodies, numbered as in linkage.hpp.
 [[nodiscard]] std::vector<BodyMotion> motion(const Linkage& linkage, double crank_angle);
 
@@ -29,7 +33,7 @@ namespace hb::newton_euler {
 // M q'' + B q' + C q = h of one elastic link at one crank angle (' = d/dt), divided by EJ: weak form of (3.3).
 struct Ritz {
   Eigen::MatrixXd mass, damping, stiffness;  // I x I
-  Eigen::VectorXd load;                      // I
+  Eigen::VectorXd load;  // I
 };
 [[nodiscard]] Ritz ritz(const Linkage& linkage, int link, double crank_angle, double speed, Eigen::Index num_modes);
 

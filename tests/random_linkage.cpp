@@ -13,7 +13,6 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
-constexpr double least_margin = 0.25;
 
 enum class Ending { rocker, elastic_rocker, slider };
 enum class Hang { end, point };  // at the body's joint 1 (slider: its joint), or at a further point
@@ -55,7 +54,8 @@ const std::vector<Plan>& plans() {
       {"two dyads on one crank", {{0, end, slider, true}, {0, end, elastic_rocker, true}}},
       {"eight-link", {{0, end, rocker, true}, {2, point, elastic_rocker, true}, {2, point, slider, true}}},
       {"eight-link in a row", {{0, end, rocker, true}, {2, point, rocker, false}, {3, point, slider, true}}},
-      {"ten-link", {{0, end, rocker, false}, {1, point, rocker, true}, {4, point, slider, true}, {6, point, rocker, true}}},
+      {"ten-link",
+       {{0, end, rocker, false}, {1, point, rocker, true}, {4, point, slider, true}, {6, point, rocker, true}}},
   };
   return list;
 }
@@ -83,7 +83,7 @@ Body rigid_body(const std::string& name, double length, const Scale& scale, Rand
   Body body;
   body.name = name;
   body.length = length;
-  body.mass = scale.mass * random.log_uniform(0.1, 10);
+  body.mass = random.below(6) == 0 ? 0 : scale.mass * random.log_uniform(0.1, 10);
   body.com = length * std::polar(random.uniform(0, 0.7), random.uniform(-pi, pi));
   body.inertia = body.mass * length * length * random.uniform(0.02, 0.3);
   return body;
@@ -101,9 +101,10 @@ Body elastic_body(const std::string& name, double length, const Scale& scale, Ra
   elastic.second_moment = elastic.area * elastic.area * random.uniform(0.02, 0.1);
   elastic.density = mu / elastic.area * random.uniform(0.8, 1.2);
   elastic.youngs_modulus = mu * std::pow(omega1, 2) * std::pow(length / pi, 4) / elastic.second_moment;
-  elastic.internal_damping = random.uniform(0, 0.05) / omega1;
-  elastic.damping_x = mu * scale.speed * random.uniform(0, 0.2);
-  elastic.damping_y = mu * scale.speed * random.uniform(0, 0.2);
+  const double damping = random.below(4) == 0 ? 0 : 1;
+  elastic.internal_damping = damping * random.uniform(0, 0.05) / omega1;
+  elastic.damping_x = damping * mu * scale.speed * random.uniform(0, 0.2);
+  elastic.damping_y = damping * mu * scale.speed * random.uniform(0, 0.2);
   body.com = length / 2;
   body.inertia = body.mass * length * length / 12 + elastic.density * elastic.second_moment * length;
   body.elastic = elastic;
@@ -113,10 +114,7 @@ Body elastic_body(const std::string& name, double length, const Scale& scale, Ra
 // Places of the driving joint over the turn.
 std::vector<Complex> path(const Linkage& linkage, const Attachment& on) {
   std::vector<Complex> places;
-  for (int j = 0; j < 90; ++j) {
-    const BodyMotion frame = newton_euler::motion(linkage, 2 * pi * j / 90)[static_cast<std::size_t>(on.body)];
-    places.push_back(frame.position(on.point));
-  }
+  for (int j = 0; j < 90; ++j) places.push_back(newton_euler::place(linkage, 2 * pi * j / 90, on.body, on.point));
   return places;
 }
 
@@ -156,25 +154,28 @@ FourierSeries random_force(const Scale& scale, Random& random) {
   return force;
 }
 
-Dyad random_dyad(const Linkage& linkage, const DyadPlan& plan, int number, const Scale& scale, Random& random) {
+// A dyad whose closing margin is about `margin` where its driving joint is farthest from the pivot (from the guide).
+Dyad random_dyad(const Linkage& linkage, const DyadPlan& plan, int number, double margin, const Scale& scale,
+                 Random& random) {
   const std::string tag = std::to_string(number);
   Dyad dyad;
   dyad.on = attachment(linkage, plan, scale, random);
   dyad.branch = random.sign();
   const std::vector<Complex> places = path(linkage, dyad.on);
   const Disc disc = around(places);
+  const double cosine = std::sqrt(1 - margin * margin);
   double coupler_length = 0;
   if (plan.ending == Ending::slider) {
     Slider slider;
     slider.name = "slider" + tag;
-    slider.mass = scale.mass * random.log_uniform(0.1, 10);
+    slider.mass = random.below(6) == 0 ? 0 : scale.mass * random.log_uniform(0.1, 10);
     slider.direction = random.uniform(-pi, pi);
     const Complex e = std::polar(1.0, slider.direction);
     slider.guide = disc.centre + e * disc.radius * Complex(random.uniform(-3, 3), random.uniform(-1, 1));
     slider.force = random_force(scale, random);
     double height = 0;
     for (const Complex z : places) height = std::max(height, std::abs((std::conj(e) * (z - slider.guide)).imag()));
-    coupler_length = height * random.uniform(1.2, 3);
+    coupler_length = height / cosine;
     dyad.closing = slider;
   } else {
     Rocker rocker;
@@ -184,8 +185,9 @@ Dyad random_dyad(const Linkage& linkage, const DyadPlan& plan, int number, const
       nearest = std::min(nearest, std::abs(z - rocker.pivot));
       farthest = std::max(farthest, std::abs(z - rocker.pivot));
     }
-    const double sum = farthest * random.uniform(1.05, 1.6);
-    const double difference = nearest * random.uniform(-0.9, 0.9);
+    // d^2 = l^2 + r^2 + 2 l r cosine at the farthest place, with s = l + r and the difference l - r chosen.
+    const double difference = nearest * random.uniform(-0.8, 0.8);
+    const double sum = std::sqrt((2 * farthest * farthest - difference * difference * (1 - cosine)) / (1 + cosine));
     coupler_length = (sum + difference) / 2;
     const double length = (sum - difference) / 2;
     rocker.body = plan.ending == Ending::elastic_rocker ? elastic_body("rocker" + tag, length, scale, random)
@@ -212,33 +214,38 @@ void name_point(Linkage& linkage, const Attachment& on, const std::string& name)
     std::get<Slider>(carrier.closing).points[name] = on.point;
 }
 
-bool turns_freely(const Linkage& linkage) {
-  for (int j = 0; j < 720; ++j)
-    if (!(newton_euler::closing_margin(linkage, 2 * pi * j / 720) >= least_margin)) return false;
-  return !find_obstruction(linkage);
+bool turns_freely(const Linkage& linkage, const Margins& margins) {
+  double least = 1;
+  for (int j = 0; j < 720; ++j) {
+    const double margin = newton_euler::closing_margin(linkage, 2 * pi * j / 720);
+    if (!(margin >= margins.from)) return false;
+    least = std::min(least, margin);
+  }
+  return least <= margins.to && !find_obstruction(linkage);
 }
 
-RandomLinkage random_linkage(const Plan& plan, Random& random) {
+RandomLinkage random_linkage(const Plan& plan, const Margins& margins, Random& random) {
   const Scale scale{random.log_uniform(1e-2, 1e3), random.log_uniform(1e-3, 1e2), random.log_uniform(1, 1e3)};
   RandomLinkage result{plan.kind, {}, scale.speed};
   Linkage& linkage = result.linkage;
-  linkage.gravity = scale.length * scale.speed * scale.speed * random.uniform(0, 2);
+  linkage.gravity = random.below(6) == 0 ? 0 : scale.length * scale.speed * scale.speed * random.uniform(0, 2);
   linkage.crank.body = rigid_body("crank", scale.length, scale, random);
   linkage.crank.pivot = scale.length * Complex(random.uniform(-1, 1), random.uniform(-1, 1));
-  for (int d = 0; d < static_cast<int>(plan.dyads.size()); ++d) {
-    linkage.dyads.emplace_back();
-    Linkage before = linkage;
-    before.dyads.pop_back();
+  const int num_dyads = static_cast<int>(plan.dyads.size());
+  for (int d = 0; d < num_dyads; ++d) {
+    const Linkage carrier = linkage;
+    const Margins wanted{margins.from, d + 1 < num_dyads ? 1 : margins.to};  // the last dyad is the critical one
     do {
-      Dyad dyad = random_dyad(before, plan.dyads[static_cast<std::size_t>(d)], d, scale, random);
-      linkage = before;
+      Dyad dyad = random_dyad(carrier, plan.dyads[static_cast<std::size_t>(d)], d,
+                              random.log_uniform(wanted.from, std::min(wanted.to, 0.95)), scale, random);
+      linkage = carrier;
       if (dyad.on.name.ends_with(".P")) {
         const std::string name = std::to_string(d).insert(0, 1, 'P');
         dyad.on.name.replace(dyad.on.name.size() - 1, 1, name);
         name_point(linkage, dyad.on, name);
       }
       linkage.dyads.push_back(std::move(dyad));
-    } while (!turns_freely(linkage));
+    } while (!turns_freely(linkage, wanted));
   }
   return result;
 }
@@ -247,12 +254,12 @@ RandomLinkage random_linkage(const Plan& plan, Random& random) {
 
 double Random::log_uniform(double from, double to) { return std::exp(uniform(std::log(from), std::log(to))); }
 
-std::vector<RandomLinkage> random_linkages(int count, std::uint64_t seed) {
+std::vector<RandomLinkage> random_linkages(int count, std::uint64_t seed, const Margins& margins) {
   Random random(seed);
   std::vector<RandomLinkage> result;
   for (int k = 0; k < count; ++k) {
     const auto slot = static_cast<std::size_t>(k) % (plans().size() + 3);
-    result.push_back(random_linkage(slot < plans().size() ? plans()[slot] : random_plan(random), random));
+    result.push_back(random_linkage(slot < plans().size() ? plans()[slot] : random_plan(random), margins, random));
   }
   return result;
 }

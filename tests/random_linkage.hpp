@@ -29,10 +29,14 @@ struct RandomLinkage {
   double speed = 0;  // rad per unit time, at which gravity, inertia, damping and stiffness all matter
 };
 
-// `count` linkages: four-bars with elastic coupler, rocker or both, slider-cranks, six- and eight-link mechanisms, dyads
-// on rockers, rigid couplers and sliders, two dyads on one crank, and free chains of up to six dyads. All turn freely,
-// with every closing_margin at least 0.25.
-[[nodiscard]] std::vector<RandomLinkage> random_linkages(int count, std::uint64_t seed);
+// `count` linkages: four-bars with elastic coupler, rocker or both, slider-cranks, six- and eight-link mechanisms,
+// dyads on rockers, rigid couplers and sliders, two dyads on one crank, and free chains of up to six dyads. Some bodies
+// have no mass, some rods no damping, some linkages no gravity. All turn freely; the smallest closing_margin over the
+// turn lies in `margins`.
+struct Margins {
+  double from = 0.25, to = 1;
+};
+[[nodiscard]] std::vector<RandomLinkage> random_linkages(int count, std::uint64_t seed, const Margins& margins = {});
 
 // Smooth random periodic deflection of one elastic link, about a twentieth of its length.
 [[nodiscard]] FourierSeries random_deflection(const Body& link, Eigen::Index num_modes, Random& random);

@@ -27,8 +27,13 @@ using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
 constexpr double tolerance = 1e-10;  // relative, of everything compared
 
+// Of every kind, and a few that pass close to dead centres.
 const std::vector<RandomLinkage>& linkages() {
-  static const std::vector<RandomLinkage> list = random_linkages(80, 20240607);
+  static const std::vector<RandomLinkage> list = [] {
+    std::vector<RandomLinkage> all = random_linkages(80, 20240607);
+    for (RandomLinkage& close : random_linkages(20, 3, {0.04, 0.1})) all.push_back(std::move(close));
+    return all;
+  }();
   return list;
 }
 
@@ -74,8 +79,8 @@ TEST(RandomLinkages, HaveEveryKindOfLink) {
       if (dyad.on.body > 0 && !body_at(linkage, dyad.on.body)) ++on_sliders;
     }
   }
-  for (const int count : {elastic_couplers, elastic_rockers, sliders, on_couplers, on_sliders, long_chains, positive,
-                          negative})
+  for (const int count :
+       {elastic_couplers, elastic_rockers, sliders, on_couplers, on_sliders, long_chains, positive, negative})
     EXPECT_GE(count, 10);
 }
 
@@ -98,7 +103,8 @@ TEST(RandomLinkages, CloseTheirLoopsAtEveryCrankAngle) {
         } else {
           const auto& slider = std::get<Slider>(dyad.closing);
           const Complex guide = std::polar(1.0, slider.direction);
-          EXPECT_LE(std::abs((std::conj(guide) * (end - slider.guide)).imag()), 1e-13 * (scale + std::abs(slider.guide)))
+          EXPECT_LE(std::abs((std::conj(guide) * (end - slider.guide)).imag()),
+                    1e-13 * (scale + std::abs(slider.guide)))
               << kind;
           EXPECT_GT(dyad.branch * (std::conj(guide) * e).real(), 0) << kind;
         }
@@ -158,6 +164,7 @@ TEST(JointForces, RigidOnesBalanceEveryBodyAtOnce) {
       Comparison force, torque;
       for (const double tau : crank_angles())
         compare(rigid_forces(linkage, tau, speed), newton_euler::forces(linkage, tau, speed), force, torque);
+      EXPECT_TRUE(force.size > 0 || factor == 0) << label(linkages()[n], n);
       EXPECT_TRUE(force.agrees()) << label(linkages()[n], n) << " at " << factor << ": force " << force;
       EXPECT_TRUE(torque.agrees()) << label(linkages()[n], n) << " at " << factor << ": torque " << torque;
     }
@@ -261,28 +268,39 @@ TEST(JointForces, ElasticOnesKeepEveryTermLinearInTheDeflection) {
         ASSERT_TRUE(elastic_parts.contains(joint.name)) << joint.name;
         const std::vector<double>&full = elastic_parts.at(joint.name), &stiff = rigid_parts.at(joint.name);
         ASSERT_EQ(static_cast<std::size_t>(joint.elastic.num_components()), full.size()) << joint.name;
-        const Eigen::VectorXd bent = fourier::evaluate(joint.elastic, tau), straight = fourier::evaluate(joint.rigid, tau);
+        const Eigen::VectorXd bent = fourier::evaluate(joint.elastic, tau),
+                              straight = fourier::evaluate(joint.rigid, tau);
         for (std::size_t k = 0; k < full.size(); ++k) {
           const auto row = static_cast<Eigen::Index>(k);
           force.add(bent(row), full[k]);
           added.add(bent(row) - straight(row), full[k] - stiff[k]);
         }
       }
-      const double bent = fourier::evaluate(ours.torque, tau)(0), straight = fourier::evaluate(ours.torque_rigid, tau)(0);
+      const double bent = fourier::evaluate(ours.torque, tau)(0),
+                   straight = fourier::evaluate(ours.torque_rigid, tau)(0);
       torque.add(bent, elastic.torque);
       added_torque.add(bent - straight, elastic.torque - rigid.torque);
     }
-    for (const Comparison& c : {force, added, torque, added_torque})
-      EXPECT_TRUE(c.agrees()) << label(linkages()[n], n) << ' ' << c;
+    EXPECT_TRUE(std::min(added.size, added_torque.size) > 0 || responses.empty()) << label(linkages()[n], n);
+    // joint_forces cuts its series below 1e-13 of the turn's largest coefficient.
+    double largest_force = 0;
+    for (const JointForce& joint : ours.joints)
+      for (Eigen::Index k = 0; k < joint.elastic.num_components(); ++k)
+        largest_force = std::max(largest_force, fourier::wiener_norm(joint.elastic, k));
+    const double largest_torque = fourier::wiener_norm(ours.torque, 0);
+    for (const Comparison& c : {force, added})
+      EXPECT_TRUE(c.agrees(1e-12 * largest_force)) << label(linkages()[n], n) << " force " << c;
+    for (const Comparison& c : {torque, added_torque})
+      EXPECT_TRUE(c.agrees(1e-12 * largest_torque)) << label(linkages()[n], n) << " torque " << c;
   }
 }
 
 TEST(JointForces, MeanTorqueFeedsDampingAndSliders) {
-  for (std::size_t n = 0; n < linkages().size(); ++n) {
+  for (std::size_t n = 0; n < linkages().size(); n += 3) {
     const Linkage& linkage = linkages()[n].linkage;
     const double speed = linkages()[n].speed;
     const FourierSeries torque = joint_forces(linkage, speed, {}).torque_rigid;
-    constexpr int N = 256;
+    constexpr int N = 512;
     double lost = 0;
     for (int j = 0; j < N; ++j) lost += newton_euler::lost_power(linkage, 2 * pi * j / N, speed) / N;
     const double size = fourier::max_abs(torque, 0).value * speed;
@@ -421,6 +439,11 @@ Linkage six_link(double J) {
   return linkage;
 }
 
+// The reference's extrema are those on 8192 crank angles.
+Eigen::RowVectorXd on_reference_angles(const FourierSeries& series, Eigen::Index component) {
+  return fourier::synthesise(FourierSeries(series.c.row(component)), 8192);
+}
+
 class SixLink : public testing::TestWithParam<int> {};
 
 TEST_P(SixLink, ReferenceNumbersAreThoseOfPositionsAlone) {
@@ -439,7 +462,7 @@ TEST_P(SixLink, ReferenceNumbersAreThoseOfPositionsAlone) {
     for (Eigen::Index i = 0; i < I; ++i) {
       const auto row = static_cast<std::size_t>(i);
       const double size = expected["max_abs_q"][row];
-      EXPECT_NEAR(std::abs(fourier::max_abs(q, i).value), size, 2e-7 * size);  // true maximum against 8192 angles
+      EXPECT_NEAR(on_reference_angles(q, i).cwiseAbs().maxCoeff(), size, 1e-9 * size);
       for (Eigen::Index n = 0; n <= 10; ++n) {
         const auto& c = expected["fourier"][row][static_cast<std::size_t>(n)];
         EXPECT_LE(std::abs(q.c(i, n) - Complex(c[0], c[1])), 1e-9 * size) << i + 1 << ' ' << n;
@@ -472,12 +495,11 @@ TEST_P(SixLink, ReferenceNumbersAreThoseOfPositionsAlone) {
     put(elastic, samples);
     torque.col(j) << rigid.torque, elastic.torque;
   }
-  // Extrema of the reference are those on 8192 angles: within (2 pi/8192)^2/8 times the curvature of the true ones.
   const auto expect_range = [](const Eigen::MatrixXd& rows, Eigen::Index row, const nlohmann::json& expected) {
-    const Range range = fourier::range(fourier::analyse(rows), row);
+    const Eigen::RowVectorXd turn = on_reference_angles(fourier::analyse(rows), row);
     const double size = std::max(std::abs(expected[0].get<double>()), std::abs(expected[1].get<double>()));
-    EXPECT_NEAR(range.min.value, expected[0].get<double>(), 2e-6 * size);
-    EXPECT_NEAR(range.max.value, expected[1].get<double>(), 2e-6 * size);
+    EXPECT_NEAR(turn.minCoeff(), expected[0].get<double>(), 1e-9 * size);
+    EXPECT_NEAR(turn.maxCoeff(), expected[1].get<double>(), 1e-9 * size);
   };
   for (const auto& [name, expected] : reference["joints"].items()) {
     SCOPED_TRACE(name);
