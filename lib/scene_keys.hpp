@@ -1,0 +1,37 @@
+// Which keys a scene may hold, table by table: one list for reading, for overrides and for proposing the nearest name.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace hb {
+
+struct TableKind;
+
+struct Key {
+  std::string_view name;
+  const TableKind* table = nullptr;  // what is inside, if the value is a table or a list of tables
+};
+
+struct TableKind {
+  std::string_view name;
+  std::span<const Key> keys;  // empty: any key
+};
+
+// The whole scene; the other kinds hang below it.
+[[nodiscard]] const TableKind& scene_keys();
+
+// The key of this name, or nullptr.
+[[nodiscard]] const Key* find_key(const TableKind& kind, std::string_view name);
+
+// The candidate with the smallest edit distance to `name`, or "" if none is near (more than half the letters differ).
+[[nodiscard]] std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+[[nodiscard]] std::string nearest_name(std::string_view name, const TableKind& kind);
+
+// "a, b, c", cut after some twenty names.
+[[nodiscard]] std::string joined(const std::vector<std::string>& names);
+[[nodiscard]] std::string joined(const TableKind& kind);
+
+}  // namespace hb
