@@ -368,6 +368,34 @@ MechanismForces forces(const Linkage& linkage, double crank_angle, double speed,
   return result;
 }
 
+std::map<std::string, std::vector<double>> joint_components(const Linkage& linkage, double crank_angle,
+                                                            const MechanismForces& forces) {
+  const std::vector<Motion> motion = motions(linkage, crank_angle);
+  std::map<std::string, std::vector<double>> result;
+  const auto put = [&](const std::string& name, std::complex<double> force, int frame) {
+    const std::complex<double> resolved = std::conj(narrow(motion[static_cast<std::size_t>(frame)].e)) * force;
+    result[name] = {resolved.real(), resolved.imag()};
+  };
+  put(linkage.crank.body.name + ".pivot", forces.crank_pivot, coupler_index(0));
+  for (int d = 0; d < static_cast<int>(linkage.dyads.size()); ++d) {
+    const Dyad& dyad = linkage.dyads[static_cast<std::size_t>(d)];
+    const DyadForces& at = forces.dyads[static_cast<std::size_t>(d)];
+    put(dyad.coupler.name + ".0", at.joint0, coupler_index(d));
+    put(dyad.coupler.name + ".1", at.joint1, coupler_index(d));
+    if (const auto* rocker = std::get_if<Rocker>(&dyad.closing)) {
+      put(rocker->body.name + ".pivot", at.ground, coupler_index(d));
+      if (rocker->body.elastic) {
+        put(rocker->body.name + ".0", -at.ground, closing_index(d));
+        put(rocker->body.name + ".1", -at.joint1, closing_index(d));
+      }
+    } else {
+      const std::complex<double> e = narrow(motion[static_cast<std::size_t>(closing_index(d))].e);
+      result[std::get<Slider>(dyad.closing).name + ".guide"] = {(std::conj(e) * at.ground).imag()};
+    }
+  }
+  return result;
+}
+
 double lost_power(const Linkage& linkage, double crank_angle, double speed) {
   const Real Omega = speed;
   const std::vector<Motion> motion = motions(linkage, crank_angle);

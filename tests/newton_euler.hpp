@@ -4,6 +4,9 @@
 // functions of up to 300 harmonics.
 #pragma once
 
+#include <complex>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "lib/joint_forces.hpp"
@@ -26,6 +29,10 @@ namespace hb::newton_euler {
 // Joint forces and torque at `speed` (rad per unit time): rigid, with the terms linear in the given deflections added.
 [[nodiscard]] MechanismForces forces(const Linkage& linkage, double crank_angle, double speed,
                                      const std::vector<LinkResponse>& responses = {});
+
+// The JSON contract's components of all joints: x, y in the coupler's frame (elastic rockers: their own), n of guides.
+[[nodiscard]] std::map<std::string, std::vector<double>> joint_components(const Linkage& linkage, double crank_angle,
+                                                                          const MechanismForces& forces);
 
 // Power that friction in the surroundings takes from the rigid motion, less what the slider forces give.
 [[nodiscard]] double lost_power(const Linkage& linkage, double crank_angle, double speed);
