@@ -122,7 +122,7 @@ class Iteration {
     VectorXd x = VectorXd::Zero(nm * 2 * 2 * (H_ + 1));
     Anderson anderson;
     bool mixing = false;
-    double previous = HUGE_VAL, best = HUGE_VAL;
+    double previous = HUGE_VAL, best = HUGE_VAL, first = 0;
     int stalled = 0;
     for (int iteration = 1; iteration <= 80; ++iteration) {
       ++iterations;
@@ -131,15 +131,17 @@ class Iteration {
       const double change = kappa_ * norm(f);
       const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
       const double rho = change / previous;
-      contraction_ = iteration > 1 ? std::max(rho, 0.05) : 0.5;
-      if (change <= 2 * eps * scale || (change <= 1e-11 * scale && rho > 0.5)) {
+      stalled = change < 0.9 * best ? 0 : stalled + 1;
+      best = std::min(best, change);
+      if (iteration == 1) first = change;
+      // Rounding reached: nothing is left to gain.
+      if (change <= 2 * eps * scale || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
+        contraction_ = iteration > 1 ? std::pow(std::max(change, eps * eps) / first, 1.0 / (iteration - 1)) : 0;
         change_ = change + tail(x);
         needs_more_samples_ = !(tail(x) <= 1e-13 * scale);
         return !needs_more_samples_;
       }
-      stalled = change < 0.9 * best ? 0 : stalled + 1;
-      best = std::min(best, change);
-      if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 12) return false;
+      if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 15) return false;
       if (iteration >= 4 && rho > 0.25) mixing = true;
       x = mixing ? anderson.step(x, f) : VectorXd(x + f);
       previous = change;
@@ -153,8 +155,8 @@ class Iteration {
     reduced.num_modes = m_;
     reduced.alpha = fourier::analyse(alpha_.transpose());
     reduced.beta = fourier::analyse(beta_.transpose());
-    const double ratio = std::min(contraction_, 0.9);
-    const double iteration = 2 * change_ / (1 - ratio);
+    // The mean contraction tells how much of the last change is still missing.
+    const double iteration = 2 * change_ / (1 - std::min(contraction_, 0.95));
     reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * largest_A_);
     reduced.beta_error = iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * largest_C_);
     return reduced;
