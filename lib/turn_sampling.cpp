@@ -8,7 +8,7 @@ namespace hb {
 
 namespace {
 
-// Highest coefficients of one component, its largest one, and what can be said of them.
+// What the coefficients of one component say.
 struct Decay {
   Eigen::Index length = 0;
   double tail = 0;  // largest coefficient beyond length / largest
@@ -31,7 +31,7 @@ Decay decay_of(const Eigen::VectorXd& size, double scale, double tolerance) {
   const double end = highest(size, H - std::max<Eigen::Index>(2, H / 8), H);
   const double before = highest(size, H / 2, H * 3 / 4), last = highest(size, H * 3 / 4, H);
   const bool plateau = before <= level * scale && last >= 0.1 * before;
-  const double floor = std::max(tolerance * largest, plateau ? 1.5 * last : 0.0);
+  const double floor = std::max(tolerance * largest, plateau ? 3 * last : 0.0);
 
   Decay decay;
   decay.reached = end <= tolerance * largest || plateau;

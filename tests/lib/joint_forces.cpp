@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "lib/rod.hpp"
+#include "tests/dense_steady_state.hpp"
 #include "tests/six_link.hpp"
 
 namespace {
@@ -19,31 +19,6 @@ using nlohmann::json;
 const json& reference() {
   static const json document = json::parse(std::ifstream(HB_SOURCE_DIR "/tests/reference/six_link.json"));
   return document;
-}
-
-// Dense harmonic balance, -H..H in one linear system: slow, plain, for these tests only.
-FourierSeries dense_steady_state(const HillSystem& system, double Omega, int H) {
-  const Eigen::Index I = system.num_modes();
-  const FourierSeries C = stiffness_at(system, Omega), h = load_at(system, Omega);
-  const auto coefficient = [](const FourierSeries& s, Eigen::Index row, int k) -> Complex {
-    if (std::abs(k) > s.num_harmonics()) return 0;
-    return k >= 0 ? s.c(row, k) : std::conj(s.c(row, -k));
-  };
-  const Eigen::Index n = I * (2 * H + 1);
-  Eigen::MatrixXcd A = Eigen::MatrixXcd::Zero(n, n);
-  Eigen::VectorXcd b(n);
-  for (int k = -H; k <= H; ++k) {
-    for (int m = -H; m <= H; ++m)
-      for (Eigen::Index i = 0; i < I; ++i)
-        for (Eigen::Index j = 0; j < I; ++j) A((k + H) * I + i, (m + H) * I + j) = coefficient(C, i + I * j, k - m);
-    A.block((k + H) * I, (k + H) * I, I, I) +=
-        -k * k * Omega * Omega * system.mass + Complex(0, k * Omega) * system.damping;
-    for (Eigen::Index i = 0; i < I; ++i) b((k + H) * I + i) = coefficient(h, i, k);
-  }
-  const Eigen::VectorXcd x = A.partialPivLu().solve(b);
-  FourierSeries q(I, H);
-  for (int k = 0; k <= H; ++k) q.c.col(k) = x.segment((k + H) * I, I);
-  return q;
 }
 
 // The reference holds extrema over this many crank angles.
