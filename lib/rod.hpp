@@ -30,7 +30,7 @@ struct LinkageCoefficients {
   double tail = 0;                       // largest coefficient left out, relative to the largest of its kind
 };
 
-// Samples one turn with N = 32, 64, ... points until the Fourier coefficients have decayed to rounding (`tolerance`
+// Samples one turn with N = 64, 128, ... points until the Fourier coefficients have decayed to rounding (`tolerance`
 // relative, per f_k^(p)) or N = 2^14, and cuts what is below rounding. Precondition: find_obstruction() is empty.
 [[nodiscard]] LinkageCoefficients linkage_coefficients(const Linkage& linkage, double tolerance = 1e-16);
 
