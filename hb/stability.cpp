@@ -28,6 +28,8 @@ constexpr double eps = 2.220446049250313e-16;
 struct Exponents {
   std::vector<cplx> s;
   std::vector<double> error;
+  std::vector<Index> mode;  // see Exponent
+  std::vector<double> frequency;
   bool converged = false;  // the leading one is as accurate as asked
 
   void add(cplx value, double bar) {
@@ -37,6 +39,8 @@ struct Exponents {
   void append(const Exponents& other) {
     s.insert(s.end(), other.s.begin(), other.s.end());
     error.insert(error.end(), other.error.begin(), other.error.end());
+    mode.insert(mode.end(), other.mode.begin(), other.mode.end());
+    frequency.insert(frequency.end(), other.frequency.begin(), other.frequency.end());
   }
 };
 
@@ -141,6 +145,44 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance) {
   return result;
 }
 
+// |Im s + k| nearest to `near`.
+double unfolded(double s, double near) {
+  const double fraction = s - std::floor(s);
+  const double up = fraction + std::round(near - fraction), down = -fraction + std::round(near + fraction);
+  return std::abs(up - near) <= std::abs(down - near) ? std::abs(up) : std::abs(down);
+}
+
+// Gives every exponent its mode and its unfolded frequency: pairs go to the modes of the group whose mean equation
+// z^2 + b z + w^2 has the nearest root; each mode takes two.
+void name_modes(Exponents& exponents, const ScaledSystem& system, const std::vector<Index>& group) {
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  const std::size_t count = exponents.s.size();
+  exponents.mode.assign(count, 0);
+  exponents.frequency.assign(count, 0);
+  std::vector<int> room(group.size(), 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    double nearest = HUGE_VAL;
+    std::size_t chosen = 0;
+    for (std::size_t g = 0; g < group.size(); ++g) {
+      if (room[g] == 0) continue;
+      const cplx root = std::sqrt(cplx(b(group[g]) * b(group[g]) / 4 - w2(group[g]), 0));
+      for (const cplx mean : {-b(group[g]) / 2 + root, -b(group[g]) / 2 - root}) {
+        // The phase function gives the whole frequency; a turn's map gives it modulo 1.
+        const double im = std::abs(exponents.s[i].imag());
+        const double frequency = im > 0.5 ? im : unfolded(exponents.s[i].imag(), std::abs(mean.imag()));
+        const double distance = std::hypot(exponents.s[i].real() - mean.real(), frequency - std::abs(mean.imag()));
+        if (distance < nearest) {
+          nearest = distance;
+          chosen = g;
+          exponents.frequency[i] = frequency;
+        }
+      }
+    }
+    if (room[chosen] > 0) --room[chosen];
+    exponents.mode[i] = group[chosen];
+  }
+}
+
 // Exponents of the modes kept by one reduction.
 Exponents of_reduction(const ReducedSystem& reduced, double tolerance) {
   if (reduced.num_modes == 1) {
@@ -171,6 +213,7 @@ Search propagate_all(const ScaledSystem& system, double tolerance) {
   std::iota(all.begin(), all.end(), Index(0));
   Search search;
   search.exponents = propagated(slave_to(system, all), tolerance);
+  name_modes(search.exponents, system, all);
   search.method = StabilityMethod::propagation;
   search.evidence = "all modes propagated over a turn by Radau IIA";
   search.complete = true;
@@ -199,6 +242,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
     const std::array<Index, 1> one{g};
     const ReducedSystem reduced = slave_to(system, one);
     if (reduced.converged) alone[std::size_t(g)] = of_reduction(reduced, tolerance);
+    name_modes(alone[std::size_t(g)], system, {g});
     if (!reduced.converged || alone[std::size_t(g)].s.empty()) together.push_back(g);
   }
   search.method = StabilityMethod::slaving;
@@ -207,6 +251,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
       const ReducedSystem reduced = slave_to(system, together);
       if (reduced.converged) {
         search.exponents = of_reduction(reduced, tolerance);
+        name_modes(search.exponents, system, together);
         break;
       }
       const VectorXd strength = resonance_strength(system, together);
@@ -251,7 +296,8 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
     upper = std::max(upper, s.real() + error);
     lower = std::max(lower, s.real() - error);
     if (error <= 1e-6 * std::max(std::abs(s), 1.0))
-      result.exponents.push_back({{Omega * s.real(), Omega * folded(s.imag())}, Omega * error});
+      result.exponents.push_back({{Omega * s.real(), Omega * folded(s.imag())}, Omega * error,
+                                  int(search.exponents.mode[i]), Omega * search.exponents.frequency[i]});
   }
   std::stable_sort(result.exponents.begin(), result.exponents.end(), [](const Exponent& a, const Exponent& b) {
     if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
@@ -273,6 +319,9 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
   Search search;
   if (system.K.num_harmonics() == 0) {
     search.exponents = constant_coefficients(system);
+    std::vector<Index> all(std::size_t(system.num_modes()));
+    std::iota(all.begin(), all.end(), Index(0));
+    name_modes(search.exponents, system, all);
     search.method = StabilityMethod::hill;
     search.evidence = "constant coefficients: roots of the characteristic equation";
     search.complete = true;

@@ -29,6 +29,11 @@ struct StabilityOptions {
 struct Exponent {
   std::complex<double> value;  // 1/time; imaginary part folded to (-Omega/2, Omega/2]
   double error = 0;            // bound on |error|
+  // Which mode it belongs to (index of the scaled coordinates, ascending mean frequency for rods): the mode that the
+  // others were slaved to; inside a group of strongly coupled modes the nearest in frequency and damping.
+  int mode = 0;
+  // Frequency unfolded, >= 0: |Im lambda + k Omega| with the harmonic k that carries the motion.
+  double frequency = 0;
 };
 
 struct Stability {
