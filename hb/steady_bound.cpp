@@ -52,7 +52,11 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
 }
 
 double amplified(const Operator& A, const Eigen::MatrixXd& r, double response, const Eigen::MatrixXd& T) {
-  return safety * response * weigh(wiener(r.cwiseQuotient(A.magnitude())), T);
+  return amplified(wiener(r.cwiseQuotient(A.magnitude())), response, T);
+}
+
+double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::MatrixXd& T) {
+  return safety * response * weigh(sizes, T);
 }
 
 double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T) {

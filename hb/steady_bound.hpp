@@ -14,8 +14,10 @@ namespace hb::steady {
 // one inverse iteration: 1 far from resonance, infinite at it, NaN if the inverse fails.
 [[nodiscard]] double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T);
 
-// Safety times response times the size of r/|D|; `r` holds moduli, (H+1) x I.
+// Safety times response times the size in q of r/|D|; `r` holds moduli, (H+1) x I.
 [[nodiscard]] double amplified(const Operator& A, const Eigen::MatrixXd& r, double response, const Eigen::MatrixXd& T);
+// The same for sums over harmonics of |r|/|D|, per component.
+[[nodiscard]] double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::MatrixXd& T);
 
 // Row k > H of the residual, divided by |D(k)|, in q.
 [[nodiscard]] double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T);

@@ -47,13 +47,15 @@ WeightedSystem weighted(const ScaledSystem& system) {
   const Eigen::MatrixXd ratio = s.weight * s.weight.cwiseInverse().transpose();
   const Eigen::VectorXd ratios = Eigen::Map<const Eigen::VectorXd>(ratio.data(), I * I);
   s.K = ratios.asDiagonal() * system.K.c;
-  s.K_rounding = system.K_rounding.cwiseProduct(ratio);
+  s.K_rounding = Eigen::MatrixXd::Zero(I, I);
+  s.f_rounding = Eigen::VectorXd::Zero(I);
+  if (system.K_rounding.size() > 0) s.K_rounding = system.K_rounding.cwiseProduct(ratio);
   s.G = system.G.cwiseProduct(ratio);
   s.G_off = s.G;
   s.G_off.diagonal().setZero();
   s.diagonal_damping = system.diagonal_damping;
   s.mean = system.mean_diagonal();
-  s.f_rounding = s.weight.cwiseProduct(system.f_rounding);
+  if (system.f_rounding.size() > 0) s.f_rounding = s.weight.cwiseProduct(system.f_rounding);
   if (system.load_scale != 0) s.f = (s.weight.asDiagonal() * system.f.c).transpose();
 
   const Eigen::VectorXd norms = s.K.col(0).cwiseAbs() + 2 * s.K.rightCols(s.P).cwiseAbs().rowwise().sum();
@@ -158,13 +160,17 @@ double Operator::scaled_norm(const Spectrum& r) const {
   return std::sqrt(2 * size.squaredNorm() - size.row(0).squaredNorm());
 }
 
-// Errors of K spread like K x does; those of the transforms are alike on all harmonics, 2 log2 N steps of rounding.
-Eigen::MatrixXd Operator::rounding(const Spectrum& x) const {
+// Errors of K: data(i) in all, at worst where |D| is least. Errors of products and transforms are independent at the
+// nodes, eps log2 N of their size there, so 1/sqrt(N) of that on every harmonic; twice that is taken.
+Eigen::VectorXd Operator::rounding(const Spectrum& x) const {
   const Eigen::Index I = system_->I;
   const Eigen::VectorXd data = system_->K_rounding * wiener_norms(x) + system_->f_rounding;
-  const double steps = 4 + std::log2(static_cast<double>(std::max<Eigen::Index>(outer_.N, inner_.N)));
-  Eigen::MatrixXd result = 4 * eps * magnitude_.cwiseProduct(x.cwiseAbs());
-  for (Eigen::Index i = 0; i < I; ++i) result.col(i).array() += data(i) + 0.5 * steps * eps * product_max_(i);
+  const double N = static_cast<double>(std::max(outer_.N, inner_.N));
+  const double flat = 2 * eps * (2 + std::log2(N)) / std::sqrt(N);
+  Eigen::VectorXd result = 8 * eps * wiener_norms(x);
+  for (Eigen::Index i = 0; i < I; ++i)
+    result(i) += data(i) / magnitude_.col(i).minCoeff() +
+                 2 * flat * product_max_(i) * magnitude_.col(i).cwiseInverse().sum();
   return result;
 }
 

@@ -37,12 +37,14 @@ struct WeightedSystem {
     const double n = static_cast<double>(k);
     return {mean(i) - n * n, n * G(i, i)};
   }
-  // The same without cancellation.
+  // |D| without cancellation.
   double magnitude(Eigen::Index i, Eigen::Index k) const {
     const double n = static_cast<double>(k);
     const double size = std::abs(mean(i)) + n * n + n * std::abs(G(i, i));
     return size > 0 ? size : (coupling(i) > 0 ? coupling(i) : 1);
   }
+  // Size of |D_i(k)| away from resonance, smallest over k: for judging what is negligible.
+  double smallest_diagonal(Eigen::Index i) const { return std::max(std::abs(mean(i)), 1.0); }
 };
 
 [[nodiscard]] WeightedSystem weighted(const ScaledSystem& system);
@@ -66,8 +68,9 @@ class Operator {
   [[nodiscard]] Spectrum window_residual(const Spectrum& rhs, const Spectrum& z);
   // 2-norm over the turn of the window's rows of r, divided by |D| without cancellation.
   [[nodiscard]] double scaled_norm(const Spectrum& r) const;
-  // Bound on the rounding error of `residual(x)`, (H+1) x I: of the data, of the products and of the transforms.
-  [[nodiscard]] Eigen::MatrixXd rounding(const Spectrum& x) const;
+  // Bound on the rounding error of `residual(x)`, divided by |D| and summed over harmonics, per component: of the
+  // data, of the products and of the transforms.
+  [[nodiscard]] Eigen::VectorXd rounding(const Spectrum& x) const;
   int num_products() const { return num_products_; }
 
  private:

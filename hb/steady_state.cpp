@@ -41,6 +41,13 @@ struct Given {
   bool is_q;  // u is q itself, else q = load_scale * (T of the scaled system) * u
 };
 
+Spectrum padded(const Spectrum& x, Index H) {
+  Spectrum result = Spectrum::Zero(H + 1, x.cols());
+  const Index kept = std::min(H + 1, x.rows());
+  result.topRows(kept) = x.topRows(kept);
+  return result;
+}
+
 class Solver {
  public:
   Solver(const ScaledSystem& scaled, const Given& given, const SteadyOptions& options)
@@ -80,14 +87,7 @@ class Solver {
                   (options_.method == SteadyMethod::automatic && cost.flops <= cheap_elimination);
     const bool may_eliminate = options_.method == SteadyMethod::automatic && cost.bytes <= most_bytes;
 
-    if (x.rows() > 0) {
-      const Index before = x.rows();
-      x.conservativeResize(H + 1, Eigen::NoChange);
-      if (H + 1 > before) x.bottomRows(H + 1 - before).setZero();
-    } else {
-      x = Spectrum::Zero(H + 1, system_.I);
-    }
-    const Spectrum start = x;
+    const Spectrum start = x.rows() > 0 ? padded(x, H) : Spectrum::Zero(H + 1, system_.I);
 
     for (;;) {
       if (direct) {
@@ -132,7 +132,7 @@ class Solver {
     double last = HUGE_VAL;
     Spectrum change;
     r = A.residual(x);
-    const double load = A.scaled_norm(r);
+    const double load = A.scaled_norm(padded(system_.f, H));
     if (!(load > 0)) return std::isfinite(load);
     for (int pass = 0; pass < 8; ++pass) {
       const double now = A.scaled_norm(r);
@@ -174,8 +174,8 @@ class Solver {
     const double load = steady::wiener_norms(system_.f).sum();
     double tail = 0;
     for (Index k = H + 1; k < r.rows(); ++k) tail += 2 * steady::tail_slack(A, response) * steady::tail_row(A, r, k, T_);
-    const Eigen::MatrixXd rounding = A.rounding(x);
-    const double inner = steady::amplified(A, r.topRows(H + 1).cwiseAbs() + rounding, response, T_);
+    const double inner = steady::amplified(A, r.topRows(H + 1).cwiseAbs(), response, T_) +
+                         steady::amplified(A.rounding(x), response, T_);
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
     state.residual = steady::wiener_norms(r).sum() / load;
     state.error_bound = (tail + inner + conversion) / largest;

@@ -9,7 +9,4 @@ namespace hb::steady {
 // Smallest H at which a majorant of the solution has decayed below `tolerance`, at least 2.
 [[nodiscard]] Eigen::Index predicted_harmonics(const WeightedSystem& system, double tolerance, Eigen::Index most);
 
-// Next try after H was too small: the geometric decay between the last rows leads the way, at least a quarter more.
-[[nodiscard]] Eigen::Index grown_harmonics(Eigen::Index H, Eigen::Index most);
-
 }  // namespace hb::steady
