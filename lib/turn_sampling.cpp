@@ -31,12 +31,19 @@ Decay decay_of(const Eigen::VectorXd& size, double scale, double tolerance) {
   const double end = highest(size, H - std::max<Eigen::Index>(2, H / 8), H);
   const double before = highest(size, H / 2, H * 3 / 4), last = highest(size, H * 3 / 4, H);
   const bool plateau = before <= level * scale && last >= 0.1 * before;
-  const double floor = std::max(tolerance * largest, plateau ? 3 * last : 0.0);
+  // The signal ends where it sinks to 2.5 times the noise's rms: over four neighbours, as single coefficients of noise
+  // do stand out.
+  const double noise_rms = plateau ? std::sqrt(size.tail(H / 4).squaredNorm() / static_cast<double>(H / 4)) : 0;
+  const auto stands_out = [&](Eigen::Index k) {
+    if (!(size(k) > tolerance * largest)) return false;
+    const Eigen::Index first = std::max<Eigen::Index>(0, k - 3);
+    return size.segment(first, 4).squaredNorm() > 4 * std::pow(2.5 * noise_rms, 2);
+  };
 
   Decay decay;
   decay.reached = end <= tolerance * largest || plateau;
   decay.length = size.size();
-  while (decay.length > 1 && size(decay.length - 1) <= floor) --decay.length;
+  while (decay.length > 1 && !stands_out(decay.length - 1)) --decay.length;
   if (decay.length < size.size())
     decay.tail = size.tail(size.size() - decay.length).maxCoeff() / largest;
   else
