@@ -1,1 +1,67 @@
-int main() { return 0; }
+// The `hb` command: registers the subcommands and turns exceptions into sentences and exit codes.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "lib/scene.hpp"
+#include "tools/command.hpp"
+
+namespace {
+
+int say(int status, const char* what) {
+  fmt::print(stderr, "hb: {}\n", what);
+  return status;
+}
+
+// A result that did not reach its reader is not a success.
+int flush_output(int status) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  fmt::print(stderr, "hb: standard output cannot be written: {}\n", std::strerror(errno));
+  return hb::tools::exit_wrong_input;
+}
+
+int run(int argc, char** argv) {
+  using namespace hb::tools;
+  CLI::App app{
+      "Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.\n"
+      "Exit status: 0 done, 1 disagreement found by a check or internal error, 2 wrong input, 3 tolerance not reached.",
+      "hb"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", HB_VERSION);
+  int status = exit_ok;
+  add_scene_command(app, status);
+  add_steady_command(app, status);
+  try {
+    app.parse(argc, argv);
+    return status;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    const auto chosen = app.get_subcommands();
+    const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
+    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, error.what(), command);
+    return exit_wrong_input;
+  } catch (const hb::SceneError& error) {
+    return say(exit_wrong_input, error.what());
+  } catch (const UsageError& error) {
+    return say(exit_wrong_input, error.what());
+  } catch (const OutputError& error) {
+    return say(exit_wrong_input, error.what());
+  } catch (const std::bad_alloc&) {
+    return say(exit_failed, "out of memory");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "hb: internal error: {}\n", error.what());
+    return exit_failed;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
+  return flush_output(run(argc, argv));
+}

@@ -1,0 +1,35 @@
+// What the subcommands of `hb` share: exit codes, the errors that `main` turns into sentences, and their registration.
+#pragma once
+
+#include <stdexcept>
+
+namespace CLI {
+class App;
+}
+
+namespace hb::tools {
+
+enum ExitCode {
+  exit_ok = 0,
+  exit_failed = 1,       // `hb check` found a disagreement, or an internal error
+  exit_wrong_input = 2,  // scene, flags or output folder
+  exit_not_reached = 3,  // a result, marked: the tolerance was not reached
+};
+
+// A wrong flag: what() names the flag, what was found and what is allowed.
+class UsageError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Output that cannot be written: what() names the path and the reason.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+// Each adds one subcommand; running it stores the exit code in `status`, which outlives the parse.
+void add_scene_command(CLI::App& app, int& status);
+void add_steady_command(CLI::App& app, int& status);
+
+}  // namespace hb::tools

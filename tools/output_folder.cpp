@@ -1,0 +1,126 @@
+#include "tools/output_folder.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+#include "tools/command.hpp"
+
+namespace hb::tools {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
+  throw OutputError(fmt::format("--out: {} cannot be written: {}", path.string(), reason));
+}
+
+// A new empty folder `parent`/`prefix`XXXXXX.
+fs::path make_temporary(const fs::path& parent, const std::string& prefix, const fs::path& wanted) {
+  std::string name = (parent / (prefix + "XXXXXX")).string();
+  if (mkdtemp(name.data()) == nullptr) fail(wanted, std::strerror(errno));
+  // mkdtemp gives 0700; the folder is to have what mkdir would have given.
+  const mode_t mask = umask(0);
+  umask(mask);
+  fs::permissions(name, static_cast<fs::perms>(0777 & ~mask));
+  return name;
+}
+
+}  // namespace
+
+std::string file_name(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+                       c == '_' || c == '.';
+    name += plain ? c : '_';
+  }
+  return name;
+}
+
+OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
+  std::error_code error;
+  // "out/" is out.
+  if (!folder_.has_filename()) folder_ = folder_.parent_path();
+  const fs::path absolute = fs::absolute(folder_, error);
+  if (error) fail(folder_, error.message());
+  const fs::file_status status = fs::status(absolute, error);
+  if (error && status.type() != fs::file_type::not_found) fail(folder_, error.message());
+  existed_ = fs::exists(status);
+  if (existed_ && !fs::is_directory(status)) fail(folder_, "it exists and is not a folder");
+  if (existed_) {
+    scratch_ = make_temporary(absolute, ".hb-", folder_);
+    return;
+  }
+  std::vector<fs::path> missing;  // parents to make, innermost first
+  for (fs::path parent = absolute.parent_path(); !fs::exists(parent, error); parent = parent.parent_path()) {
+    if (error) fail(folder_, error.message());
+    missing.push_back(parent);
+  }
+  try {
+    for (auto parent = missing.rbegin(); parent != missing.rend(); ++parent) {
+      if (!fs::create_directory(*parent, error) && error) fail(folder_, error.message());
+      made_parents_.push_back(*parent);
+    }
+    scratch_ = make_temporary(absolute.parent_path(), fmt::format(".{}-", absolute.filename().string()), folder_);
+  } catch (...) {
+    for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, error);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  if (committed_) return;
+  std::error_code ignored;
+  fs::remove_all(scratch_, ignored);
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+}
+
+void OutputFolder::write(const std::string& name, const std::string& text) {
+  const fs::path path = scratch_ / name;
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) fail(folder_ / name, std::strerror(errno));
+  const char* next = text.data();
+  std::size_t left = text.size();
+  while (left > 0) {
+    const ssize_t written = ::write(file, next, left);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      const int reason = errno;
+      close(file);
+      fail(folder_ / name, std::strerror(reason));
+    }
+    next += written;
+    left -= static_cast<std::size_t>(written);
+  }
+  if (close(file) != 0) fail(folder_ / name, std::strerror(errno));
+}
+
+void OutputFolder::commit() {
+  std::error_code error;
+  const fs::path place = fs::absolute(folder_);
+  if (!existed_) {
+    fs::rename(scratch_, place, error);
+    if (error) fail(folder_, error.message());
+    committed_ = true;
+    return;
+  }
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(scratch_)) files.push_back(entry.path());
+  for (const fs::path& file : files) {
+    if (fs::is_directory(place / file.filename(), error)) fail(folder_ / file.filename(), "a folder has that name");
+  }
+  for (const fs::path& file : files) {
+    fs::rename(file, place / file.filename(), error);
+    if (error) fail(folder_ / file.filename(), error.message());
+  }
+  fs::remove(scratch_, error);
+  committed_ = true;
+}
+
+}  // namespace hb::tools

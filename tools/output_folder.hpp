@@ -1,0 +1,38 @@
+// A folder whose files appear whole or not at all: they are written into a temporary folder beside their place and
+// renamed into it at the end.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace hb::tools {
+
+// A file name of letters, digits, '-', '_' and '.' made from a name of the scene.
+[[nodiscard]] std::string file_name(const std::string& text);
+
+class OutputFolder {
+ public:
+  // Makes the temporary folder: inside `folder` if that exists, else beside it. Throws OutputError naming the folder
+  // and the reason; nothing is left behind then.
+  explicit OutputFolder(std::filesystem::path folder);
+  // Removes what was not committed.
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  // Where the files are until they are committed.
+  const std::filesystem::path& scratch() const { return scratch_; }
+  // Throws OutputError when the text does not reach the disk.
+  void write(const std::string& name, const std::string& text);
+  // Moves everything into its place.
+  void commit();
+
+ private:
+  std::filesystem::path folder_, scratch_;
+  std::vector<std::filesystem::path> made_parents_;  // innermost last
+  bool existed_ = false;
+  bool committed_ = false;
+};
+
+}  // namespace hb::tools

@@ -1,0 +1,92 @@
+#include "tools/wording.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hb::tools {
+namespace {
+
+// Significant digits of a value that an error leaves, 3 to 10.
+int trusted_digits(double value, double error) {
+  constexpr int fewest = 3, most = 10;
+  if (value == 0 || !(error < std::abs(value))) return fewest;
+  if (error == 0) return most;
+  return std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value) / error))) + 1, fewest, most);
+}
+
+// How the leading exponent's disturbance returns: after one turn the same, reversed, or at a frequency of its own.
+std::string kind_of(const Stability& stability, double speed) {
+  if (stability.exponents.empty()) return "";
+  const double frequency = std::abs(stability.exponents.front().value.imag());
+  const double slack = std::max(stability.exponents.front().error, 1e-9 * speed);
+  if (frequency <= slack) return ", with the period of the crank";
+  if (std::abs(frequency - speed / 2) <= slack) return ", at half the crank's speed (period doubling)";
+  return "";
+}
+
+}  // namespace
+
+std::string scene_name(const Scene& scene) {
+  return scene.title.empty() ? scene.file.filename().string() : scene.title;
+}
+
+std::string speed_text(double speed, const Scene& scene) {
+  if (std::holds_alternative<Linkage>(scene.model)) return fmt::format("{:.10g} rpm", rpm_from_speed(speed, scene.units));
+  return fmt::format("omega = {:.10g} rad/{}", speed, scene.units.time);
+}
+
+std::string with_error(double value, double error) {
+  return fmt::format("{:.{}g} +/- {:.1e}", value, trusted_digits(value, error), error);
+}
+
+std::string exponent_text(const Exponent& exponent) {
+  const double re = exponent.value.real(), im = exponent.value.imag();
+  const std::string real = fmt::format("{:.{}g}", re, trusted_digits(re, exponent.error));
+  if (im == 0) return real;
+  return fmt::format("{} {} {:.{}g} i", real, im < 0 ? '-' : '+', std::abs(im), trusted_digits(im, exponent.error));
+}
+
+std::string verdict_sentence(const Stability& stability, double speed, const Units& units) {
+  const double growth = stability.growth_rate;
+  const double turn = 2 * std::numbers::pi / speed;
+  switch (stability.verdict) {
+    case Verdict::stable: {
+      const double halving = std::numbers::ln2 / -growth;
+      return fmt::format("stable: every disturbance dies out, in the long run at least as fast as exp({:.4g} t): halved in "
+                         "{:.3g} {} ({:.3g} turns)",
+                         growth, halving, units.time, halving / turn);
+    }
+    case Verdict::unstable: {
+      const double tenfold = std::numbers::ln10 / growth;
+      return fmt::format("UNSTABLE: disturbances grow as exp({:.4g} t){}: tenfold in {:.3g} {} ({:.3g} turns). The periodic "
+                         "state exists but would not be seen in a machine",
+                         growth, kind_of(stability, speed), tenfold, units.time, tenfold / turn);
+    }
+    case Verdict::undecided: break;
+  }
+  return fmt::format("undecided: the growth rate {:.3g} +/- {:.1e} per {} may be of either sign", growth,
+                     stability.growth_error, units.time);
+}
+
+const char* status_text(SteadyStatus status) {
+  switch (status) {
+    case SteadyStatus::converged: return "converged";
+    case SteadyStatus::not_reached: return "tolerance not reached";
+    case SteadyStatus::singular: break;
+  }
+  return "singular";
+}
+
+const char* method_text(SteadyMethod method) {
+  switch (method) {
+    case SteadyMethod::direct: return "direct";
+    case SteadyMethod::iterative: return "iterative";
+    case SteadyMethod::automatic: break;
+  }
+  return "automatic";
+}
+
+}  // namespace hb::tools
