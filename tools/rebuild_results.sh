@@ -11,5 +11,5 @@ studies=("$@")
 ((${#studies[@]})) || mapfile -t studies < <(cd results && ls -d */ | tr -d /)
 for study in "${studies[@]}"; do
   echo "results/$study" >&2
-  (cd "results/$study" && ./rebuild.sh </dev/null)
+  "results/$study/rebuild.sh" </dev/null
 done
