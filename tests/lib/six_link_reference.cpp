@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "lib/fourier.hpp"
 #include "lib/linkage.hpp"
@@ -49,8 +50,16 @@ Linkage six_link(double J) {
   Rocker O2BC{rocker("O2BC", 200, 1.84, std::polar(118.0, -0.15), 18300), {270, 0}};
   O2BC.body.points["C"] = C;
   const Rocker O3D{rocker("O3D", 220, 1.35, 113, 11500), {570, 0}};
-  linkage.dyads.push_back({{0, 55, "crank"}, rod("AB", 259, 0.165, 10, J), O2BC, -1});
-  linkage.dyads.push_back({{2, C, "O2BC.C"}, rod("CD", 258, 0.163, 9, J), O3D, -1});
+  const auto hang = [&](int body, Complex point, Body coupler, Rocker closing) {
+    Dyad& dyad = linkage.dyads.emplace_back();
+    dyad.on.body = body;
+    dyad.on.point = point;
+    dyad.coupler = std::move(coupler);
+    dyad.closing = std::move(closing);
+    dyad.branch = -1;
+  };
+  hang(0, 55, rod("AB", 259, 0.165, 10, J), std::move(O2BC));
+  hang(2, C, rod("CD", 258, 0.163, 9, J), O3D);
   return linkage;
 }
 
