@@ -120,7 +120,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   scaled.G = L * system.damping * T / speed;
   scaled.diagonal_damping = is_diagonal(scaled.G);
   scaled.K = transformed(C, L, T);
-  scaled.K.c /= speed * speed;
+  scaled.K.c *= 1 / (speed * speed);
   scaled.K = without_rounding(scaled.K, I);
   // Adding three powers, products with L and T (none but scaling when they are diagonal), and the cut.
   const bool scaling = is_diagonal(L) && is_diagonal(T);
@@ -135,10 +135,10 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
     // The load's own scale is taken out first: amplitudes from 1e-200 to 1e200 neither overflow nor vanish.
     const double largest = h.c.real().cwiseAbs().maxCoeff() + h.c.imag().cwiseAbs().maxCoeff();
     if (largest > 0) {
-      h.c /= largest;
+      h.c *= 1 / largest;  // complex division would square the divisor
       h.c = (L * h.c).eval();
       const double scale = h.c.cwiseAbs().maxCoeff();
-      h.c /= scale;
+      h.c *= 1 / scale;
       scaled.load_scale = largest * (scale / (speed * speed));
       scaled.f_rounding = steps * eps * L.cwiseAbs() * (sizes(system.load, I, speed) / largest) / scale;
       scaled.f = fourier::resized(h, fourier::significant_harmonics(h, 1e-18));

@@ -10,7 +10,7 @@ namespace hb {
 
 struct ScaledSystem {
   double speed = 0;           // Omega, rad per unit time
-  Eigen::MatrixXd T;          // q = T x (diagonal when M is)
+  Eigen::MatrixXd T;          // q = T x
   Eigen::MatrixXd T_inverse;  // x = T_inverse q
   Eigen::MatrixXd G;          // T^-1 M^-1 B T / Omega
   FourierSeries K;            // T^-1 M^-1 C T / Omega^2: I*I components column-major; harmonics below rounding cut
@@ -27,8 +27,8 @@ struct ScaledSystem {
   Eigen::VectorXd damping_diagonal() const { return G.diagonal(); }
 };
 
-// M diagonal: T = M^-1/2. Full symmetric M (positive definite): T = M^-1/2 turned to the eigenvectors of the mean
-// stiffness if that leaves less coupling. Otherwise T = 1 with M^-1 multiplied from the left.
+// Symmetric M (positive definite): T = M^-1/2 (diagonal when M is), turned to the eigenvectors of the mean stiffness
+// if that leaves far less coupling in stiffness and damping. Otherwise T = 1 with M^-1 multiplied from the left.
 // Throws std::invalid_argument if the speed is not positive and finite.
 [[nodiscard]] ScaledSystem scale_system(const HillSystem& system, double speed);
 

@@ -12,7 +12,7 @@ using Index = Eigen::Index;
 // Two solves estimate the norm of the inverse from below; random systems showed a factor of 2 at most to be missing.
 constexpr double safety = 3;
 // Largest amplification granted to omitted rows that are coupled more strongly than their diagonal.
-constexpr double most_tail_slack = 1e3;
+constexpr double most_tail_slack = 30;
 
 double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) { return (T.cwiseAbs() * sizes).maxCoeff(); }
 
@@ -46,7 +46,7 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
     const double gained = size_in_q(z, T) / size;
     if (!std::isfinite(gained)) return std::nan("");
     largest = std::max(largest, gained);
-    rhs = (z / z.cwiseAbs().maxCoeff()).cwiseProduct(A.magnitude().cast<std::complex<double>>());
+    rhs = (z * (1 / z.cwiseAbs().maxCoeff())).cwiseProduct(A.magnitude().cast<std::complex<double>>());
   }
   return largest;
 }
@@ -66,6 +66,19 @@ double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eige
     sizes(i) = size > 0 ? size / std::abs(A.system().D(i, k)) : 0;
   }
   return weigh(sizes, T);
+}
+
+// Coupling E shifts w^2 by about E^2/|D(k +- m)|, |D(k +- m)| >= k.
+bool resonant_beyond(const WeightedSystem& system, Index H) {
+  constexpr double eps = 2.220446049250313e-16;
+  for (Index i = 0; i < system.I; ++i) {
+    if (!(system.mean(i) > 0 && system.mean(i) < 1e15)) continue;
+    const Index k = static_cast<Index>(std::llround(std::sqrt(system.mean(i))));
+    if (k <= H) continue;
+    const double closest = 32 * eps * system.magnitude(i, k), shift = system.coupling(i) * system.coupling(i);
+    if (std::abs(system.D(i, k)) <= closest && shift <= closest * static_cast<double>(k)) return true;
+  }
+  return false;
 }
 
 double tail_slack(const Operator& A, double response) {

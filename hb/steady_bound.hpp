@@ -25,4 +25,7 @@ namespace hb::steady {
 // What rows outside can do beyond r/D: feed back into the window, and couple among themselves.
 [[nodiscard]] double tail_slack(const Operator& A, double response);
 
+// True if an undamped mode whose coupling cannot shift it is in resonance with a harmonic beyond H, to rounding.
+[[nodiscard]] bool resonant_beyond(const WeightedSystem& system, Eigen::Index H);
+
 }  // namespace hb::steady

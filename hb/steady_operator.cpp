@@ -160,17 +160,21 @@ double Operator::scaled_norm(const Spectrum& r) const {
   return std::sqrt(2 * size.squaredNorm() - size.row(0).squaredNorm());
 }
 
+Eigen::VectorXd Operator::noise() const {
+  const double N = static_cast<double>(std::max(outer_.N, inner_.N));
+  return 2 * eps * (2 + std::log2(N)) / std::sqrt(N) * product_max_;
+}
+
 // Errors of K: data(i) in all, at worst where |D| is least. Errors of products and transforms are independent at the
 // nodes, eps log2 N of their size there, so 1/sqrt(N) of that on every harmonic; twice that is taken.
 Eigen::VectorXd Operator::rounding(const Spectrum& x) const {
   const Eigen::Index I = system_->I;
   const Eigen::VectorXd data = system_->K_rounding * wiener_norms(x) + system_->f_rounding;
-  const double N = static_cast<double>(std::max(outer_.N, inner_.N));
-  const double flat = 2 * eps * (2 + std::log2(N)) / std::sqrt(N);
+  const Eigen::VectorXd flat = noise();
   Eigen::VectorXd result = 8 * eps * wiener_norms(x);
   for (Eigen::Index i = 0; i < I; ++i)
     result(i) += data(i) / magnitude_.col(i).minCoeff() +
-                 2 * flat * product_max_(i) * magnitude_.col(i).cwiseInverse().sum();
+                 2 * flat(i) * magnitude_.col(i).cwiseInverse().sum();
   return result;
 }
 

@@ -71,6 +71,8 @@ class Operator {
   // Bound on the rounding error of `residual(x)`, divided by |D| and summed over harmonics, per component: of the
   // data, of the products and of the transforms.
   [[nodiscard]] Eigen::VectorXd rounding(const Spectrum& x) const;
+  // The part of it that is alike on all harmonics, per component: rows below this say nothing.
+  [[nodiscard]] Eigen::VectorXd noise() const;
   int num_products() const { return num_products_; }
 
  private:

@@ -73,7 +73,8 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
   const Index I = system.num_modes(), H = q.num_harmonics();
   const Index P = longest(system.stiffness), F = longest(system.load);
   const Index rows = std::max(H + P, F), reach = H + P;
-  const Real Omega = speed, unit = scale;
+  // A power of two, so that q / unit is exact; the rest of the scale is applied to the residual.
+  const Real Omega = speed, unit = std::ldexp(Real(1), std::ilogb(scale)), remaining = unit / static_cast<Real>(scale);
   // A sum holds 2 (2P+1) products at most: 2 bits + log2 of that must fit into 53.
   const int bits = (52 - static_cast<int>(std::ceil(std::log2(4.0 * static_cast<double>(P) + 2)))) / 2;
 
@@ -104,7 +105,8 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
       sum_im[at] = k <= F && k > 0 ? h_im[at] / unit : 0;
       size[at] = std::abs(sum_re[at]) + std::abs(sum_im[at]);
     }
-    Real flat = 0;  // rounding alike on all harmonics
+    // Sum over all harmonics of the rounding of C and of the low parts: charged to harmonic 0, where |D| is least.
+    Real total = 0;
     for (Index j = 0; j < I; ++j) {
       // -M q'' - B q'
       for (Index k = 0; k <= H; ++k) {
@@ -144,16 +146,17 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
       }
       for (Index k = 0; k <= reach; ++k) {
         const auto at = static_cast<std::size_t>(k);
+        size[at] += std::abs(exact_re(k)) + std::abs(exact_im(k));
         sum_re[at] -= static_cast<Real>(exact_re(k)) + rest_re(k);
         if (k > 0) sum_im[at] -= static_cast<Real>(exact_im(k)) + rest_im(k);
       }
-      flat += c_size * static_cast<Real>(q_size(j)) *
+      total += c_size * static_cast<Real>(q_size(j)) *
               (static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits) + 2 * real_eps);
     }
     for (Index k = 0; k <= rows; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      result.r(k, i) = {static_cast<double>(sum_re[at]), static_cast<double>(sum_im[at])};
-      result.rounding(k, i) = static_cast<double>(4 * real_eps * size[at] + (k <= reach ? flat : 0));
+      result.r(k, i) = {static_cast<double>(sum_re[at] * remaining), static_cast<double>(sum_im[at] * remaining)};
+      result.rounding(k, i) = static_cast<double>((4 * real_eps * size[at] + (k == 0 ? total : 0)) * remaining);
     }
   }
   return result;

@@ -105,20 +105,28 @@ class Solver {
       const bool solved = solve(A, *inverse, x, r);
       // The last harmonics that the exact residual shows: more of them first, whatever else is wrong.
       if (solved && !last) {
-        wanted = harmonics_for(A, x, r, 1);
+        wanted = harmonics_for(A, x, r, A.noise(), 1);
         if (wanted > H) return state;
       }
       const double response = solved ? steady::response(A, *inverse, T_) : HUGE_VAL;
       if (std::isfinite(response)) {
         if (!last) {
-          wanted = harmonics_for(A, x, r, response);
+          wanted = harmonics_for(A, x, r, A.noise(), response);
           if (wanted > H) return state;
         }
-        assess(A, *inverse, x, r, response, state);
+        assess(A, *inverse, x, r, response, state, wanted);
+        if (wanted > H && !last) return state;
         if (state.status == SteadyStatus::converged) return state;
       }
       if (direct || !may_eliminate) {
-        if (!std::isfinite(response) && state.status != SteadyStatus::singular) fail(A, x, state);
+        if (std::isfinite(response)) return state;
+        // Without an answer: is it the operator's fault?
+        if (!direct && cost.bytes <= most_bytes) {
+          steady::DirectInverse elimination(A);
+          if (!elimination.regular() || !(1 / steady::response(A, elimination, T_) > singular_distance))
+            return singular(state);
+        }
+        fail(x, state);
         return state;
       }
       direct = true;
@@ -149,9 +157,15 @@ class Solver {
   }
 
   // Smallest window whose omitted residual rows, divided by |D|, stay within the share of the tolerance.
-  Index harmonics_for(const steady::Operator& A, const Spectrum& x, const Spectrum& r, double response) const {
+  // Entries of r at or below `noise` are not counted.
+  Index harmonics_for(const steady::Operator& A, const Spectrum& x, Spectrum r, const Eigen::VectorXd& noise,
+                      double response) const {
     const Index H = A.num_harmonics();
     const double allowed = truncation_share * options_.tolerance * steady::largest_over_turn(x * T_.transpose());
+    const Index above = system_.f.rows();  // the load's own rows have no noise
+    for (Index k = H + 1; k < r.rows(); ++k)
+      for (Index i = 0; i < r.cols(); ++i)
+        if (std::abs(r(k, i)) <= noise(i) && (k >= above || system_.f(k, i) == 0.0)) r(k, i) = 0;
     const double slack = steady::tail_slack(A, response);
     double sum = 0;
     Index k = r.rows() - 1;
@@ -163,10 +177,10 @@ class Solver {
   }
 
   void assess(steady::Operator& A, steady::Inverse& inverse, const Spectrum& x, const Spectrum& r, double response,
-              SteadyState& state) {
+              SteadyState& state, Index& wanted) {
     const Index H = A.num_harmonics();
     state.resonance_distance = std::min(1.0, 1 / response);
-    if (!(1 / response > singular_distance)) {
+    if (!(1 / response > singular_distance) || steady::resonant_beyond(system_, H)) {
       singular(state);
       return;
     }
@@ -182,12 +196,13 @@ class Solver {
     state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
     Eigen::MatrixXcd u = (given_.T * system_.weight.cwiseInverse().asDiagonal() * x.transpose());
     u *= given_.scale;
-    if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound)) refine(A, inverse, response, u, state);
+    if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound)) refine(A, inverse, response, u, state, wanted);
     state.q = result(u);
   }
 
   // Residuals in extended precision, of u as it is stored: its own rounding is then part of the residual.
-  void refine(steady::Operator& A, steady::Inverse& inverse, double response, Eigen::MatrixXcd& u, SteadyState& state) {
+  void refine(steady::Operator& A, steady::Inverse& inverse, double response, Eigen::MatrixXcd& u, SteadyState& state,
+              Index& wanted) {
     constexpr double solve_accuracy = 1e-4;
     const Index H = A.num_harmonics();
     const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
@@ -200,16 +215,17 @@ class Solver {
     for (int pass = 0; pass < 8; ++pass) {
       const steady::AccurateResidual accurate =
           steady::accurate_residual(*given_.system, given_.speed, FourierSeries(u), given_.scale);
-      const Spectrum r = accurate.r * rows.transpose() / (given_.speed * given_.speed);
+      const Spectrum r = accurate.r * (rows / (given_.speed * given_.speed)).transpose();
       const Eigen::MatrixXd rounding =
           accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) + 8 * eps * static_cast<double>(system_.I) * r.cwiseAbs();
       Spectrum change;
       inverse.solve(r.topRows(H + 1), solve_accuracy, change);
       if (!change.allFinite()) break;
-      const Spectrum x = (u / given_.scale).transpose() * to_x.transpose();
+      const Spectrum x = (u * (1 / given_.scale)).transpose() * to_x.transpose();
       const double largest = steady::largest_over_turn(x * T_.transpose());
       double tail = 0;
       for (Index k = H + 1; k < r.rows(); ++k) tail += 2 * slack * steady::tail_row(A, r, k, T_);
+      if (pass == 0 && (wanted = harmonics_for(A, x, r, Eigen::VectorXd::Zero(system_.I), response)) > H) return;
       // |A^-1 r| <= |change| + |A^-1 (r - A change)|
       const Spectrum rest = A.window_residual(r, change);
       const double inner = steady::size_in_q(change, T_) +
@@ -248,7 +264,7 @@ class Solver {
   }
 
   // No usable answer: what there is, with no claim about it.
-  void fail(const steady::Operator&, const Spectrum& x, SteadyState& state) const {
+  void fail(const Spectrum& x, SteadyState& state) const {
     state.status = SteadyStatus::not_reached;
     state.error_bound = HUGE_VAL;
     state.residual = HUGE_VAL;
