@@ -125,18 +125,17 @@ AnalysisDefaults read_analysis(const TableView& analysis, int num_modes) {
 
 namespace {
 
-void refuse_obstruction(const Linkage& linkage, const toml::table& scene, const Problems& problems) {
+void refuse_obstruction(const Linkage& linkage, const toml::table& scene, const Problems& problems,
+                        const std::vector<Override>& overrides) {
   const std::optional<Obstruction> obstruction = find_obstruction(linkage);
   if (!obstruction) return;
   const toml::node& dyad = *scene.get("dyad")->as_array()->get(static_cast<std::size_t>(obstruction->dyad));
-  throw ObstructedLinkage(
-      fmt::format("{}: dyad.{} ({}): found a linkage that {} at crank angle {:.6g} deg ({}), allowed one that turns "
-                  "through the whole turn",
-                  problems.place(dyad), obstruction->dyad,
-                  linkage.dyads[static_cast<std::size_t>(obstruction->dyad)].coupler.name,
-                  obstruction->dead_centre ? "passes a dead centre" : "does not close",
-                  obstruction->crank_angle * 180 / pi, obstruction->message),
-      obstruction->dyad, obstruction->crank_angle);
+  std::string changes;
+  for (const Override& change : overrides)
+    changes += (changes.empty() ? " with " : ", ") + change.path + "=" + change.value;
+  throw ObstructedLinkage(fmt::format("{}: dyad.{}{}: found {}, allowed a linkage that turns through",
+                                      problems.place(dyad), obstruction->dyad, changes, obstruction->message),
+                          obstruction->dyad, obstruction->crank_angle);
 }
 
 void check_title(const TableView& scene, Scene& result) {
@@ -147,7 +146,8 @@ void check_title(const TableView& scene, Scene& result) {
   }
 }
 
-Scene scene_from(const toml::table& tree, const std::string& name, const std::filesystem::path& folder) {
+Scene scene_from(const toml::table& tree, const std::string& name, const std::filesystem::path& folder,
+                 const std::vector<Override>& overrides) {
   Problems problems(name);
   const TableView scene(tree, "", problems);
   if (tree.empty())
@@ -177,7 +177,8 @@ Scene scene_from(const toml::table& tree, const std::string& name, const std::fi
   if (const auto analysis = scene.table("analysis")) result.analysis = read_analysis(*analysis, num_modes);
   if (num_modes > 0) result.analysis.modes = num_modes;
   problems.throw_if_any();
-  if (const Linkage* linkage = std::get_if<Linkage>(&result.model)) refuse_obstruction(*linkage, tree, problems);
+  if (const Linkage* linkage = std::get_if<Linkage>(&result.model))
+    refuse_obstruction(*linkage, tree, problems, overrides);
   return result;
 }
 
@@ -198,7 +199,7 @@ SceneSource::SceneSource(std::string text, std::string name, std::filesystem::pa
 Scene SceneSource::with(const std::vector<Override>& overrides) const {
   toml::table tree = parse_toml(text_, name_);
   apply(tree, overrides);
-  return scene_from(tree, name_, folder_);
+  return scene_from(tree, name_, folder_, overrides);
 }
 
 std::vector<std::string> SceneSource::numeric_paths() const { return hb::numeric_paths(parse_toml(text_, name_)); }

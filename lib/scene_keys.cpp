@@ -1,7 +1,6 @@
 #include "lib/scene_keys.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 namespace hb {
 
@@ -57,15 +56,19 @@ constexpr Key top_keys[] = {{"title"},       {"gravity"},     {"units", &units},
                             {"dyad", &dyad}, {"hill", &hill}, {"analysis", &analysis}};
 constexpr TableKind top{"scene", top_keys};
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; }
+
+// Twice the Levenshtein distance, a mere change of case counting half.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  const auto exchange = [](char x, char y) -> std::size_t { return x == y ? 0 : lower(x) == lower(y) ? 1 : 2; };
   std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = 2 * j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     std::size_t diagonal = row[0];
-    row[0] = i;
+    row[0] = 2 * i;
     for (std::size_t j = 1; j <= b.size(); ++j) {
       const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      row[j] = std::min({above + 2, row[j - 1] + 2, diagonal + exchange(a[i - 1], b[j - 1])});
       diagonal = above;
     }
   }
@@ -90,7 +93,7 @@ const Key* find_key(const TableKind& kind, std::string_view name) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
   if (name.size() > 200) return "";
   std::string best;
-  std::size_t least = std::max<std::size_t>(1, name.size() / 2) + 1;
+  std::size_t least = std::max<std::size_t>(2, name.size()) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {

@@ -69,13 +69,14 @@ std::vector<BodyTable> bodies_of(toml::table& scene) {
 // Follows the parts from a node of the given kind (nullptr: keys not listed, only what is there).
 std::optional<Slot> walk(toml::node& start, const TableKind* kind, std::span<const std::string_view> parts) {
   toml::node* node = &start;
+  std::string created;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool last = i + 1 == parts.size();
     const std::string part(parts[i]);
     if (toml::array* list = node->as_array()) {
       const auto index = index_of(part);
       if (!index || *index >= list->size()) return std::nullopt;
-      if (last) return Slot{list, part};
+      if (last) return Slot{list, part, ""};
       node = list->get(*index);  // the elements are of the list's kind
       continue;
     }
@@ -83,9 +84,10 @@ std::optional<Slot> walk(toml::node& start, const TableKind* kind, std::span<con
     if (!table) return std::nullopt;
     const Key* key = kind ? find_key(*kind, part) : nullptr;
     toml::node* found = table->get(part);
-    if (last && (found || key)) return Slot{table, part};
+    if (last && (found || key)) return Slot{table, part, created};
     if (!found && kind == &scene_keys() && (part == "analysis" || part == "units")) {
       found = &table->insert_or_assign(part, toml::table{}).first->second;
+      created = part;
     }
     if (!found) return std::nullopt;
     kind = key ? key->table : nullptr;
@@ -167,7 +169,7 @@ std::vector<std::string> numeric_paths(const toml::table& scene) {
 
 namespace {
 
-std::string label(const Override& change) { return change.path + "=" + change.value; }
+std::string label(const Override& change) { return printable(change.path, 100) + "=" + printable(change.value, 100); }
 
 // A bare word gets its quotes.
 std::string toml_value(const std::string& value) {
@@ -187,7 +189,8 @@ toml::table parse_value(const Override& change) {
   } catch (const toml::parse_error&) {
   }
   throw SceneError(fmt::format("{}: {}: found {}, allowed a TOML value: a number, \"text\" or a list", label(change),
-                               change.path, change.value.empty() ? "nothing" : "\"" + change.value + "\""));
+                               printable(change.path, 100),
+                               change.value.empty() ? "nothing" : fmt::format("\"{}\"", printable(change.value, 100))));
 }
 
 [[noreturn]] void refuse_path(const toml::table& scene, const Override& change) {
@@ -199,7 +202,7 @@ toml::table parse_value(const Override& change) {
   for (const std::string& path : known) {
     if (parts_of(path)[0] == first) same.push_back(path);
   }
-  throw SceneError(fmt::format("{}: {}: found no such number{}, allowed {}", label(change), change.path,
+  throw SceneError(fmt::format("{}: {}: found no such number{}, allowed {}", label(change), printable(change.path, 100),
                                near.empty() ? "" : " (" + near + " meant?)", joined(same.empty() ? known : same)));
 }
 
@@ -252,8 +255,9 @@ std::optional<std::string> with_one(const std::string& text, const Slot& slot, c
     return changed.replace(begin, end - begin, value);
   }
   const toml::table* table = slot.parent->as_table();
-  if (!table || table->source().begin.line == 0) return std::nullopt;
   const std::string entry = slot.key + " = " + value;
+  if (!slot.created.empty()) return changed + "\n\n[" + slot.created + "]\n" + entry + "\n";
+  if (!table || table->source().begin.line == 0) return std::nullopt;
   std::size_t at = offset_of(text, table->source().begin);
   if (at >= text.size()) return std::nullopt;
   if (text[at] == '{') return changed.insert(at + 1, table->empty() ? " " + entry : " " + entry + ",");

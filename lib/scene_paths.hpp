@@ -15,6 +15,7 @@ namespace hb {
 struct Slot {
   toml::node* parent = nullptr;  // table or array
   std::string key;  // key, or index in digits
+  std::string created;  // name of the parent if it was made on the way, see resolve
   toml::node* value() const;  // nullptr if absent
 };
 

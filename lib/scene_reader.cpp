@@ -20,7 +20,7 @@ void Problems::add(const toml::node& where, const std::string& key, const std::s
     ++count_;
     return;
   }
-  add_line(place(where) + ": " + (key.empty() ? "" : key + ": ") + message);
+  add_line(place(where) + ": " + (key.empty() ? "" : printable(key) + ": ") + message);
 }
 
 void Problems::throw_if_any() const {
@@ -35,19 +35,16 @@ std::string Problems::place(const toml::node& where) const {
   return fmt::format("{}:{}", file_, source.begin.line);
 }
 
-namespace {
-
-// Text as it may stand in a message: one line, not endless.
-std::string in_quotes(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text.substr(0, 60)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return out + (text.size() > 60 ? "...\"" : "\"");
+std::string printable(std::string_view text, std::size_t most) {
+  std::size_t length = std::min(text.size(), most);
+  while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xc0) == 0x80) --length;
+  std::string out;
+  for (const char c : text.substr(0, length)) out += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return length < text.size() ? out + "..." : out;
 }
 
-}  // namespace
-
 std::string describe(const toml::node& node) {
-  if (const auto* value = node.as_string()) return in_quotes(value->get());
+  if (const auto* value = node.as_string()) return fmt::format("\"{}\"", printable(value->get(), 60));
   if (const auto* value = node.as_integer()) return fmt::format("{}", value->get());
   if (const auto* value = node.as_floating_point()) return fmt::format("{}", value->get());
   if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
@@ -186,8 +183,7 @@ void check_keys(const toml::node& node, const TableKind& kind, const std::string
   if (!table || kind.keys.empty()) return;
   for (const auto& [key, value] : *table) {
     const std::string_view name = key.str();
-    const std::string full =
-        path.empty() ? std::string(name.substr(0, 100)) : fmt::format("{}.{}", path, name.substr(0, 100));
+    const std::string full = path.empty() ? printable(name, 100) : fmt::format("{}.{}", path, printable(name, 100));
     if (const Key* known = find_key(kind, name)) {
       if (known->table) check_keys(value, *known->table, full, problems);
       continue;
@@ -231,6 +227,25 @@ int line_of(const std::string& text, std::size_t offset) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
 }
 
+// Offset of the first byte that is no UTF-8 text (or is zero), or npos.
+std::size_t first_binary_byte(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t length = lead < 0x80   ? 1
+                               : lead < 0xc2 ? 0
+                               : lead < 0xe0 ? 2
+                               : lead < 0xf0 ? 3
+                               : lead < 0xf5 ? 4
+                                             : 0;
+    if (lead == 0 || length == 0 || i + length > text.size()) return i;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((static_cast<unsigned char>(text[i + k]) & 0xc0) != 0x80) return i;
+    }
+    i += length;
+  }
+  return std::string::npos;
+}
+
 // The TOML library limits nesting but for dotted keys a.b.c..., whose tables it then walks by recursion.
 void refuse_endless_keys(const std::string& text, const std::string& name) {
   int dots = 0;
@@ -253,15 +268,17 @@ void refuse_endless_keys(const std::string& text, const std::string& name) {
 }  // namespace
 
 toml::table parse_toml(const std::string& text, const std::string& name) {
-  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
-    throw SceneError(fmt::format("{}:{}: found a binary file, allowed TOML text", name, line_of(text, zero)));
+  if (const std::size_t at = first_binary_byte(text); at != std::string::npos) {
+    throw SceneError(fmt::format("{}:{}: found a binary file (byte {:#04x}), allowed TOML text in UTF-8", name,
+                                 line_of(text, at), static_cast<unsigned char>(text[at])));
   }
   refuse_endless_keys(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     throw SceneError(fmt::format("{}:{}: column {}: found broken TOML ({}), allowed TOML 1.0", name,
-                                 error.source().begin.line, error.source().begin.column, error.description()));
+                                 error.source().begin.line, error.source().begin.column,
+                                 printable(error.description())));
   }
 }
 

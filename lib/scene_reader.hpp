@@ -53,6 +53,9 @@ inline constexpr Limits positive{1e-40, largest_number, true, "a number > 0 (1e-
 inline constexpr Limits not_negative{0, largest_number, true, "a number >= 0 (at most 1e40)"};
 inline constexpr Limits finite_number{-1.7e308, 1.7e308, true, "a finite number"};
 
+// Text as it may stand in a message: control characters as '?', at most `most` bytes of it.
+[[nodiscard]] std::string printable(std::string_view text, std::size_t most = 300);
+
 // What was found, in words: 3.5, "text", a table, a list of 3.
 [[nodiscard]] std::string describe(const toml::node& node);
 
