@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -79,10 +80,14 @@ const Radau& radau() {
   return tableau;
 }
 
-// Components x nodes: the series at all stage angles tau = (n + c_i) h, h = 2 pi/num_cells, as one matrix product.
-MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
-  const Index H = series.num_harmonics(), nodes = num_cells * stages;
-  MatrixXd basis(2 * H + 1, nodes);
+// Basis (1, 2 cos k tau, -2 sin k tau) at all stage angles tau = (n + c_i) h, h = 2 pi/num_cells; kept per thread, since
+// neighbouring points of a sweep use the same one.
+const MatrixXd& stage_basis(Index num_cells, Index H) {
+  thread_local std::map<std::pair<Index, Index>, MatrixXd> kept;
+  const auto key = std::pair(num_cells, H);
+  if (const auto found = kept.find(key); found != kept.end()) return found->second;
+  if (kept.size() > 64) kept.clear();
+  MatrixXd basis(2 * H + 1, num_cells * stages);
   for (Index n = 0; n < num_cells; ++n)
     for (int i = 0; i < stages; ++i) {
       const double tau = two_pi * (double(n) + radau().c(i)) / double(num_cells);
@@ -93,13 +98,19 @@ MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
         column(2 * k) = -2 * std::sin(double(k) * tau);
       }
     }
+  return kept.emplace(key, std::move(basis)).first->second;
+}
+
+// Components x nodes: the series at all stage angles as one matrix product.
+MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
+  const Index H = series.num_harmonics();
   MatrixXd coefficients(series.num_components(), 2 * H + 1);
   coefficients.col(0) = series.c.col(0).real();
   for (Index k = 1; k <= H; ++k) {
     coefficients.col(2 * k - 1) = series.c.col(k).real();
     coefficients.col(2 * k) = series.c.col(k).imag();
   }
-  return coefficients * basis;
+  return coefficients * stage_basis(num_cells, H);
 }
 
 // Smallest distance r from `mu` such that no matrix within `change` of M has an eigenvalue at distance r on a circle
@@ -121,30 +132,35 @@ double eigenvalue_radius(const MatrixXd& M, cplx mu, double change) {
   return HUGE_VAL;
 }
 
-}  // namespace
-
-TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index m, Index num_cells) {
+// Fixed at compile time for one mode, where allocation would cost more than the arithmetic.
+template <int size>
+TurnMaps turn(const FourierSeries& alpha, const FourierSeries& beta, Index m, Index num_cells) {
+  constexpr int rows = size == Eigen::Dynamic ? Eigen::Dynamic : stages * size;
+  constexpr int states = size == Eigen::Dynamic ? Eigen::Dynamic : 2 * size;
+  using Block = Eigen::Matrix<double, size, size>;
   const MatrixXd a = at_stages(alpha, num_cells), b = at_stages(beta, num_cells);
   const double h = two_pi / double(num_cells);
   const auto& [c, A, A2] = radau();
 
   TurnMaps maps;
+  for (Index i = 0; i < m; ++i) maps.damping_trace += beta.c(i + m * i, 0).real();
   maps.scale = VectorXd::Ones(m);
   for (Index i = 0; i < m; ++i) maps.scale(i) = std::max(1.0, std::sqrt(std::abs(alpha.c(i + m * i, 0).real())));
   maps.cells.reserve(std::size_t(num_cells));
-  MatrixXd system(stages * m, stages * m), right(stages * m, 2 * m);
+  Eigen::Matrix<double, rows, rows> system(stages * m, stages * m);
+  Eigen::Matrix<double, rows, states> right(stages * m, 2 * m);
   for (Index n = 0; n < num_cells; ++n) {
     // k_i + beta_i h sum_j A_ij k_j + alpha_i h^2 sum_j (A^2)_ij k_j = -beta_i v_0 - alpha_i (x_0 + c_i h v_0)
     for (int i = 0; i < stages; ++i) {
-      const Eigen::Map<const MatrixXd> alpha_i(a.col(n * stages + i).data(), m, m);
-      const Eigen::Map<const MatrixXd> beta_i(b.col(n * stages + i).data(), m, m);
+      const Eigen::Map<const Block> alpha_i(a.col(n * stages + i).data(), m, m);
+      const Eigen::Map<const Block> beta_i(b.col(n * stages + i).data(), m, m);
       for (int j = 0; j < stages; ++j)
         system.block(i * m, j * m, m, m) = h * A(i, j) * beta_i + h * h * A2(i, j) * alpha_i;
       system.block(i * m, i * m, m, m).diagonal().array() += 1;
       right.block(i * m, 0, m, m) = -alpha_i;
       right.block(i * m, m, m, m) = -beta_i - c(i) * h * alpha_i;
     }
-    const MatrixXd k = system.partialPivLu().solve(right);
+    const Eigen::Matrix<double, rows, states> k = system.partialPivLu().solve(right);
     // Stiffly accurate: the last stage is the end of the cell.
     MatrixXd map = MatrixXd::Zero(2 * m, 2 * m);
     map.topLeftCorner(m, m).setIdentity();
@@ -161,16 +177,55 @@ TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index
   return maps;
 }
 
-TurnExponents turn_exponents(const TurnMaps& maps, double cell_error) {
+// One mode, two exponents: with the determinant known (Liouville), s = -b/2 +- acosh(disc)/(2 pi),
+// disc = tr Phi/(2 sqrt(det Phi)) and det Phi = exp(-2 pi b), whatever the size of the multipliers.
+TurnExponents discriminant(const Eigen::Matrix2d& M, double log_size, double change, double damping) {
+  const double mean = -damping / 2;
+  const double log_disc = std::log(std::max(std::abs(M.trace() / 2), 1e-300)) + log_size - two_pi * mean;
+  if (log_disc > 20) {  // acosh(x) = ln 2x to rounding
+    const double growth = (log_disc + std::numbers::ln2) / two_pi, angle = M.trace() < 0 ? 0.5 : 0;
+    const double error = 2 * change / std::abs(M.trace() / 2) / two_pi;
+    return {{{mean + growth, angle}, {mean - growth, angle}}, {error, error}};
+  }
+  const double scale = std::exp(log_size - two_pi * mean);
+  const double disc = M.trace() / 2 * scale, error = change * scale;
+  const double mean_error = 4 * eps * std::abs(mean);
+  const double size = std::abs(disc), angle = disc < 0 ? 0.5 : 0;
+  TurnExponents result;
+  if (size <= 1) {
+    const double turn = std::acos(std::clamp(disc, -1.0, 1.0)) / two_pi;
+    // Within `error` of +-1 the pair may as well be real.
+    const double slack = (std::acos(std::max(size - error, -1.0)) - std::acos(size)) / two_pi;
+    const double growth = size + error > 1 ? std::acosh(std::max(1.0, size + error)) / two_pi : 0;
+    result.s = {{mean, -turn}, {mean, turn}};
+    result.error = {mean_error + slack + growth, mean_error + slack + growth};
+  } else {
+    const double growth = std::acosh(size) / two_pi;
+    const double up = std::acosh(size + error) / two_pi - growth;
+    const double down = growth - std::acosh(std::max(1.0, size - error)) / two_pi;
+    const double turn = size - error < 1 ? std::acos(std::max(size - error, -1.0)) / two_pi : 0;
+    result.s = {{mean + growth, angle}, {mean - growth, angle}};
+    result.error = {mean_error + std::max(up, down) + turn, mean_error + std::max(up, down) + turn};
+  }
+  return result;
+}
+
+}  // namespace
+
+TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
+  return num_modes == 1 ? turn<1>(alpha, beta, 1, num_cells) : turn<Eigen::Dynamic>(alpha, beta, num_modes, num_cells);
+}
+
+TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leading_only) {
   const Index n = maps.cells.front().rows(), N = Index(maps.cells.size());
 
   // QR sweeps: Q_i R_i = Phi_i Q_(i-1); over the turns Q_0 turns into the ordered invariant subspaces.
   MatrixXd Q = MatrixXd::Identity(n, n), start;
-  std::vector<MatrixXd> R(std::size_t(N), MatrixXd(n, n));
+  std::vector<MatrixXd> R = maps.cells;
   VectorXd logs(n);
   const double apart = std::log(10.0);
   std::vector<Index> ends;  // of blocks: exclusive
-  const int most_sweeps = n == 2 ? 3 : 40;
+  const int most_sweeps = leading_only || n == 2 ? 0 : 16;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     start = Q;
     logs.setZero();
@@ -193,6 +248,10 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error) {
     }
     ends.push_back(n);
     if (settled && sweep > 0) break;
+  }
+  if (ends.empty()) {
+    start = Q;
+    ends.push_back(n);
   }
   const MatrixXd turned = start.transpose() * Q;
 
@@ -227,6 +286,7 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error) {
 
     const MatrixXd M = turned.block(begin, begin, p, p) * product;
     const double change = cell_error * double(N) * transient;  // |M| is 1
+    if (n == 2) return discriminant(M, log_size, change, maps.damping_trace);
     Eigen::VectorXcd mu;
     if (p == 1)
       mu = Eigen::VectorXcd::Constant(1, M(0, 0));

@@ -15,6 +15,7 @@ namespace hb {
 struct TurnMaps {
   std::vector<Eigen::MatrixXd> cells;  // 2m x 2m
   Eigen::VectorXd scale;
+  double damping_trace = 0;  // mean over the turn of tr beta: minus the sum of all exponents (Liouville)
 };
 
 // s = 8 stages, order 15. alpha and beta have m*m components (column-major).
@@ -27,6 +28,7 @@ struct TurnExponents {
   std::vector<double> error;  // effect on each of a relative change `cell_error` of every cell map, amplified by the
                               // turn's transient growth; defective pairs get the square root that they need
 };
-[[nodiscard]] TurnExponents turn_exponents(const TurnMaps& maps, double cell_error);
+// With `leading_only` the product is taken at once, without sweeps: exponents far below the leading one are left out.
+[[nodiscard]] TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leading_only = false);
 
 }  // namespace hb

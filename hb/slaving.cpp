@@ -117,7 +117,7 @@ class Iteration {
   }
 
   // Solves for A, C; false if it diverges. `change` is then a bound on the remaining error of alpha.
-  bool run(int& iterations) {
+  bool run(double tolerance, int& iterations) {
     const Index nm = n_ * m_;
     VectorXd x = VectorXd::Zero(nm * 2 * 2 * (H_ + 1));
     Anderson anderson;
@@ -135,10 +135,10 @@ class Iteration {
       best = std::min(best, change);
       if (iteration == 1) first = change;
       // Rounding reached: nothing is left to gain.
-      if (change <= 2 * eps * scale || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
+      if (change <= std::max(2 * eps, tolerance) * scale || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
         contraction_ = iteration > 1 ? std::pow(std::max(change, eps * eps) / first, 1.0 / (iteration - 1)) : 0;
         change_ = change + tail(x);
-        needs_more_samples_ = !(tail(x) <= 1e-13 * scale);
+        needs_more_samples_ = !(tail(x) <= std::max(1e-13, tolerance) * scale);
         return !needs_more_samples_;
       }
       if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 15) return false;
@@ -159,6 +159,7 @@ class Iteration {
     const double iteration = 2 * change_ / (1 - std::min(contraction_, 0.95));
     reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * largest_A_);
     reduced.beta_error = iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * largest_C_);
+    reduced.others_below = others_below();
     return reduced;
   }
 
@@ -167,6 +168,61 @@ class Iteration {
   double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
 
  private:
+  // What the split leaves for y = x_F - A x_S - C x_S':
+  //     y1' = y2 + (C K_SF) y1,   y2' = -(K_FF - R K_SF) y1 - G_F y2.
+  // Per mode: adiabatic amplitude (sqrt(W) y1, (y2 + g y1)/sqrt(W)), W^2 = K_jj - b^2/4, g = b/2 + W'/(2W), which
+  // grows at most by -b/2 + |W''/(2W) - 3/4 (W'/W)^2|/(2W); overdamped: amplitudes along the two mean roots. Couplings
+  // enter by the norms of their 2x2 blocks. Growth <= mean over the turn of the largest row.
+  double others_below() const {
+    if (!diagonal_damping_) return HUGE_VAL;
+    MatrixXd own(N_, n_), in(N_, n_), out(N_, n_), slope(N_, n_);
+    for (Index j = 0; j < n_; ++j) {
+      const double b = G_(F_[j], F_[j]);
+      ArrayXd k = K(F_[j], F_[j]);
+      for (Index s = 0; s < m_; ++s) k -= R_.col(j + n_ * s).array() * K(S_[s], F_[j]);
+      const ArrayXd W2 = k - b * b / 4;
+      if (W2.minCoeff() > 1e-3 * std::abs(W2.mean())) {
+        const FourierSeries L = fourier::analyse((0.5 * W2.log()).matrix().transpose());  // ln W
+        const ArrayXd W = W2.sqrt();
+        const ArrayXd L1 = fourier::synthesise(fourier::derivative(L), N_).row(0).transpose();
+        const ArrayXd L2 = fourier::synthesise(fourier::derivative(L, 2), N_).row(0).transpose();
+        own.col(j) = -b / 2 + (0.5 * L2 - 0.25 * L1.square()).abs() / (2 * W);
+        in.col(j) = W.rsqrt();
+        out.col(j) = W.rsqrt();
+        slope.col(j) = W.sqrt() + (b / 2 + L1 / 2).abs() * W.rsqrt();
+      } else if (W2.mean() < 0) {
+        const double mean = k.mean(), root = std::sqrt(b * b / 4 - mean);
+        const double r2 = -b / 2 - root, r1 = b > 0 ? mean / r2 : -b / 2 + root;
+        const ArrayXd d = (k - mean) / (2 * root);
+        own.col(j) = (r1 - d).max(r2 + d);
+        in.col(j).setConstant(std::sqrt(2 / root));
+        out.col(j).setConstant(1 / std::sqrt(2 * root));
+        slope.col(j).setConstant(std::max(std::abs(r1), std::abs(r2)) / std::sqrt(2 * root));
+      } else {
+        return HUGE_VAL;
+      }
+    }
+    ArrayXd largest = ArrayXd::Constant(N_, -HUGE_VAL);
+    for (Index j = 0; j < n_; ++j) {
+      ArrayXd row = own.col(j).array();
+      for (Index i = 0; i < n_; ++i) {
+        ArrayXd k = i == j ? ArrayXd(ArrayXd::Zero(N_)) : ArrayXd(K(F_[j], F_[i]));
+        ArrayXd nu = ArrayXd::Zero(N_);
+        for (Index s = 0; s < m_; ++s) {
+          if (i != j) k -= R_.col(j + n_ * s).array() * K(S_[s], F_[i]);
+          nu += C_.col(j + n_ * s).array() * K(S_[s], F_[i]);
+        }
+        row += (k.abs() * out.col(j).array() + nu.abs() * slope.col(j).array()) * in.col(i).array();
+      }
+      largest = largest.max(row);
+    }
+    // The function has kinks: allow for the quadrature by the difference to half the nodes.
+    double half = 0;
+    for (Index t = 0; t < N_; t += 2) half += largest(t);
+    half /= double((N_ + 1) / 2);
+    return largest.mean() + 2 * std::abs(largest.mean() - half) + 1e-9 * largest.abs().maxCoeff();
+  }
+
   std::size_t slot(Index j, Index l, Index k) const { return std::size_t((j + n_ * l) * (H_ + 1) + k); }
 
   // The vector x holds A_k then weight * C_k for every (j, l): real and imaginary parts.
@@ -223,7 +279,8 @@ class Iteration {
     const auto C = [&](Index j, Index l) { return samples.col(2 * nm + j + n_ * l).array(); };
     const auto C1 = [&](Index j, Index l) { return samples.col(3 * nm + j + n_ * l).array(); };
     largest_A_ = samples.leftCols(nm).cwiseAbs().maxCoeff();
-    largest_C_ = samples.middleCols(2 * nm, nm).cwiseAbs().maxCoeff();
+    C_ = samples.middleCols(2 * nm, nm);
+    largest_C_ = C_.cwiseAbs().maxCoeff();
 
     for (int pass = 0; pass < (diagonal_damping_ ? 1 : 3); ++pass) {
       for (Index l = 0; l < m_; ++l)
@@ -304,7 +361,7 @@ class Iteration {
   Index I_;
   MatrixXd K_;            // N x I*I
   MatrixXd alpha_, beta_;  // N x m*m
-  MatrixXd P_, R_;         // N x n*m
+  MatrixXd P_, R_, C_;     // N x n*m
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
   bool needs_more_samples_ = false;
@@ -313,12 +370,13 @@ class Iteration {
 
 }  // namespace
 
-ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow) {
+ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, double tolerance) {
   const Index I = system.num_modes();
   const Partition p = partition(I, slow);
   if (p.F.empty()) {
     ReducedSystem all;
     all.converged = true;
+    all.others_below = -HUGE_VAL;
     all.num_modes = I;
     all.alpha = FourierSeries(I * I, system.K.num_harmonics());
     all.beta = FourierSeries(I * I, 0);
@@ -335,7 +393,7 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow) 
   const Index start = fft_length(2 * system.K.num_harmonics() + 16);
   for (Index N = start; N <= 4 * start && N <= 4096; N *= 2) {
     Iteration iteration(system, p, N);
-    if (iteration.run(reduced.iterations)) {
+    if (iteration.run(tolerance, reduced.iterations)) {
       const int iterations = reduced.iterations;
       reduced = iteration.result();
       reduced.iterations = iterations;

@@ -17,12 +17,17 @@ struct ReducedSystem {
   FourierSeries alpha, beta;         // m*m components, column-major
   double alpha_error = 0;            // bounds on max_tau of the error of any entry (truncation, iteration, rounding)
   double beta_error = 0;
+  // Upper bound on Re s of all the other 2(I - m) exponents (they belong to what is left when A, C are split off), by
+  // the logarithmic norm in adiabatic coordinates averaged over the turn; infinite if no bound was found.
+  double others_below = 0;
   int iterations = 0;
 };
 
 // Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
-// the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow.
-[[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow);
+// the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
+// changes by less than `tolerance` relative to its largest value, or to rounding.
+[[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow,
+                                     double tolerance = 0);
 
 // How strongly mode j pulls at the kept modes: largest |K_sj,k| |K_js,k|/|D_j(lambda_s + i k)|/|2 lambda_s + b_s| over
 // kept modes s and harmonics k; the largest should be kept next.

@@ -22,7 +22,10 @@ enum class StabilityMethod {
 struct StabilityOptions {
   double tolerance = 1e-9;  // wanted error of the growth rate, relative to max(|growth|, Omega-scaled 1)
   StabilityMethod method = StabilityMethod::automatic;
-  bool leading_only = false;  // growth rate and verdict only: skip exponents that cannot lead
+  // Growth rate and verdict only: exponents that a bound shows to lie below the leading ones are not computed.
+  bool leading_only = false;
+  // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
+  std::vector<int> keep;
 };
 
 // One Floquet exponent lambda: solutions e^{lambda t} p(t), p of period 2 pi/Omega.
@@ -43,6 +46,7 @@ struct Stability {
   Verdict verdict = Verdict::undecided;
   bool converged = false;           // growth_error within what was asked
   StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
+  std::vector<int> kept;            // modes that the leading exponents were found with, the others slaved to them
   std::string evidence;             // one sentence: what was done
 };
 

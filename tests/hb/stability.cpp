@@ -219,6 +219,21 @@ TEST(Stability, MethodsAgreeWithinTheirBarsOnRandomSystems) {
   EXPECT_GE(decided, 50);
 }
 
+TEST(Stability, LeadingExponentsAloneAreThoseOfTheFullSet) {
+  std::mt19937 generator(11);
+  int skipped = 0;
+  for (int i = 0; i < 80; ++i) {
+    const HillSystem system = random_system(generator, 5);
+    const Stability all = analyse_stability(system, 1.0);
+    const Stability leading = analyse_stability(system, 1.0, {.leading_only = true});
+    EXPECT_LE(std::abs(all.growth_rate - leading.growth_rate), all.growth_error + leading.growth_error) << "system " << i;
+    if (all.verdict != Verdict::undecided && leading.verdict != Verdict::undecided)
+      EXPECT_EQ(all.verdict, leading.verdict) << "system " << i;
+    skipped += leading.exponents.size() < all.exponents.size();
+  }
+  EXPECT_GE(skipped, 10);
+}
+
 TEST(Stability, CombinationResonanceGivesAComplexUnstablePair) {
   // Two oscillators, omega = 1 and 2, cross-coupled by 0.5 cos Omega t: sum combination at Omega = 3.
   HillSystem system;
