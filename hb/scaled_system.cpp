@@ -47,7 +47,8 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
 
 // Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean.
 FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
-  const Eigen::VectorXd scale = mean_of(K, I).diagonal().cwiseAbs().cwiseMax(K.c.cwiseAbs().maxCoeff() * 1e-8).cwiseSqrt();
+  const Eigen::VectorXd scale =
+      mean_of(K, I).diagonal().cwiseAbs().cwiseMax(K.c.cwiseAbs().maxCoeff() * 1e-8).cwiseSqrt();
   const auto negligible = [&](Eigen::Index k) {
     for (Eigen::Index j = 0; j < I; ++j)
       for (Eigen::Index i = 0; i < I; ++i)
@@ -64,8 +65,7 @@ Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index n
   Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
   double factor = 1;
   for (const FourierSeries& part : powers) {
-    if (part.c.size() > 0)
-      size += 2 * factor * (part.c.real().cwiseAbs() + part.c.imag().cwiseAbs()).rowwise().sum();
+    if (part.c.size() > 0) size += 2 * factor * (part.c.real().cwiseAbs() + part.c.imag().cwiseAbs()).rowwise().sum();
     factor *= speed;
   }
   return size;

@@ -9,15 +9,15 @@
 namespace hb {
 
 struct ScaledSystem {
-  double speed = 0;           // Omega, rad per unit time
-  Eigen::MatrixXd T;          // q = T x
+  double speed = 0;  // Omega, rad per unit time
+  Eigen::MatrixXd T;  // q = T x
   Eigen::MatrixXd T_inverse;  // x = T_inverse q
-  Eigen::MatrixXd G;          // T^-1 M^-1 B T / Omega
-  FourierSeries K;            // T^-1 M^-1 C T / Omega^2: I*I components column-major; harmonics below rounding cut
-  Eigen::MatrixXd K_rounding; // bound on the rounding error of K, entry by entry: sum over all harmonics of |error|
-  Eigen::VectorXd f_rounding; // the same of f
-  FourierSeries f;            // T^-1 M^-1 h / (Omega^2 load_scale): I components, largest |coefficient| about 1
-  double load_scale = 0;      // 0: no load; then f is empty
+  Eigen::MatrixXd G;  // T^-1 M^-1 B T / Omega
+  FourierSeries K;  // T^-1 M^-1 C T / Omega^2: I*I components column-major; harmonics below rounding cut
+  Eigen::MatrixXd K_rounding;  // bound on the rounding error of K, entry by entry: sum over all harmonics of |error|
+  Eigen::VectorXd f_rounding;  // the same of f
+  FourierSeries f;  // T^-1 M^-1 h / (Omega^2 load_scale): I components, largest |coefficient| about 1
+  double load_scale = 0;  // 0: no load; then f is empty
   bool diagonal_damping = true;
 
   Eigen::Index num_modes() const { return G.rows(); }

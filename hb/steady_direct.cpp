@@ -65,8 +65,10 @@ Eigen::MatrixXcd DirectInverse::block(Index row, Index column, Index rows, Index
       if (std::abs(m) > P_) continue;
       const auto coefficient = s.K.col(std::abs(m)).reshaped(I, I);
       auto target = result.block(I * k, I * l, I, I);
-      if (m >= 0) target = coefficient;
-      else target = coefficient.conjugate();
+      if (m >= 0)
+        target = coefficient;
+      else
+        target = coefficient.conjugate();
       if (m == 0) {
         const double n = static_cast<double>(row + k);
         target += std::complex<double>(0, n) * s.G.cast<std::complex<double>>();
@@ -164,7 +166,9 @@ void DirectInverse::substitute(const Spectrum& rhs, Spectrum& z) const {
 
 bool DirectInverse::solve(const Spectrum& rhs, double relative, Spectrum& z) {
   const Index H = A_.num_harmonics();
-  const auto size = [&](const Spectrum& r) { return r.topRows(H + 1).cwiseQuotient(A_.magnitude().cwiseMax(1e-300).cast<std::complex<double>>()).norm(); };
+  const auto size = [&](const Spectrum& r) {
+    return r.topRows(H + 1).cwiseQuotient(A_.magnitude().cwiseMax(1e-300).cast<std::complex<double>>()).norm();
+  };
   substitute(rhs, z);
   const double aim = relative * size(rhs);
   Spectrum product, correction;

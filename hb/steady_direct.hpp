@@ -31,11 +31,11 @@ class DirectInverse : public Inverse {
   Eigen::MatrixXcd block(Eigen::Index row, Eigen::Index column, Eigen::Index rows, Eigen::Index columns) const;
 
   Operator& A_;
-  Eigen::Index P_ = 0;                // harmonics of K in the factors
-  Eigen::Index c_ = 0, p_ = 0;        // last harmonic of the core, harmonics per block
+  Eigen::Index P_ = 0;  // harmonics of K in the factors
+  Eigen::Index c_ = 0, p_ = 0;  // last harmonic of the core, harmonics per block
   std::vector<Eigen::PartialPivLU<Eigen::MatrixXcd>> S_;  // outermost last
-  std::vector<Eigen::MatrixXcd> up_;                      // S_g^-1 A_{g,g-1}
-  std::vector<Eigen::MatrixXcd> down_;                    // A_{g-1,g}
+  std::vector<Eigen::MatrixXcd> up_;  // S_g^-1 A_{g,g-1}
+  std::vector<Eigen::MatrixXcd> down_;  // A_{g-1,g}
   Eigen::PartialPivLU<Eigen::MatrixXd> core_;
   bool regular_ = true;
 };

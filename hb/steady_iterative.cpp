@@ -17,9 +17,7 @@ constexpr double core_threshold = 0.5;
 constexpr std::size_t largest_core = 64;  // pairs
 constexpr int most_iterations = 60;
 
-double turn_norm(const Spectrum& x) {
-  return sqrt(2 * x.squaredNorm() - x.row(0).squaredNorm());
-}
+double turn_norm(const Spectrum& x) { return sqrt(2 * x.squaredNorm() - x.row(0).squaredNorm()); }
 
 }  // namespace
 
@@ -186,8 +184,10 @@ bool IterativeInverse::gmres(const Spectrum& b, double aim, Spectrum& z) {
     g(j) *= cosines(j);
     used = j + 1;
     reached = std::abs(g(j + 1)) <= aim;
-    if (rest > 0) V.col(j + 1) /= rest;
-    else break;
+    if (rest > 0)
+      V.col(j + 1) /= rest;
+    else
+      break;
   }
   const Eigen::VectorXd y = R.topLeftCorner(used, used).triangularView<Eigen::Upper>().solve(g.head(used));
   const Eigen::VectorXd combination = V.leftCols(used) * y;

@@ -24,8 +24,8 @@ class IterativeInverse : public Inverse {
     return {reinterpret_cast<const double*>(x.data()), 2 * x.size()};
   }
   void make_core();
-  void precondition(Spectrum& r) const;          // M^-1 r
-  void apply(const Spectrum& x, Spectrum& y);    // M^-1 A x
+  void precondition(Spectrum& r) const;  // M^-1 r
+  void apply(const Spectrum& x, Spectrum& y);  // M^-1 A x
   bool fixed_point(const Spectrum& rhs, double relative, Spectrum& z, Spectrum& change, double& size);
   bool gmres(const Spectrum& b, double aim, Spectrum& z);
 

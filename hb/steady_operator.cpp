@@ -173,8 +173,7 @@ Eigen::VectorXd Operator::rounding(const Spectrum& x) const {
   const Eigen::VectorXd flat = noise();
   Eigen::VectorXd result = 8 * eps * wiener_norms(x);
   for (Eigen::Index i = 0; i < I; ++i)
-    result(i) += data(i) / magnitude_.col(i).minCoeff() +
-                 2 * flat(i) * magnitude_.col(i).cwiseInverse().sum();
+    result(i) += data(i) / magnitude_.col(i).minCoeff() + 2 * flat(i) * magnitude_.col(i).cwiseInverse().sum();
   return result;
 }
 

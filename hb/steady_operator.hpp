@@ -21,16 +21,16 @@ using Spectrum = Eigen::MatrixXcd;
 
 // Scaled system in weighted coordinates y = weight * x; shared by all windows.
 struct WeightedSystem {
-  Eigen::Index I = 0, P = 0;   // components; harmonics of K
-  Eigen::VectorXd weight;      // powers of two
-  Eigen::MatrixXcd K;          // I*I x (P+1)
-  Eigen::MatrixXd G, G_off;    // damping; the same without its diagonal
+  Eigen::Index I = 0, P = 0;  // components; harmonics of K
+  Eigen::VectorXd weight;  // powers of two
+  Eigen::MatrixXcd K;  // I*I x (P+1)
+  Eigen::MatrixXd G, G_off;  // damping; the same without its diagonal
   bool diagonal_damping = true;
-  Eigen::VectorXd mean;        // w_i^2 = mean K_ii
-  Spectrum f;                  // (F+1) x I
+  Eigen::VectorXd mean;  // w_i^2 = mean K_ii
+  Spectrum f;  // (F+1) x I
   Eigen::MatrixXd K_rounding;  // sum over harmonics of |error| of K, entry by entry
   Eigen::VectorXd f_rounding;  // the same of f
-  Eigen::VectorXd coupling;    // upper bound of sum_k max_tau |E_ik|, the largest part of row i
+  Eigen::VectorXd coupling;  // upper bound of sum_k max_tau |E_ik|, the largest part of row i
   Eigen::VectorXd own_coupling;  // upper bound of max_tau |E_ii|
 
   std::complex<double> D(Eigen::Index i, Eigen::Index k) const {
@@ -57,8 +57,8 @@ class Operator {
   Eigen::Index num_harmonics() const { return H_; }
   Eigen::Index last_row() const { return H_ + system_->P; }  // A x is zero beyond
   const WeightedSystem& system() const { return *system_; }
-  const Spectrum& D() const { return D_; }                          // (H+1) x I
-  const Eigen::MatrixXd& magnitude() const { return magnitude_; }   // (H+1) x I, |D| without cancellation
+  const Spectrum& D() const { return D_; }  // (H+1) x I
+  const Eigen::MatrixXd& magnitude() const { return magnitude_; }  // (H+1) x I, |D| without cancellation
 
   // E x, rows 0..num_rows (at most last_row()); free of aliasing.
   void couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result);

@@ -151,7 +151,7 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
         if (k > 0) sum_im[at] -= static_cast<Real>(exact_im(k)) + rest_im(k);
       }
       total += c_size * static_cast<Real>(q_size(j)) *
-              (static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits) + 2 * real_eps);
+               (static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits) + 2 * real_eps);
     }
     for (Index k = 0; k <= rows; ++k) {
       const auto at = static_cast<std::size_t>(k);

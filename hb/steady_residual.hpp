@@ -6,7 +6,7 @@
 namespace hb::steady {
 
 struct AccurateResidual {
-  Eigen::MatrixXcd r;        // (rows+1) x I: (h - M q'' - B q' - C q) / scale, rounded to double
+  Eigen::MatrixXcd r;  // (rows+1) x I: (h - M q'' - B q' - C q) / scale, rounded to double
   Eigen::MatrixXd rounding;  // same shape: bound on the error of r that is left; what
                              // is known as a sum over harmonics only stands in row 0
 };

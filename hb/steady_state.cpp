@@ -187,7 +187,8 @@ class Solver {
     const double largest = steady::largest_over_turn(x * T_.transpose());
     const double load = steady::wiener_norms(system_.f).sum();
     double tail = 0;
-    for (Index k = H + 1; k < r.rows(); ++k) tail += 2 * steady::tail_slack(A, response) * steady::tail_row(A, r, k, T_);
+    for (Index k = H + 1; k < r.rows(); ++k)
+      tail += 2 * steady::tail_slack(A, response) * steady::tail_row(A, r, k, T_);
     const double inner = steady::amplified(A, r.topRows(H + 1).cwiseAbs(), response, T_) +
                          steady::amplified(A.rounding(x), response, T_);
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
@@ -196,7 +197,8 @@ class Solver {
     state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
     Eigen::MatrixXcd u = (given_.T * system_.weight.cwiseInverse().asDiagonal() * x.transpose());
     u *= given_.scale;
-    if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound)) refine(A, inverse, response, u, state, wanted);
+    if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound))
+      refine(A, inverse, response, u, state, wanted);
     state.q = result(u);
   }
 
@@ -216,8 +218,8 @@ class Solver {
       const steady::AccurateResidual accurate =
           steady::accurate_residual(*given_.system, given_.speed, FourierSeries(u), given_.scale);
       const Spectrum r = accurate.r * (rows / (given_.speed * given_.speed)).transpose();
-      const Eigen::MatrixXd rounding =
-          accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) + 8 * eps * static_cast<double>(system_.I) * r.cwiseAbs();
+      const Eigen::MatrixXd rounding = accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) +
+                                       8 * eps * static_cast<double>(system_.I) * r.cwiseAbs();
       Spectrum change;
       inverse.solve(r.topRows(H + 1), solve_accuracy, change);
       if (!change.allFinite()) break;
@@ -228,10 +230,11 @@ class Solver {
       if (pass == 0 && (wanted = harmonics_for(A, x, r, Eigen::VectorXd::Zero(system_.I), response)) > H) return;
       // |A^-1 r| <= |change| + |A^-1 (r - A change)|
       const Spectrum rest = A.window_residual(r, change);
-      const double inner = steady::size_in_q(change, T_) +
-                           steady::amplified(A, rest.cwiseAbs() + rounding.topRows(H + 1), response, T_);
+      const double inner =
+          steady::size_in_q(change, T_) + steady::amplified(A, rest.cwiseAbs() + rounding.topRows(H + 1), response, T_);
       // What the last multiplication by T adds when u is not q itself.
-      const double conversion = given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
+      const double conversion =
+          given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
       const double bound = (tail + inner + conversion) / largest;
       if (bound < state.error_bound) {
         state.error_bound = bound;
@@ -288,9 +291,14 @@ SteadyState at_rest(Index num_modes) {
 }
 
 void require(const SteadyOptions& options) {
-  if (!(options.tolerance > 0)) throw std::invalid_argument("SteadyOptions: tolerance must be positive, is " + std::to_string(options.tolerance));
-  if (!(options.num_harmonics >= 0)) throw std::invalid_argument("SteadyOptions: num_harmonics must not be negative, is " + std::to_string(options.num_harmonics));
-  if (!(options.max_harmonics >= 1)) throw std::invalid_argument("SteadyOptions: max_harmonics must be positive, is " + std::to_string(options.max_harmonics));
+  if (!(options.tolerance > 0))
+    throw std::invalid_argument("SteadyOptions: tolerance must be positive, is " + std::to_string(options.tolerance));
+  if (!(options.num_harmonics >= 0))
+    throw std::invalid_argument("SteadyOptions: num_harmonics must not be negative, is " +
+                                std::to_string(options.num_harmonics));
+  if (!(options.max_harmonics >= 1))
+    throw std::invalid_argument("SteadyOptions: max_harmonics must be positive, is " +
+                                std::to_string(options.max_harmonics));
 }
 
 }  // namespace
@@ -299,8 +307,8 @@ SteadyState solve_steady_state(const HillSystem& system, double speed, const Ste
   require(options);
   const ScaledSystem scaled = scale_system(system, speed);
   if (scaled.load_scale == 0) return at_rest(system.num_modes());
-  const Given given{&system, speed, scaled.load_scale, scaled.T,
-                    scaled.T_inverse * system.mass.partialPivLu().inverse(), true};
+  const Given given{
+      &system, speed, scaled.load_scale, scaled.T, scaled.T_inverse * system.mass.partialPivLu().inverse(), true};
   return Solver(scaled, given, options).run();
 }
 

@@ -12,34 +12,34 @@ namespace hb {
 
 enum class SteadyMethod {
   automatic,  // iterative by measured contraction, direct behind it
-  direct,     // half-spectrum block elimination from the outer harmonics, one refinement at least
+  direct,  // half-spectrum block elimination from the outer harmonics, one refinement at least
   iterative,  // FFT products, per-harmonic diagonal preconditioner: fixed point, then GMRES with a small core
 };
 
 struct SteadyOptions {
-  double tolerance = 1e-10;     // wanted: max_t |error| / max_t |q|
-  int num_harmonics = 0;        // 0: chosen by the solver
-  int max_harmonics = 4096;     // give up beyond
+  double tolerance = 1e-10;  // wanted: max_t |error| / max_t |q|
+  int num_harmonics = 0;  // 0: chosen by the solver
+  int max_harmonics = 4096;  // give up beyond
   SteadyMethod method = SteadyMethod::automatic;
 };
 
 enum class SteadyStatus {
-  converged,       // error_bound <= tolerance
-  not_reached,     // a result, but error_bound > tolerance
-  singular,        // at resonance without damping: no (unique) periodic solution to working accuracy; q is empty
+  converged,  // error_bound <= tolerance
+  not_reached,  // a result, but error_bound > tolerance
+  singular,  // at resonance without damping: no (unique) periodic solution to working accuracy; q is empty
 };
 
 struct SteadyState {
   SteadyStatus status = SteadyStatus::not_reached;
-  FourierSeries q;              // I components over the crank angle, given units
-  int num_harmonics = 0;        // H used
-  double error_bound = 0;       // bound on max_t |error| / max_t |q| (both in the norm max_i |q_i|), rounding included
-  double residual = 0;          // sum over harmonics of |exact residual|, relative to |f|
+  FourierSeries q;  // I components over the crank angle, given units
+  int num_harmonics = 0;  // H used
+  double error_bound = 0;  // bound on max_t |error| / max_t |q| (both in the norm max_i |q_i|), rounding included
+  double residual = 0;  // sum over harmonics of |exact residual|, relative to |f|
   // Nearness to resonance: smallest singular value (estimate) of the preconditioned operator D^-1 A; 1 far away,
   // 0 at resonance. Response to a change of load grows like 1/resonance_distance.
   double resonance_distance = 1;
   SteadyMethod method = SteadyMethod::direct;  // the one that gave the result
-  int iterations = 0;           // matrix products, or factorisations if direct
+  int iterations = 0;  // matrix products, or factorisations if direct
 };
 
 [[nodiscard]] SteadyState solve_steady_state(const HillSystem& system, double speed, const SteadyOptions& options = {});

@@ -15,8 +15,8 @@ using Matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 using Vector = Eigen::Matrix<long double, Eigen::Dynamic, 1>;
 
 struct Response {
-  Matrix cosine, sine;       // I x (H+1): q = sum cosine_k cos k tau + sine_k sin k tau
-  long double change = 0;    // size of the last refinement, relative
+  Matrix cosine, sine;  // I x (H+1): q = sum cosine_k cos k tau + sine_k sin k tau
+  long double change = 0;  // size of the last refinement, relative
 };
 
 // Coefficient of cos m tau (and sin m tau) of one component at one speed.
@@ -96,8 +96,7 @@ inline Response dense_harmonic_balance(const HillSystem& system, double speed, E
   b = row.asDiagonal() * b;
   const long double load = b.cwiseAbs().maxCoeff();
   b /= load;
-  for (Eigen::Index i = 0; i < n; ++i)
-    column(i) = std::exp2(-std::round(std::log2(A.col(i).cwiseAbs().maxCoeff())));
+  for (Eigen::Index i = 0; i < n; ++i) column(i) = std::exp2(-std::round(std::log2(A.col(i).cwiseAbs().maxCoeff())));
   A = A * column.asDiagonal();
   const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A.cast<double>());
   Vector x = Vector::Zero(n), r = b;

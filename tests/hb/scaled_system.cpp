@@ -30,8 +30,8 @@ TEST(ScaledSystem, IsTheSystemInOtherCoordinates) {
   const ScaledSystem scaled = scale_system(system, Omega);
   const Eigen::Vector2d x(0.4, -1.1), x1(0.3, 0.8), x2(-0.7, 0.2);
   const Eigen::VectorXd K = fourier::evaluate(scaled.K, tau), C = fourier::evaluate(stiffness_at(system, Omega), tau);
-  const Eigen::VectorXd r = x2 + scaled.G * x1 + Eigen::Map<const Eigen::MatrixXd>(K.data(), 2, 2) * x -
-                            fourier::evaluate(scaled.f, tau);
+  const Eigen::VectorXd r =
+      x2 + scaled.G * x1 + Eigen::Map<const Eigen::MatrixXd>(K.data(), 2, 2) * x - fourier::evaluate(scaled.f, tau);
   const Eigen::MatrixXd T = scaled.load_scale * scaled.T;
   const Eigen::VectorXd given = Omega * Omega * system.mass * T * x2 + Omega * system.damping * T * x1 +
                                 Eigen::Map<const Eigen::MatrixXd>(C.data(), 2, 2) * T * x -

@@ -78,7 +78,8 @@ HillSystem random_system(const Family& family, Random& random) {
   for (Index k = 0; k <= P; ++k)
     for (Index i = 0; i < I; ++i)
       for (Index j = 0; j <= i; ++j) {
-        const double size = family.coupling * std::pow(0.6, static_cast<double>(k)) * std::sqrt(stiffness(i) * stiffness(j));
+        const double size =
+            family.coupling * std::pow(0.6, static_cast<double>(k)) * std::sqrt(stiffness(i) * stiffness(j));
         const std::complex<double> c(size * random(-1, 1), k > 0 ? size * random(-1, 1) : 0.0);
         s.stiffness[0].c(i + I * j, k) += c;
         if (i != j) s.stiffness[0].c(j + I * i, k) += family.symmetric ? c : c * random(-1, 1);
@@ -178,7 +179,9 @@ TEST(SteadyState, ErrorBoundCoversTheErrorOfRandomSystems) {
     const HillSystem system = random_system(family, random);
     SteadyOptions options;
     options.tolerance = std::pow(10, -std::floor(random(2, 14)));
-    options.method = trial % 3 == 0 ? SteadyMethod::direct : trial % 3 == 1 ? SteadyMethod::iterative : SteadyMethod::automatic;
+    options.method = trial % 3 == 0   ? SteadyMethod::direct
+                     : trial % 3 == 1 ? SteadyMethod::iterative
+                                      : SteadyMethod::automatic;
     expect_covered(system, random(0.3, 3), options, "trial " + std::to_string(trial));
   }
 }
@@ -186,8 +189,8 @@ TEST(SteadyState, ErrorBoundCoversTheErrorOfRandomSystems) {
 TEST(SteadyState, ErrorBoundCoversTheErrorNextToResonance) {
   Random random(8);
   for (int trial = 0; trial < 60; ++trial) {
-    Family family{.modes = 1 + trial % 4, .stiffness_harmonics = 2, .load_harmonics = 3, .damping_ratio = 0,
-                  .coupling = 0.03};
+    Family family{
+        .modes = 1 + trial % 4, .stiffness_harmonics = 2, .load_harmonics = 3, .damping_ratio = 0, .coupling = 0.03};
     HillSystem system = random_system(family, random);
     const double w = 1 + trial % 3 + std::pow(10, random(-11, -2));
     system.stiffness[0].c(0, 0) = w * w * system.mass(0, 0);
@@ -209,9 +212,11 @@ TEST(SteadyState, AskedToleranceIsMetFrom1e2To1e13) {
 TEST(SteadyState, MethodsAgree) {
   Random random(9);
   for (int trial = 0; trial < 12; ++trial) {
-    const HillSystem system = random_system({.modes = 1 + trial, .stiffness_harmonics = 3, .load_harmonics = 2, .coupling = 0.05}, random);
+    const HillSystem system =
+        random_system({.modes = 1 + trial, .stiffness_harmonics = 3, .load_harmonics = 2, .coupling = 0.05}, random);
     const SteadyState direct = solve_steady_state(system, 1, {.tolerance = 1e-11, .method = SteadyMethod::direct});
-    const SteadyState iterative = solve_steady_state(system, 1, {.tolerance = 1e-11, .method = SteadyMethod::iterative});
+    const SteadyState iterative =
+        solve_steady_state(system, 1, {.tolerance = 1e-11, .method = SteadyMethod::iterative});
     ASSERT_EQ(direct.status, SteadyStatus::converged) << trial;
     if (iterative.status != SteadyStatus::converged) continue;
     const Index H = std::max(direct.q.num_harmonics(), iterative.q.num_harmonics());
@@ -243,7 +248,8 @@ TEST(SteadyState, SameInputSameBits) {
 
 TEST(SteadyState, LoadWithHundredsOfHarmonics) {
   Random random(11);
-  const HillSystem system = random_system({.modes = 2, .stiffness_harmonics = 2, .load_harmonics = 300, .coupling = 0.05}, random);
+  const HillSystem system =
+      random_system({.modes = 2, .stiffness_harmonics = 2, .load_harmonics = 300, .coupling = 0.05}, random);
   const SteadyState state = solve_steady_state(system, 1, {.tolerance = 1e-10});
   EXPECT_EQ(state.status, SteadyStatus::converged);
   EXPECT_GE(state.num_harmonics, 300);
@@ -327,7 +333,8 @@ TEST(SteadyState, SixLinkErrorBoundsHoldFrom1To30000Rpm) {
       for (const double rpm : {1.0, 300.0, 1500.0, 3000.0, 6000.0, 30000.0}) {
         const HillSystem system = mechanism.rod(rod, 5);
         const SteadyState state = solve_steady_state(system, radians_per_second(rpm), {.tolerance = 1e-12});
-        const std::string what = "J " + std::to_string(J) + ", rod " + std::to_string(rod) + ", rpm " + std::to_string(rpm);
+        const std::string what =
+            "J " + std::to_string(J) + ", rod " + std::to_string(rod) + ", rpm " + std::to_string(rpm);
         EXPECT_EQ(state.status, SteadyStatus::converged) << what << ", bound " << state.error_bound;
         EXPECT_LE(error_of(state, system, radians_per_second(rpm)), state.error_bound) << what;
       }
