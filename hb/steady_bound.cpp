@@ -9,9 +9,10 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Two solves estimate the norm of the inverse from below; random systems showed a factor of 2 at most to be missing.
+// Two solves estimate the norm of the inverse from below; this factor is a choice, its coverage is tested, not proved.
 constexpr double safety = 3;
-// Largest amplification granted to omitted rows that are coupled more strongly than their diagonal.
+// Cap on the amplification granted to omitted rows that are coupled more strongly than their diagonal: a choice, not a
+// bound; coverage is tested on such systems.
 constexpr double most_tail_slack = 30;
 
 double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) { return (T.cwiseAbs() * sizes).maxCoeff(); }
