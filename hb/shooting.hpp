@@ -39,6 +39,7 @@ struct ShootingResult {
   ShootingStatus status = ShootingStatus::failed;
   std::string message;  // what stopped it; empty if converged
   PeriodicOrbit orbit;
+  PeriodicOrbit coarser;  // of the less accurate run: what is computed from both shows its own error
   double q_error = 0;   // estimate of max_t |error of q| / max_t |q|
   double q1_error = 0;  // of q', relative to max_t |q'|
   std::vector<Exponent> exponents;  // real part descending; those that the integration resolves
