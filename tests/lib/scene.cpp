@@ -208,7 +208,8 @@ TEST(Scene, DyadsHangOnPointsOfCouplersAndSliders) {
 TEST(Scene, SliderForceFromAFilePassesThroughItsRows) {
   const Scene scene = read_scene(scenes / "slider_crank.toml");
   EXPECT_TRUE(std::holds_alternative<AutoModes>(scene.analysis.modes));
-  const Slider& piston = std::get<Slider>(linkage_of(scene).dyads[0].closing);
+  const Linkage linkage = linkage_of(scene);
+  const Slider& piston = std::get<Slider>(linkage.dyads[0].closing);
   for (const int degrees : {0, 5, 90, 355}) {
     const double tau = degrees * pi / 180, force = -2e6 * std::exp(3 * (std::cos(tau - 0.2) - 1));
     EXPECT_NEAR(fourier::evaluate(piston.force, tau)(0), force, 0.01) << degrees;  // the file has 9 digits
