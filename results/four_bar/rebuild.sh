@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
-hb steady scene.toml --rpm 300 --out 300rpm >300rpm.txt
+
+../../tools/study_run.sh 300rpm '*.svg joint_forces.csv response_*.csv torque.csv' scene.toml --rpm 300

@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
-for rpm in 300 2400 3000; do
-  hb steady scene.toml --rpm $rpm --out ${rpm}rpm >${rpm}rpm.txt
+
+../../tools/study_run.sh 300rpm 'phase_*.svg response_*.csv' scene.toml --rpm 300
+for rpm in 2400 3000; do
+  ../../tools/study_run.sh ${rpm}rpm 'forces_*.svg joint_forces.csv' scene.toml --rpm $rpm
 done

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
+
 awk -f gas_force.awk >gas_force.csv
-hb steady scene.toml --rpm 9000 --out 9000rpm >9000rpm.txt
+../../tools/study_run.sh 9000rpm '*.svg joint_forces.csv response_*.csv torque.csv' scene.toml --rpm 9000
