@@ -1,6 +1,7 @@
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(tomlplusplus REQUIRED)
 find_package(fmt REQUIRED)
+find_package(NLopt REQUIRED)
 find_package(SUNDIALS 6.4 REQUIRED COMPONENTS cvode nvecserial)
 
 include(${CMAKE_CURRENT_LIST_DIR}/fftw3.cmake)

@@ -15,8 +15,11 @@ constexpr Key crank_key_list[] = {{"name"}, {"pivot"},   {"length"},        {"ma
                                   {"com"},  {"inertia"}, {"inertia_pivot"}, {"points", &points}};
 constexpr TableKind crank{"crank", crank_key_list};
 
-constexpr Key elastic_keys[] = {{"E"},         {"area"},     {"J"}, {"density"}, {"damping_internal"},
-                                {"damping_x"}, {"damping_y"}};
+constexpr Key section_keys[] = {{"shape"}, {"width"}, {"height"}, {"diameter"}, {"wall"}};
+constexpr TableKind section{"section", section_keys};
+
+constexpr Key elastic_keys[] = {
+    {"E"}, {"area"}, {"J"}, {"section", &section}, {"density"}, {"damping_internal"}, {"damping_x"}, {"damping_y"}};
 constexpr TableKind elastic{"elastic", elastic_keys};
 
 constexpr Key coupler_keys[] = {{"name"},

@@ -6,6 +6,7 @@
 
 #include "lib/periodic_samples.hpp"
 #include "lib/scene_parts.hpp"
+#include "lib/section.hpp"
 #include "lib/table_file.hpp"
 
 namespace hb {
@@ -152,6 +153,45 @@ class LinkageReader {
     }
   }
 
+  // Area and J: given as such, or by the section's shape.
+  SectionValues read_section(const TableView& elastic) {
+    const auto section = elastic.table("section");
+    if (!section) {
+      if (elastic.has("section")) return {1, 1};
+      return {elastic.need_number("area", positive), elastic.need_number("J", positive)};
+    }
+    for (const char* key : {"area", "J"}) {
+      if (elastic.has(key)) elastic.problem(key, "found beside section, allowed either area and J or section");
+    }
+    struct Shape {
+      std::string_view name, first, second;
+    };
+    static constexpr Shape shapes[] = {
+        {"rectangle", "width", "height"}, {"tube", "diameter", "wall"}, {"round", "diameter", ""}};
+    const std::string name = section->need_text("shape");
+    const auto shape = std::ranges::find(shapes, name, &Shape::name);
+    if (shape == std::end(shapes)) {
+      if (section->has("shape") && section->node("shape")->is_string())
+        section->problem("shape",
+                         fmt::format("found {}, allowed rectangle, tube, round", describe(*section->node("shape"))));
+      return {1, 1};
+    }
+    for (const std::string_view key : {"width", "height", "diameter", "wall"}) {
+      if (section->has(key) && key != shape->first && key != shape->second)
+        section->problem(key, fmt::format("found on the shape {}, allowed {}{}{}", name, shape->first,
+                                          shape->second.empty() ? "" : " and ", shape->second));
+    }
+    const double first = section->need_number(shape->first, positive);
+    if (shape->second.empty()) return round_section(first);
+    const double second = section->need_number(shape->second, positive);
+    if (name == "rectangle") return rectangular_section(first, second);
+    if (!(second <= first / 2)) {
+      section->problem("wall", fmt::format("found {}, allowed at most half the diameter, {}", second, first / 2));
+      return {1, 1};
+    }
+    return tubular_section(first, second);
+  }
+
   void read_elastic(const TableView& table, const TableView& elastic, Body& body) {
     for (const char* key : {"com", "inertia", "inertia_pivot", "points"}) {
       if (!table.has(key)) continue;
@@ -161,8 +201,9 @@ class LinkageReader {
     }
     Elastic link;
     link.youngs_modulus = elastic.need_number("E", positive);
-    link.area = elastic.need_number("area", positive);
-    link.second_moment = elastic.need_number("J", positive);
+    const SectionValues section = read_section(elastic);
+    link.area = section.area;
+    link.second_moment = section.second_moment;
     link.internal_damping = elastic.number("damping_internal", not_negative).value_or(0);
     link.damping_x = elastic.number("damping_x", not_negative).value_or(0);
     link.damping_y = elastic.number("damping_y", not_negative).value_or(0);
