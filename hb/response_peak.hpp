@@ -1,0 +1,25 @@
+// Where a smooth function of one variable is largest, to nearly the accuracy of its argument: the maximum of a function
+// known to eps is only seen to sqrt(eps), the zero of its interpolant's derivative to about eps times its width.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+namespace hb {
+
+struct ResponsePeak {
+  double x = 0;
+  double value = 0;
+  double error = 0;         // estimate, of x
+  bool converged = false;   // error within the tolerance
+};
+
+// Empty where the function does not exist.
+using ResponseAt = std::function<std::optional<double>(double x)>;
+
+// The maximum between low and high, given low < inside < high with value(inside) not below the two others. `tolerance`
+// is relative to |x|. Empty if the function does not exist somewhere on the way.
+[[nodiscard]] std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, double inside, double high,
+                                                      double tolerance = 1e-11);
+
+}  // namespace hb

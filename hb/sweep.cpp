@@ -1,0 +1,370 @@
+#include "hb/sweep.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+
+constexpr std::array<double, 8> weights = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 6};
+
+double scale_of(double a, double b) { return std::max({std::abs(a), std::abs(b), std::abs(b - a)}); }
+
+// Largest real part of the two modes.
+double growth_of(const std::vector<ModeState>& modes, std::size_t i, std::size_t j) {
+  return std::max(modes[i].growth, modes[j].growth);
+}
+
+// One parametric resonance, (omega_i + sign omega_j)/Omega = k.
+struct Line {
+  std::size_t i, j;
+  double sign;
+  double k;
+
+  double detuning(const std::vector<ModeState>& modes, double speed) const {
+    return std::abs(modes[i].frequency + sign * modes[j].frequency) / speed - k;
+  }
+};
+
+struct Place {
+  StabilitySample sample;
+  std::vector<ModeState> modes;
+};
+
+class Search {
+ public:
+  Search(const SampleAt& at, const Place& a, const Place& b, const SweepOptions& options)
+      : at_(at), a_(a), b_(b), options_(options), found_(is_unstable(a.sample)) {}
+
+  // A sample on the other side of the verdict near the line, if there is one.
+  std::optional<StabilitySample> along(const Line& line) {
+    Place low = a_, high = b_;
+    double s_low = line.detuning(low.modes, low.sample.speed), s_high = line.detuning(high.modes, high.sample.speed);
+    const double damping = 0.5 * (low.modes[line.i].damping() + low.modes[line.j].damping());
+    // A tongue that reaches instability locks its exponents over a detuning of at least twice the damping.
+    const auto resolved = [&] {
+      const double width = std::abs(s_high - s_low) * low.sample.speed;
+      return width <= std::max(damping, options_.smallest_order * low.sample.speed);
+    };
+    constexpr int max_steps = 60;
+    int side = 0;
+    double w_low = s_low, w_high = s_high;
+    for (int step = 0; step < max_steps && !resolved(); ++step) {
+      // Illinois: regula falsi whose stale end counts half.
+      double x = low.sample.x + (high.sample.x - low.sample.x) * (w_low / (w_low - w_high));
+      const double margin = 0.02 * (high.sample.x - low.sample.x);
+      x = std::clamp(x, low.sample.x + margin, high.sample.x - margin);
+      std::optional<Place> middle = place(x, low, high);
+      if (!middle) return std::nullopt;
+      if (is_unstable(middle->sample) != found_) return middle->sample;
+      const double s = line.detuning(middle->modes, middle->sample.speed);
+      if (!std::isfinite(s)) return std::nullopt;
+      if (std::abs(s) <= 1e-9 * line.k) return highest(line, low, *middle, high);
+      if ((s < 0) == (s_low < 0)) {
+        low = std::move(*middle);
+        s_low = w_low = s;
+        if (side == -1) w_high *= 0.5;
+        side = -1;
+      } else {
+        high = std::move(*middle);
+        s_high = w_high = s;
+        if (side == 1) w_low *= 0.5;
+        side = 1;
+      }
+    }
+    std::optional<Place> middle = place(0.5 * (low.sample.x + high.sample.x), low, high);
+    if (!middle) return std::nullopt;
+    if (is_unstable(middle->sample) != found_) return middle->sample;
+    // A bump too low to matter, or none.
+    const double chord = std::max(growth_of(low.modes, line.i, line.j), growth_of(high.modes, line.i, line.j));
+    if (!(growth_of(middle->modes, line.i, line.j) > chord + 0.1 * damping)) return std::nullopt;
+    return highest(line, low, *middle, high);
+  }
+
+  // Least growth between two unstable ends whose exponents lie at different places: a stable gap may be between.
+  std::optional<StabilitySample> lowest() {
+    std::optional<Place> middle = place(0.5 * (a_.sample.x + b_.sample.x), a_, b_);
+    if (!middle) return std::nullopt;
+    return extremum(a_, *middle, b_, [](const Place& p) { return -p.sample.stability.growth_rate; });
+  }
+
+ private:
+  std::optional<Place> place(double x, const Place& low, const Place& high) const {
+    std::optional<StabilitySample> sample = at_(x);
+    if (!sample) return std::nullopt;
+    const double fraction = (x - low.sample.x) / (high.sample.x - low.sample.x);
+    std::vector<ModeState> modes =
+        modes_by_continuity(sample->stability, sample->speed, interpolated(low.modes, high.modes, fraction));
+    return Place{std::move(*sample), std::move(modes)};
+  }
+
+  std::optional<StabilitySample> highest(const Line& line, const Place& low, const Place& middle, const Place& high) {
+    return extremum(low, middle, high, [&](const Place& p) { return growth_of(p.modes, line.i, line.j); });
+  }
+
+  // Largest `value` by parabolas and golden sections, given up when the verdict changes or nothing more is gained.
+  template <class Value>
+  std::optional<StabilitySample> extremum(Place low, Place middle, Place high, const Value& value) {
+    constexpr int max_steps = 30;
+    constexpr double golden = 0.3819660112501051;
+    double f_low = value(low), f_middle = value(middle), f_high = value(high);
+    double last_width = HUGE_VAL;
+    for (int step = 0; step < max_steps; ++step) {
+      const double x0 = low.sample.x, x1 = middle.sample.x, x2 = high.sample.x;
+      if (x2 - x0 <= 1e-12 * scale_of(x0, x2)) break;
+      const double p = (x1 - x0) * (f_middle - f_high), q = (x2 - x1) * (f_middle - f_low);
+      // Vertex of the parabola through the three.
+      double x = x1 - 0.5 * ((x1 - x0) * p - (x2 - x1) * q) / (p + q);
+      const bool shrinks = x2 - x0 <= 0.6 * last_width;
+      last_width = x2 - x0;
+      const double margin = 0.01 * (x2 - x0);
+      if (!std::isfinite(x) || x <= x0 + margin || x >= x2 - margin || std::abs(x - x1) <= margin || !shrinks)
+        x = x2 - x1 > x1 - x0 ? x1 + golden * (x2 - x1) : x1 - golden * (x1 - x0);
+      std::optional<Place> next = place(x, low, high);
+      if (!next) return std::nullopt;
+      if (is_unstable(next->sample) != found_) return next->sample;
+      const double f = value(*next);
+      Place& worse = f > f_middle ? middle : *next;
+      const double f_worse = std::min(f, f_middle);
+      const bool right = (x > x1) == (f > f_middle);  // the better one lies right of the worse one
+      if (f > f_middle) {
+        (right ? low : high) = std::move(worse);
+        (right ? f_low : f_high) = f_worse;
+        middle = std::move(*next);
+        f_middle = f;
+      } else {
+        (right ? low : high) = std::move(worse);
+        (right ? f_low : f_high) = f_worse;
+      }
+      // What a parabola through the three could still add.
+      const double gain = std::max(f_middle - std::min(f_low, f_high), 0.0);
+      if (gain <= 1e-3 * std::abs(f_middle)) break;
+    }
+    return std::nullopt;
+  }
+
+  const SampleAt& at_;
+  const Place &a_, &b_;
+  const SweepOptions& options_;
+  const bool found_;  // verdict that is known already: unstable?
+};
+
+}  // namespace
+
+// Order k needs the harmonics of E = K - mean to add up to k. With weights rho^|m|, every path of such harmonics is at
+// most ||E||_rho rho^-k times further factors ||E||_rho/D (D = 2 w - 1: detuning one harmonic away): rho may grow until
+// those factors reach 1/2, and the sum over all paths is then below 2 ||E||_rho rho^-k. Coupling per radian: E/(2 w).
+ParametricCoupling parametric_coupling(const ScaledSystem& system) {
+  const Index I = system.num_modes(), H = system.K.num_harmonics();
+  const auto R = static_cast<Index>(weights.size());
+  ParametricCoupling coupling;
+  coupling.weighted = Eigen::ArrayXXd::Constant(I, R, HUGE_VAL);
+  const Eigen::VectorXd w = system.mean_diagonal().cwiseAbs().cwiseSqrt().cwiseMax(0.25);
+  // ||E_i||_rho: coupling of mode i with all, in units that make it symmetric.
+  Eigen::ArrayXXd norm = Eigen::ArrayXXd::Zero(I, R);
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(I);
+  Eigen::Array<double, 1, Eigen::Dynamic> power = Eigen::ArrayXd::Ones(R).transpose();
+  const Eigen::Array<double, 1, Eigen::Dynamic> rho =
+      Eigen::Map<const Eigen::ArrayXd>(weights.data(), R).transpose();
+  Eigen::MatrixXd units(I, I);
+  for (Index j = 0; j < I; ++j)
+    for (Index i = 0; i < I; ++i) units(i, j) = std::sqrt(w(i) / w(j));
+  for (Index m = 0; m <= H; ++m) {
+    const Eigen::Map<const Eigen::MatrixXcd> K(system.K.c.col(m).data(), I, I);
+    Eigen::MatrixXd size = K.real().cwiseAbs() + K.imag().cwiseAbs();
+    if (m == 0) size.diagonal().setZero();
+    const Eigen::ArrayXd row = size.cwiseProduct(units).rowwise().sum();
+    if (m == 0) {
+      mean = row;
+    } else {
+      power *= rho;
+      norm += 2 * (row.matrix() * power.matrix()).array();
+    }
+  }
+  for (Index i = 0; i < I; ++i) {
+    const double D = std::max(1.0, 2 * w(i) - 1);
+    coupling.weighted(i, 0) = system.speed * norm(i, 0) / (2 * w(i));
+    for (Index r = 1; r < R && norm(i, r) + mean(i) <= D / 2; ++r)
+      coupling.weighted(i, r) = system.speed * norm(i, r) / w(i);
+  }
+  return coupling;
+}
+
+double ParametricCoupling::at_order(Index mode, double k) const {
+  double least = HUGE_VAL;
+  for (Index r = 0; r < weighted.cols(); ++r)
+    least = std::min(least, weighted(mode, r) * std::pow(weights[static_cast<std::size_t>(r)], -k));
+  return least;
+}
+
+StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options) {
+  return {x, system.speed, analyse_stability(system, options), parametric_coupling(system)};
+}
+
+BoundaryKind boundary_kind(const Stability& stability, double speed) {
+  if (stability.exponents.empty()) return BoundaryKind::complex;
+  const double frequency = std::abs(stability.exponents.front().value.imag());
+  const double slack = 1e-7 * speed;
+  if (frequency <= slack) return BoundaryKind::plus_one;
+  if (std::abs(frequency - speed / 2) <= slack) return BoundaryKind::minus_one;
+  return BoundaryKind::complex;
+}
+
+const char* to_string(BoundaryKind kind) {
+  switch (kind) {
+    case BoundaryKind::plus_one: return "+1";
+    case BoundaryKind::minus_one: return "-1";
+    case BoundaryKind::complex: return "complex";
+  }
+  return "";
+}
+
+std::vector<StabilitySample> look_between(const SampleAt& at, const StabilitySample& a, const StabilitySample& b,
+                                          const std::vector<ModeState>& modes_a, const std::vector<ModeState>& modes_b,
+                                          const SweepOptions& options) {
+  std::vector<StabilitySample> found;
+  if (is_unstable(a) != is_unstable(b)) return found;
+  const Place start{a, modes_a}, end{b, modes_b};
+  Search search(at, start, end, options);
+  if (is_unstable(a)) {
+    if (boundary_kind(a.stability, a.speed) != boundary_kind(b.stability, b.speed)) {
+      if (std::optional<StabilitySample> gap = search.lowest()) found.push_back(std::move(*gap));
+    }
+    return found;
+  }
+  const std::size_t I = std::min(modes_a.size(), modes_b.size());
+  // Safety on the estimate of the coupling (chosen by experiment on Mathieu's tongues up to order 6).
+  constexpr double safety = 2;
+  for (std::size_t i = 0; i < I; ++i) {
+    for (std::size_t j = i; j < I; ++j) {
+      for (const double sign : {1.0, -1.0}) {
+        if (i == j && sign < 0) continue;
+        Line line{i, j, sign, 0};
+        const double first = line.detuning(modes_a, a.speed), last = line.detuning(modes_b, b.speed);
+        if (!std::isfinite(first) || !std::isfinite(last)) continue;
+        const double low = std::min(first, last), high = std::max(first, last);
+        if (!(high - low <= 1e6)) continue;
+        for (line.k = std::max(1.0, std::floor(low) + 1); line.k < high; ++line.k) {
+          const auto strength = [&](const StabilitySample& sample) {
+            const ParametricCoupling& c = sample.coupling;
+            return safety * std::sqrt(c.at_order(Index(i), line.k) * c.at_order(Index(j), line.k));
+          };
+          const double needed = std::max(std::sqrt(std::abs(modes_a[i].damping() * modes_a[j].damping())),
+                                         options.smallest_order * a.speed);
+          if (!(std::max(strength(a), strength(b)) >= needed)) break;  // higher orders are weaker still
+          if (std::optional<StabilitySample> sample = search.along(line)) found.push_back(std::move(*sample));
+        }
+      }
+    }
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const StabilitySample& p, const StabilitySample& q) { return p.x < q.x; });
+  return found;
+}
+
+// ITP: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, doi:10.1145/3423597.
+StabilityBoundary locate_boundary(const SampleAt& at, const StabilitySample& a, const StabilitySample& b,
+                                  const SweepOptions& options) {
+  double low = a.x, high = b.x;
+  const bool unstable_above = is_unstable(b);
+  // Positive on the unstable side; what is undecided counts as zero on the stable one.
+  const auto value = [](const StabilitySample& s) {
+    return is_unstable(s) ? s.stability.growth_rate : std::min(s.stability.growth_rate, 0.0);
+  };
+  double f_low = value(a), f_high = value(b);
+  const StabilitySample* unstable = unstable_above ? &b : &a;
+  StabilityBoundary boundary;
+  boundary.unstable_above = unstable_above;
+  boundary.kind = boundary_kind(unstable->stability, unstable->speed);
+  const double wanted = options.tolerance * std::max(std::abs(low), std::abs(high));
+  const double kappa1 = 0.2 / (high - low);
+  const int half = static_cast<int>(std::ceil(std::log2((high - low) / (2 * wanted))));
+  const int most = std::max(half, 0) + 1;
+  for (int step = 0; step <= most && high - low > 2 * wanted; ++step) {
+    const double middle = 0.5 * (low + high);
+    const double radius = std::max(0.0, wanted * std::exp2(most - step) - 0.5 * (high - low));
+    const double delta = kappa1 * (high - low) * (high - low);
+    double x = middle;
+    if (f_low != f_high) {
+      const double secant = (f_high * low - f_low * high) / (f_high - f_low);
+      const double sign = middle > secant ? 1 : middle < secant ? -1 : 0;
+      const double truncated = delta <= std::abs(middle - secant) ? secant + sign * delta : middle;
+      x = std::abs(truncated - middle) <= radius ? truncated : middle - sign * radius;
+    }
+    if (!(x > low && x < high)) x = middle;
+    if (!(x > low && x < high)) break;
+    const std::optional<StabilitySample> sample = at(x);
+    if (!sample) break;
+    const bool above = is_unstable(*sample) == unstable_above;  // x lies on b's side
+    (above ? high : low) = x;
+    (above ? f_high : f_low) = value(*sample);
+    if (is_unstable(*sample)) boundary.kind = boundary_kind(sample->stability, sample->speed);
+  }
+  boundary.x = 0.5 * (low + high);
+  boundary.error = 0.5 * (high - low);
+  boundary.converged = boundary.error <= 1.001 * wanted;
+  return boundary;
+}
+
+std::vector<UnstableBand> unstable_bands(const std::vector<const StabilitySample*>& samples,
+                                         const std::vector<StabilityBoundary>& boundaries) {
+  std::vector<UnstableBand> bands;
+  const StabilitySample* last = nullptr;
+  UnstableBand band;
+  bool inside = false;
+  const auto boundary_between = [&](double from, double to) {
+    return std::find_if(boundaries.begin(), boundaries.end(),
+                        [&](const StabilityBoundary& b) { return b.x >= from && b.x <= to; });
+  };
+  const auto close = [&](double x, bool open) {
+    band.to = x;
+    band.open_to = open;
+    bands.push_back(band);
+    inside = false;
+  };
+  for (const StabilitySample* sample : samples) {
+    if (sample == nullptr) {
+      if (inside) close(last->x, true);
+      last = nullptr;
+      continue;
+    }
+    const bool unstable = is_unstable(*sample);
+    if (unstable && !inside) {
+      band = UnstableBand{};
+      band.fastest = -HUGE_VAL;
+      band.from = sample->x;
+      band.open_from = true;
+      band.kind_from = boundary_kind(sample->stability, sample->speed);
+      if (last != nullptr) {
+        const auto boundary = boundary_between(last->x, sample->x);
+        if (boundary != boundaries.end()) {
+          band.from = boundary->x;
+          band.open_from = false;
+          band.kind_from = boundary->kind;
+        }
+      }
+      inside = true;
+    } else if (!unstable && inside) {
+      const auto boundary = boundary_between(last->x, sample->x);
+      const bool known = boundary != boundaries.end();
+      if (known) band.kind_to = boundary->kind;
+      close(known ? boundary->x : last->x, !known);
+    }
+    if (unstable) {
+      band.kind_to = boundary_kind(sample->stability, sample->speed);
+      if (sample->stability.growth_rate > band.fastest) {
+        band.fastest = sample->stability.growth_rate;
+        band.fastest_x = sample->x;
+      }
+    }
+    last = sample;
+  }
+  if (inside) close(last->x, true);
+  return bands;
+}
+
+}  // namespace hb

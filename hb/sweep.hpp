@@ -1,0 +1,82 @@
+// Stability of one system along one parameter x (its speed, or any other number): unstable bands with both ends, also
+// those that lie between two samples. They start from parametric resonances, so that is where they are looked for:
+//     k Omega = omega_i + omega_j,   k Omega = |omega_i - omega_j|       (i = j: 2 omega_i/k)
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "hb/mode_tracks.hpp"
+#include "hb/scaled_system.hpp"
+#include "hb/stability.hpp"
+
+namespace hb {
+
+// How strongly the periodic part of the stiffness can feed a mode at order k: an estimate from above.
+struct ParametricCoupling {
+  Eigen::ArrayXXd weighted;  // modes x weights, 1/time: strength times rho^k for each weight rho; infinite: no claim
+
+  double at_order(Eigen::Index mode, double k) const;  // 1/time
+};
+[[nodiscard]] ParametricCoupling parametric_coupling(const ScaledSystem& system);
+
+// What is known at one x.
+struct StabilitySample {
+  double x = 0;
+  double speed = 0;  // rad per unit time
+  Stability stability;
+  ParametricCoupling coupling;
+};
+[[nodiscard]] StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options);
+
+// Empty where there is no system (a linkage that does not close). Called from one thread at a time by each function
+// below; same x, same result.
+using SampleAt = std::function<std::optional<StabilitySample>(double x)>;
+
+// How the leading exponent leaves: multiplier +1, -1 (half the crank's speed), or a complex pair.
+enum class BoundaryKind { plus_one, minus_one, complex };
+[[nodiscard]] BoundaryKind boundary_kind(const Stability& stability, double speed);
+[[nodiscard]] const char* to_string(BoundaryKind kind);  // "+1", "-1", "complex"
+
+struct StabilityBoundary {
+  double x = 0;
+  double error = 0;  // half of the bracket that is left
+  BoundaryKind kind = BoundaryKind::complex;
+  bool unstable_above = false;
+  bool converged = false;  // error within the tolerance
+};
+
+struct SweepOptions {
+  double tolerance = 1e-11;  // of boundaries and peaks, relative to |x| (or to the interval searched if that is larger)
+  double smallest_order = 1e-9;  // a narrower instability, relative to the speed, is not looked for
+};
+
+// Samples inside (a.x, b.x) that show a change of verdict which a and b do not: one for each parametric resonance that
+// crosses the interval and is strong enough. `modes_a`, `modes_b`: tracked states at both ends. Ascending in x.
+[[nodiscard]] std::vector<StabilitySample> look_between(const SampleAt& at, const StabilitySample& a,
+                                                        const StabilitySample& b, const std::vector<ModeState>& modes_a,
+                                                        const std::vector<ModeState>& modes_b,
+                                                        const SweepOptions& options = {});
+
+// Where the verdict changes between a and b, one of which is unstable: ITP bracketing on the growth rate.
+[[nodiscard]] StabilityBoundary locate_boundary(const SampleAt& at, const StabilitySample& a, const StabilitySample& b,
+                                                const SweepOptions& options = {});
+
+struct UnstableBand {
+  double from = 0, to = 0;
+  bool open_from = false, open_to = false;  // the sweep ends inside the band, or has no answer beyond
+  BoundaryKind kind_from = BoundaryKind::complex, kind_to = BoundaryKind::complex;
+  double fastest = 0;    // largest growth rate sampled inside, 1/time
+  double fastest_x = 0;
+};
+
+// From samples in ascending order (null: no system there) and the boundaries between them.
+[[nodiscard]] std::vector<UnstableBand> unstable_bands(const std::vector<const StabilitySample*>& samples,
+                                                       const std::vector<StabilityBoundary>& boundaries);
+
+[[nodiscard]] inline bool is_unstable(const StabilitySample& sample) {
+  return sample.stability.verdict == Verdict::unstable;
+}
+
+}  // namespace hb

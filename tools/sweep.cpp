@@ -1,0 +1,187 @@
+// hb sweep: everything along the speed or any other scene number, with resonance peaks and unstable bands located.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tools/checkpoint.hpp"
+#include "tools/command.hpp"
+#include "tools/common_flags.hpp"
+#include "tools/json_output.hpp"
+#include "tools/output_folder.hpp"
+#include "tools/parameter_range.hpp"
+#include "tools/sweep_analysis.hpp"
+#include "tools/sweep_figures.hpp"
+#include "tools/sweep_output.hpp"
+#include "tools/sweep_parts.hpp"
+#include "tools/table_output.hpp"
+
+namespace hb::tools {
+namespace {
+
+constexpr int exit_interrupted = 130;  // as shells report Ctrl-C
+
+struct SweepFlags : CommonFlags {
+  std::string x;
+  bool resume = false;
+};
+
+void require_speeds(const std::string& flag, const Axis& axis, const Units& units) {
+  const double lowest = axis.kind == Axis::Kind::rpm ? speed_from_rpm(axis.values.front(), units) : axis.values.front();
+  if (!(lowest >= std::numeric_limits<double>::min())) {
+    throw UsageError(fmt::format("{}: found a range from {}, allowed: positive speeds", flag, axis.values.front()));
+  }
+}
+
+// The axis, and the speed where that is not the axis.
+std::pair<Axis, double> axis_of(const SweepFlags& flags, const Scene& scene) {
+  Axis axis;
+  if (flags.x.empty()) {
+    const auto [speeds, in_rpm] = speed_range(flags, scene);
+    axis.kind = in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
+    axis.path = in_rpm ? "rpm" : "omega";
+    const std::string flag = "--" + axis.path;
+    if (speeds.from == speeds.to || speeds.step == 0) {
+      throw UsageError(fmt::format("{}: found the single speed {}, allowed: a range FROM:TO:STEP (hb steady does one "
+                                   "speed)",
+                                   flag, speeds.from));
+    }
+    axis.values = range_by_step(flag, speeds.from, speeds.to, speeds.step);
+    require_speeds(flag, axis, scene.units);
+    return {std::move(axis), 0};
+  }
+  const NamedRange range = named_range("--x", flags.x);
+  axis.path = range.path;
+  axis.values = range_by_step("--x", range.range);
+  for (const Override& set : overrides(flags)) {
+    if (set.path == axis.path) {
+      throw UsageError(fmt::format("--set: found {} beside --x {}, allowed: one of the two", set.path, flags.x));
+    }
+  }
+  if (axis.path == "rpm" || axis.path == "omega") {
+    axis.kind = axis.path == "rpm" ? Axis::Kind::rpm : Axis::Kind::omega;
+    if (!flags.rpm.empty() || !flags.omega.empty()) {
+      throw UsageError(fmt::format("--{}: found {} beside --x {}, allowed: one of the two",
+                                   flags.rpm.empty() ? "omega" : "rpm", flags.rpm.empty() ? flags.omega : flags.rpm,
+                                   flags.x));
+    }
+    require_speeds("--x", axis, scene.units);
+    return {std::move(axis), 0};
+  }
+  axis.kind = Axis::Kind::parameter;
+  return {std::move(axis), single_speed(flags, scene)};
+}
+
+std::vector<Figure> write_tables(const SweepScene& scene, const SweepResult& result, OutputFolder& folder) {
+  std::vector<Figure> figures;
+  const Only& only = result.computed;
+  const CsvFile critical = critical_csv(scene, result);
+  if (only.steady) folder.write(critical.name, csv_text(critical));
+  if (only.stability) {
+    const CsvFile bands = bands_csv(scene, result);
+    folder.write(bands.name, csv_text(bands));
+  }
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    if (!result.rods[r].reported || !(only.steady || only.stability || only.shape)) continue;
+    const CsvFile rod = sweep_rod_csv(scene, result, r);
+    folder.write(rod.name, csv_text(rod));
+    if (only.stability) {
+      figures.push_back(campbell_figure(scene, result, r, rod, critical.name));
+      figures.push_back(growth_figure(scene, result, r, rod));
+    }
+    if (only.steady) figures.push_back(peaks_figure(scene, result, r, rod));
+    if (only.shape) figures.push_back(strain_figure(scene, result, r, rod));
+  }
+  if (only.reactions) {
+    const CsvFile forces = sweep_forces_csv(scene, result);
+    folder.write(forces.name, csv_text(forces));
+    for (Figure& figure : sweep_force_figures(scene, result, forces)) figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::filesystem::path part_file(std::filesystem::path folder) {
+  if (!folder.has_filename()) folder = folder.parent_path();
+  return folder.string() + ".part";
+}
+
+std::optional<SweepResult> run_with_checkpoint(const SweepScene& scene, const std::filesystem::path& file, bool resume) {
+  Checkpoint checkpoint(file, sweep_key(scene), resume, "the same scene and flags");
+  if (resume) {
+    fmt::print(stderr, "hb sweep: {} of {} points were finished\n", checkpoint.num_finished(),
+               scene.axis().values.size());
+  }
+  SweepHooks hooks;
+  hooks.finished = [&](std::size_t k) -> std::optional<SweepPoint> {
+    const std::vector<double>* part = checkpoint.find(k);
+    return part ? unpacked(*part) : std::nullopt;
+  };
+  hooks.store = [&](std::size_t k, const SweepPoint& point) { checkpoint.store(k, packed(point)); };
+  hooks.stop = interrupted;
+  const InterruptGuard guard;
+  std::optional<SweepResult> result;
+  try {
+    result = run_sweep(scene, hooks);
+  } catch (...) {
+    checkpoint.remove();
+    throw;
+  }
+  if (result) {
+    checkpoint.remove();
+  } else {
+    fmt::print(stderr, "hb sweep: stopped; finished points are kept in {}: the same command with --resume goes on\n",
+               file.string());
+  }
+  return result;
+}
+
+int run_sweep_command(const SweepFlags& flags) {
+  SceneSource source(flags.scene_file);
+  const std::vector<Override> set = overrides(flags);
+  const Scene scene = source.with(set);
+  Settings options = settings(flags, scene);
+  auto [axis, fixed_speed] = axis_of(flags, scene);
+  std::optional<OutputFolder> folder;
+  if (options.out) folder.emplace(*options.out);
+
+  if (flags.resume && !options.out) throw UsageError("--resume: found no --out, allowed: the folder of the run to go on with");
+
+  const SweepScene sweep_scene(std::move(source), set, options, std::move(axis), fixed_speed);
+  const std::optional<SweepResult> finished =
+      folder ? run_with_checkpoint(sweep_scene, part_file(*options.out), flags.resume) : run_sweep(sweep_scene);
+  if (!finished) return exit_interrupted;
+  const SweepResult& result = *finished;
+  const nlohmann::ordered_json document =
+      options.json || folder ? sweep_json(sweep_scene, result) : nlohmann::ordered_json();
+  if (folder) {
+    folder->write("sweep.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    draw_figures(write_tables(sweep_scene, result, *folder), *folder, options.plots);
+    folder->commit();
+  }
+  if (options.json) {
+    print_json(document);
+  } else {
+    fmt::print("{}", sweep_table(sweep_scene, result));
+  }
+  if (options.stats && !options.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
+  return result.shortfalls.empty() ? exit_ok : exit_not_reached;
+}
+
+}  // namespace
+
+void add_sweep_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "sweep", "along speeds or any other number: peaks, exponents, Campbell diagram, critical speeds, unstable bands");
+  const auto flags = std::make_shared<SweepFlags>();
+  add_scene_flags(*command, *flags);
+  add_analysis_flags(*command, *flags);
+  command->add_option("--x", flags->x, "sweep this scene number instead of the speed, as in AB.J=30:60:1")
+      ->type_name("PATH=A:B:STEP");
+  command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
+  command->callback([flags, &status] { status = run_sweep_command(*flags); });
+}
+
+}  // namespace hb::tools
