@@ -1,0 +1,276 @@
+// hb tune: scene numbers that minimise a goal under conditions, worst over a range of speeds.
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tools/command.hpp"
+#include "tools/common_flags.hpp"
+#include "tools/json_output.hpp"
+#include "tools/output_folder.hpp"
+#include "tools/parameter_range.hpp"
+#include "tools/tune_output.hpp"
+#include "tools/tune_problem.hpp"
+
+namespace hb::tools {
+namespace {
+
+struct TuneFlags : CommonFlags {
+  std::string minimise, over, algorithm, seed, analyses, speeds;
+  std::vector<std::string> vary, keep, tie, height;
+};
+
+constexpr double largest = std::numeric_limits<double>::max();
+
+// "A:B" with A < B.
+std::pair<double, double> bounds(const std::string& flag, const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const std::string allowed = "FROM:TO, two finite numbers with FROM < TO";
+  if (colon == std::string::npos)
+    throw UsageError(fmt::format("{}: found \"{}\", a single value; allowed: {}", flag, text, allowed));
+  const double a = number_flag(flag, text.substr(0, colon), -largest, largest, allowed);
+  const double b = number_flag(flag, text.substr(colon + 1), -largest, largest, allowed);
+  if (a == b) throw UsageError(fmt::format("{}: found \"{}\", an empty range; allowed: {}", flag, text, allowed));
+  if (!(a < b) || !std::isfinite(b - a))
+    throw UsageError(
+        fmt::format("{}: found \"{}\", which runs backwards or is too wide; allowed: {}", flag, text, allowed));
+  return {a, b};
+}
+
+// The scene with one number replaced must be a scene, turning through or not.
+void require_scene(const SceneSource& source, const std::string& path, double value) {
+  try {
+    (void)source.with({number_override(path, value)});
+  } catch (const ObstructedLinkage&) {  // an infeasible design
+  }
+}
+
+std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& source) {
+  std::vector<TuneVariable> result;
+  for (const std::string& text : flags.vary) {
+    const NamedRange range = named_range("--vary", text);
+    const auto [a, b] = bounds("--vary " + range.path, range.range);
+    TuneVariable variable{range.path, a, b, 0, std::nullopt, {}};
+    for (const TuneVariable& other : result)
+      if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
+    if (range.path.starts_with("analysis.") || range.path.starts_with("units."))
+      throw UsageError(fmt::format("--vary: found {}, allowed: numbers of the mechanism", range.path));
+    const double value = source.value(range.path);
+    variable.start = std::clamp(value, a, b);
+    if (variable.start != value) {
+      variable.moved_from = value;
+      fmt::print(stderr, "hb tune: {} = {:g} lies outside {:g} to {:g}; the search starts at {:g}\n", range.path, value,
+                 a, b, variable.start);
+    }
+    result.push_back(std::move(variable));
+  }
+  for (const std::string& text : flags.tie) {
+    const NamedRange tie = named_range("--tie", text);
+    const std::size_t star = tie.range.rfind('*');
+    const bool scaled = star != std::string::npos && star > 0;
+    TiedNumber tied{tie.path, 1};
+    const std::string path = scaled ? tie.range.substr(star + 1) : tie.range;
+    if (scaled)
+      tied.factor = number_flag("--tie", tie.range.substr(0, star), -largest, largest, "PATH=PATH or PATH=FACTOR*PATH");
+    const auto leader = std::ranges::find(result, path, &TuneVariable::path);
+    if (leader == result.end())
+      throw UsageError(fmt::format("--tie: found \"{}\", allowed: PATH=FACTOR*VARIED with one of --vary, {}", text,
+                                   fmt::join(flags.vary, ", ")));
+    for (const TuneVariable& variable : result) {
+      bool taken = variable.path == tie.path;
+      for (const TiedNumber& other : variable.tied) taken = taken || other.path == tie.path;
+      if (taken) throw UsageError(fmt::format("--tie: found {}, which is varied or tied already", tie.path));
+    }
+    (void)source.value(tie.path);
+    leader->tied.push_back(tied);
+  }
+  // Conditions between numbers (a wall within its tube) are the search's business; each alone must be possible at one
+  // end at least.
+  for (const TuneVariable& variable : result) {
+    try {
+      require_scene(source, variable.path, variable.lower);
+    } catch (const SceneError&) {
+      require_scene(source, variable.path, variable.start);
+      if (variable.lower <= 0) throw;
+    }
+  }
+  return result;
+}
+
+// --over rpm=A:B, else the scene's or the flags' speed.
+std::pair<SpeedSpan, bool> span_of(const TuneFlags& flags, const Scene& scene) {
+  SpeedSpan span;
+  if (!flags.speeds.empty()) span.num_nodes = integer_flag("--speeds", flags.speeds, 2, 10000, "an integer 2 to 10000");
+  bool in_rpm = true;
+  double from = 0, to = 0;
+  if (flags.over.empty()) {
+    const SpeedRange range = speed_range(flags, scene);
+    in_rpm = range.in_rpm;
+    from = range.speeds.from;
+    to = range.speeds.to;
+  } else {
+    const NamedRange range = named_range("--over", flags.over);
+    if (range.path != "rpm" && range.path != "omega")
+      throw UsageError(fmt::format("--over: found {}, allowed: rpm=FROM:TO or omega=FROM:TO", range.path));
+    if (!flags.rpm.empty() || !flags.omega.empty())
+      throw UsageError("--over: found beside --rpm or --omega, allowed: one of them");
+    in_rpm = range.path == "rpm";
+    std::tie(from, to) = bounds("--over " + range.path, range.range);
+  }
+  span.from = in_rpm ? speed_from_rpm(from, scene.units) : from;
+  span.to = in_rpm ? speed_from_rpm(to, scene.units) : to;
+  if (!(span.from >= std::numeric_limits<double>::min() && std::isfinite(span.to)))
+    throw UsageError(fmt::format("--over: found speeds from {:g}, allowed: positive ones", from));
+  return {span, in_rpm};
+}
+
+DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) {
+  DesignOptions options;
+  options.max_evaluations = 400 + 100 * static_cast<int>(std::min<std::size_t>(num_variables, 100));
+  if (!flags.analyses.empty())
+    options.max_evaluations = integer_flag("--analyses", flags.analyses, 1, 1000000, "an integer 1 to 1000000");
+  if (!flags.seed.empty())
+    options.seed = static_cast<std::uint64_t>(
+        integer_flag("--seed", flags.seed, 0, std::numeric_limits<int>::max(), "an integer >= 0"));
+  if (!flags.algorithm.empty()) {
+    std::string names;
+    bool known = false;
+    for (const DesignAlgorithm algorithm :
+         {DesignAlgorithm::automatic, DesignAlgorithm::direct, DesignAlgorithm::mlsl, DesignAlgorithm::cobyla,
+          DesignAlgorithm::bobyqa, DesignAlgorithm::slsqp, DesignAlgorithm::mma}) {
+      names += (names.empty() ? "" : ", ") + std::string(to_string(algorithm));
+      if (flags.algorithm != to_string(algorithm)) continue;
+      options.algorithm = algorithm;
+      known = true;
+    }
+    if (!known) throw UsageError(fmt::format("--algorithm: found \"{}\", allowed: {}", flags.algorithm, names));
+  }
+  if (isatty(STDERR_FILENO) != 0) {
+    options.progress = [](int evaluations, bool feasible, double goal) {
+      fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations,
+                 feasible ? "" : "(conditions not met) ", goal);
+    };
+  }
+  return options;
+}
+
+// As many modes as the speeds' ends need, fixed for the search.
+int num_modes(const TuneTask& task, const Scene& scene) {
+  Settings settings = task.settings;
+  settings.only = {true, false, false, false};
+  const SceneModel model = make_model(scene, settings);
+  int modes = 1;
+  for (const double speed : {task.span.from, task.span.to})
+    for (const RodResult& rod : analyse(model, speed, settings).rods)
+      modes = std::max(modes, static_cast<int>(rod.num_modes));
+  return modes;
+}
+
+int run_tune(const TuneFlags& flags) {
+  if (flags.minimise.empty())
+    throw UsageError("--minimise: found nothing, allowed: a goal, as in --minimise deflection");
+  if (flags.vary.empty()) throw UsageError("--vary: found nothing, allowed: PATH=FROM:TO, as in --vary AB.J=20:200");
+  // Numbers of --set become part of the scene that is tuned.
+  const SceneSource as_written(flags.scene_file);
+  const std::vector<Override> set = overrides(flags);
+  const Scene scene = as_written.with(set);
+  const std::filesystem::path file = flags.scene_file;
+  TuneTask task{
+      .source = set.empty() ? as_written : SceneSource(as_written.text_with(set), file.string(), file.parent_path()),
+      .variables = {},
+      .goal = parse_goal(flags.minimise),
+      .keeps = {},
+      .span = {},
+      .in_rpm = true,
+      .heights = {},
+      .settings = settings(flags, scene),
+      .options = design_options(flags, flags.vary.size())};
+  for (const std::string& text : flags.keep) task.keeps.push_back(parse_keep(text));
+  for (const std::string& text : flags.height) {
+    const NamedRange height = named_range("--height", text);
+    task.heights[height.path] =
+        number_flag("--height", height.range, std::numeric_limits<double>::min(), largest, "ROD=H with H > 0");
+  }
+  task.variables = variables(flags, task.source);
+  std::tie(task.span, task.in_rpm) = span_of(flags, scene);
+  if (std::holds_alternative<AutoModes>(task.settings.modes)) task.settings.modes = num_modes(task, scene);
+
+  std::optional<OutputFolder> folder;
+  if (task.settings.out) {
+    const std::filesystem::path written = *task.settings.out / "tuned.toml";
+    std::error_code none;
+    if (std::filesystem::equivalent(written, file, none))
+      throw UsageError(
+          fmt::format("--out: found {}, where tuned.toml would replace the scene itself; allowed: another "
+                      "folder",
+                      task.settings.out->string()));
+    folder.emplace(*task.settings.out);
+  }
+  const TuneResult result = tune(task);
+  if (task.options.progress) fmt::print(stderr, "\r\033[K");
+
+  const nlohmann::ordered_json document = tune_json(task, result, scene);
+  if (folder) {
+    folder->write("tuned.toml", tuned_scene(task, result, file, *task.settings.out));
+    folder->write("tune.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    for (const CsvFile& csv : {history_csv(task, result), curves_csv(task, *result.curves_before, scene, false),
+                               curves_csv(task, *result.curves_after, scene, true)})
+      folder->write(csv.name, csv_text(csv));
+    draw_figures(curves_figures(task, result, scene), *folder, task.settings.plots);
+    folder->commit();
+  }
+  if (task.settings.json) {
+    print_json(document);
+  } else {
+    fmt::print("{}", tune_table(task, result, scene));
+  }
+  return shortfall(result).empty() ? exit_ok : exit_not_reached;
+}
+
+}  // namespace
+
+void add_tune_command(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("tune", "design: scene numbers that minimise a goal under conditions over a range of speeds");
+  const auto flags = std::make_shared<TuneFlags>();
+  add_scene_flags(*command, *flags);
+  add_analysis_flags(*command, *flags);
+  const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* help, const char* type) {
+    command->add_option(name, values, help)
+        ->type_name(type)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  command
+      ->add_option("--minimise,--minimize", flags->minimise,
+                   "deflection, stress, force (each :NAME for one rod or joint), torque-ripple, mass, or a sum such as "
+                   "0.7*deflection+0.3*mass of parts over their start values")
+      ->type_name("GOAL");
+  repeatable("--vary", flags->vary, "a scene number to choose within bounds, as in AB.J=20:200; repeatable",
+             "PATH=A:B");
+  repeatable("--tie", flags->tie, "a scene number that follows a varied one, as in CD.J=AB.J or CD.J=0.5*AB.J",
+             "PATH=PATH");
+  repeatable("--keep", flags->keep,
+             "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa), force:JOINT<= (N), torque-ripple<= "
+             "(N m), mass<=, frequency>= (Hz), clearance:N>= (of omega_1 from n Omega, n <= N, relative)",
+             "CONDITION");
+  command->add_option("--over", flags->over, "speeds over which the worst case counts")->type_name("rpm=A:B");
+  repeatable("--height", flags->height, "height of a rod's section in the plane of motion, for stress; * for all",
+             "ROD=H");
+  command->add_option("--algorithm", flags->algorithm, "automatic, direct, mlsl, cobyla, bobyqa, slsqp or mma (NLopt)")
+      ->type_name("NAME");
+  command->add_option("--seed", flags->seed, "of mlsl")->type_name("N");
+  command->add_option("--analyses", flags->analyses, "designs analysed at most")->type_name("N");
+  command->add_option("--speeds", flags->speeds, "speeds sampled before the worst case is refined; default 24")
+      ->type_name("N");
+  command->callback([flags, &status] { status = run_tune(*flags); });
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,496 @@
+#include "tools/tune_design.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "hb/sweep.hpp"
+#include "hb/worst_case.hpp"
+#include "tools/command.hpp"
+#include "tools/parallel_for.hpp"
+
+namespace hb::tools {
+
+using std::numbers::pi;
+
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Modes whose resonances get a sample of their own, and their highest order: above, the load's harmonics have decayed.
+constexpr std::size_t resonant_modes = 2;
+constexpr double highest_order = 24;
+
+StabilityOptions margin_options(const Settings& settings) {
+  StabilityOptions options;
+  options.method = settings.stability_method;
+  options.leading_only = true;
+  return options;
+}
+
+double growth_of(const Stability& stability) { return stability.growth_rate + stability.growth_error; }
+
+// The system of p in q = e^{-mt} p: its exponents are those of q plus m, so it is stable where q decays faster than
+// e^{-mt}.   M p'' + (B - 2 m M) p' + (C - m B + m^2 M) p
+HillSystem shifted(const HillSystem& system, double m) {
+  HillSystem result = system;
+  if (m == 0) return result;
+  const Eigen::MatrixXd &M = system.mass, &B = system.damping;
+  result.damping = B - 2 * m * M;
+  if (result.stiffness[0].c.size() == 0) result.stiffness[0] = FourierSeries(M.size(), 0);
+  const Eigen::MatrixXd added = m * m * M - m * B;
+  result.stiffness[0].c.col(0) +=
+      Eigen::Map<const Eigen::VectorXd>(added.data(), added.size()).cast<std::complex<double>>();
+  return result;
+}
+
+// Modes of the mean system; NaN where overdamped or not held up.
+std::vector<ModeState> mean_modes(const ScaledSystem& system) {
+  const Eigen::VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  std::vector<ModeState> modes;
+  for (Eigen::Index i = 0; i < w2.size(); ++i) {
+    const double square = w2(i) - b(i) * b(i) / 4;
+    ModeState mode;
+    mode.frequency = square > 0 ? std::sqrt(square) * system.speed : nan;
+    mode.growth = mode.growth_low = -b(i) / 2 * system.speed;
+    modes.push_back(mode);
+  }
+  return modes;
+}
+
+// Largest length of a force given by its components.
+double largest_length(const FourierSeries& force) {
+  if (force.num_harmonics() < 0) return 0;
+  if (force.num_components() == 1) return fourier::max_abs(force, 0).value;
+  // Its square has twice the harmonics.
+  const Eigen::Index N = 4 * force.num_harmonics() + 4;
+  const Eigen::MatrixXd samples = fourier::synthesise(force, N);
+  const Eigen::MatrixXd square = samples.colwise().squaredNorm();
+  return std::sqrt(std::max(0.0, fourier::range(fourier::analyse(square), 0).max.value));
+}
+
+double lowest_frequency(const HillSystem& system) {
+  // At rest only the part without speed is left: M^-1 mean(C_0), nearly diagonal; its lowest w^2 by its diagonal in
+  // scaled coordinates.
+  HillSystem at_rest = system;
+  at_rest.stiffness[1] = at_rest.stiffness[2] = FourierSeries();
+  at_rest.load = {};
+  const double w2 = scale_system(at_rest, 1).mean_diagonal().minCoeff();
+  return w2 > 0 ? std::sqrt(w2) : 0;
+}
+
+}  // namespace
+
+struct DesignAnalysis::Sample {
+  double speed = 0;
+  std::vector<FourierSeries> q;  // by rod; empty: no periodic solution
+  std::vector<double> deflection, moment;  // by rod
+  std::vector<double> forces;  // by joint; empty: not computed
+  double ripple = nan;
+  std::vector<double> growth;  // by rod; empty: not computed
+};
+
+struct DesignAnalysis::Curve {
+  MetricKind kind;
+  std::size_t index = 0;  // of rod or joint
+  double factor = 1;
+  std::string where;
+};
+
+namespace {
+
+std::optional<FourierSeries> response(const RodModel& rod, double speed, const Settings& settings) {
+  SteadyOptions options;
+  options.tolerance = settings.tolerance;
+  options.method = settings.steady_method;
+  SteadyState state = solve_steady_state(rod.system, speed, options);
+  if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
+  return std::move(state.q);
+}
+
+RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q) {
+  if (rod.link >= 0) {
+    return rod_shape(*body_at(*model.linkage(), rod.link),
+                     model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], speed, q);
+  }
+  RodShape shape;
+  for (Eigen::Index i = 0; i < q.num_components(); ++i)
+    shape.deflection.max_abs = std::max(shape.deflection.max_abs, fourier::max_abs(q, i).value);
+  return shape;
+}
+
+struct Forces {
+  std::vector<double> joints;
+  std::vector<std::string> names;
+  double ripple = 0;
+};
+
+Forces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q) {
+  std::vector<LinkResponse> responses;
+  for (std::size_t r = 0; r < q.size(); ++r) responses.push_back({model.rods[r].link, q[r]});
+  const JointForces forces = joint_forces(*model.linkage(), speed, responses, 1e-10);
+  Forces result;
+  for (const JointForce& joint : forces.joints) {
+    result.joints.push_back(largest_length(joint.elastic));
+    result.names.push_back(joint.name);
+  }
+  const Range range = fourier::range(forces.torque, 0);
+  result.ripple = range.max.value - range.min.value;
+  return result;
+}
+
+}  // namespace
+
+DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
+                               SectionHeights heights, double margin, bool per_turn)
+    : model_(model),
+      settings_(settings),
+      span_(span),
+      heights_(std::move(heights)),
+      margin_(margin),
+      per_turn_(per_turn) {
+  const int count = span.from == span.to ? 1 : std::max(2, span.num_nodes);
+  for (int k = 0; k < count; ++k) {
+    auto sample = std::make_unique<Sample>();
+    const double t = count == 1 ? 0 : static_cast<double>(k) / (count - 1);
+    sample->speed = k + 1 == count ? span.to : span.from * std::pow(span.to / span.from, t);
+    nodes_.push_back(std::move(sample));
+  }
+}
+
+DesignAnalysis::~DesignAnalysis() = default;
+
+void DesignAnalysis::respond() {
+  if (responded_) return;
+  responded_ = true;
+  // Resonances omega_i = n Omega narrower than the distance of two nodes get a node of their own.
+  std::vector<double> more;
+  if (nodes_.size() > 1) {
+    for (const RodModel& rod : model_.rods) {
+      if (!rod.reported) continue;
+      std::vector<std::vector<ModeState>> modes;
+      for (const auto& node : nodes_) modes.push_back(mean_modes(scale_system(rod.system, node->speed)));
+      for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
+        const double a = nodes_[k]->speed, b = nodes_[k + 1]->speed;
+        for (std::size_t i = 0; i < std::min(resonant_modes, modes[k].size()); ++i) {
+          const double first = modes[k][i].frequency / a, last = modes[k + 1][i].frequency / b;
+          if (!std::isfinite(first) || !std::isfinite(last)) continue;
+          const double low = std::min(first, last), high = std::max(first, last);
+          const double half_width = modes[k][i].damping() / a;
+          if (!(half_width < 2 * (high - low))) continue;
+          for (double n = std::max(1.0, std::floor(low) + 1); n < high && n <= highest_order; ++n)
+            more.push_back(a + (n - first) / (last - first) * (b - a));
+        }
+      }
+    }
+  }
+  for (const double speed : more) {
+    auto sample = std::make_unique<Sample>();
+    sample->speed = speed;
+    nodes_.push_back(std::move(sample));
+  }
+  std::ranges::sort(nodes_, {}, [](const auto& node) { return node->speed; });
+  parallel_for(nodes_.size(), settings_.threads, [&](std::size_t k) {
+    Sample& node = *nodes_[k];
+    node.deflection.assign(model_.rods.size(), nan);
+    node.moment.assign(model_.rods.size(), nan);
+    for (std::size_t r = 0; r < model_.rods.size(); ++r) {
+      std::optional<FourierSeries> q = response(model_.rods[r], node.speed, settings_);
+      if (!q) {
+        node.q.clear();
+        return;
+      }
+      const RodShape shape = shape_of(model_, model_.rods[r], node.speed, *q);
+      node.deflection[r] = shape.deflection.max_abs;
+      node.moment[r] = shape.bending_moment.max_abs;
+      node.q.push_back(std::move(*q));
+    }
+  });
+}
+
+void DesignAnalysis::need_forces() {
+  respond();
+  if (!nodes_.front()->forces.empty()) return;
+  const std::size_t joints = forces_of(model_, nodes_.front()->speed, {}).joints.size();
+  parallel_for(nodes_.size(), settings_.threads, [&](std::size_t k) {
+    Sample& node = *nodes_[k];
+    node.forces.assign(joints, nan);
+    if (node.q.size() != model_.rods.size()) return;
+    Forces forces = forces_of(model_, node.speed, node.q);
+    node.forces = std::move(forces.joints);
+    node.ripple = forces.ripple;
+  });
+}
+
+void DesignAnalysis::find_instabilities() {
+  if (!nodes_.front()->growth.empty()) return;
+  respond();  // its nodes first
+  const auto shift_at = [&](double speed) { return per_turn_ ? margin_ * speed / (2 * pi) : margin_; };
+  const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
+  struct Known {
+    StabilitySample sample;
+    std::vector<ModeState> modes;
+  };
+  std::vector<std::vector<Known>> known(num_nodes);
+  const auto look = [&](std::size_t r, double speed) {
+    const ScaledSystem system = scale_system(shifted(model_.rods[r].system, shift_at(speed)), speed);
+    return Known{stability_sample(system, speed, margin_options(settings_)), mean_modes(system)};
+  };
+  parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
+    const double speed = nodes_[k]->speed;
+    for (std::size_t r = 0; r < num_rods; ++r) {
+      known[k].push_back(look(r, speed));
+      nodes_[k]->growth.push_back(growth_of(known[k].back().sample.stability) - shift_at(speed));
+    }
+  });
+  // Narrow bands that lie between two nodes.
+  std::vector<std::vector<double>> found(num_nodes);
+  parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
+    for (std::size_t r = 0; r < num_rods; ++r) {
+      if (!model_.rods[r].reported) continue;
+      const Known &a = known[k][r], &b = known[k + 1][r];
+      const auto at = [&](double speed) { return std::optional<StabilitySample>(look(r, speed).sample); };
+      for (const StabilitySample& sample : look_between(at, a.sample, b.sample, a.modes, b.modes))
+        found[k].push_back(sample.x);
+    }
+  });
+  std::vector<std::unique_ptr<Sample>> more;
+  for (const std::vector<double>& speeds : found) {
+    for (const double speed : speeds) {
+      auto sample = std::make_unique<Sample>();
+      sample->speed = speed;
+      sample->deflection.assign(num_rods, nan);
+      sample->moment.assign(num_rods, nan);
+      for (std::size_t r = 0; r < num_rods; ++r) {
+        sample->growth.push_back(growth_of(look(r, speed).sample.stability) - shift_at(speed));
+        if (std::optional<FourierSeries> q = response(model_.rods[r], speed, settings_)) {
+          const RodShape shape = shape_of(model_, model_.rods[r], speed, *q);
+          sample->deflection[r] = shape.deflection.max_abs;
+          sample->moment[r] = shape.bending_moment.max_abs;
+          sample->q.push_back(std::move(*q));
+        }
+      }
+      if (!nodes_.front()->forces.empty()) {
+        sample->forces.assign(nodes_.front()->forces.size(), nan);
+        if (sample->q.size() == num_rods) {
+          Forces forces = forces_of(model_, speed, sample->q);
+          sample->forces = std::move(forces.joints);
+          sample->ripple = forces.ripple;
+        }
+      }
+      more.push_back(std::move(sample));
+    }
+  }
+  for (auto& sample : more) nodes_.push_back(std::move(sample));
+  std::ranges::sort(nodes_, {}, [](const auto& node) { return node->speed; });
+}
+
+std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metric) {
+  std::vector<Curve> curves;
+  std::vector<std::string> names;
+  const Units& units = model_.scene.units;
+  const auto choose = [&](std::size_t index, const std::string& name, double factor) {
+    names.push_back(name);
+    if (metric.name.empty() || metric.name == name) curves.push_back({metric.kind, index, factor, name});
+  };
+  const bool needs_linkage = metric.kind == MetricKind::stress || metric.kind == MetricKind::force ||
+                             metric.kind == MetricKind::torque_ripple || metric.kind == MetricKind::mass;
+  if (needs_linkage && !model_.linkage())
+    throw UsageError(
+        fmt::format("{}: found in a [hill] scene, which has no links; allowed there: deflection, stable, "
+                    "frequency, clearance",
+                    metric.text));
+  switch (metric.kind) {
+    case MetricKind::force: {
+      const Forces forces = forces_of(model_, nodes_.front()->speed, {});
+      for (std::size_t j = 0; j < forces.names.size(); ++j) choose(j, forces.names[j], units.force_in_newton());
+      break;
+    }
+    case MetricKind::torque_ripple:
+      choose(0, "", units.torque_in_newton_metre());
+      break;
+    default:
+      for (std::size_t r = 0; r < model_.rods.size(); ++r) {
+        const RodModel& rod = model_.rods[r];
+        if (!rod.reported) continue;
+        double factor = 1;
+        if (metric.kind == MetricKind::stress && (metric.name.empty() || metric.name == rod.name)) {
+          const auto named = heights_.find(rod.name), all = heights_.find("*");
+          const auto height = named != heights_.end() ? named : all;
+          if (height == heights_.end())
+            throw UsageError(
+                fmt::format("{}: found no section height of {}, allowed: --height {}=H, or a section in "
+                            "the scene",
+                            metric.text, rod.name, rod.name));
+          const Elastic& elastic = *body_at(*model_.linkage(), rod.link)->elastic;
+          // sigma = |EJ w''| h/(2 J), in MPa.
+          const double pascal = units.force_in_newton() / (units.length_in_m * units.length_in_m);
+          factor = height->second / (2 * elastic.second_moment) * pascal * 1e-6;
+        }
+        choose(r, rod.name, factor);
+      }
+  }
+  if (curves.empty())
+    throw UsageError(fmt::format("{}: found no \"{}\", allowed: {}", metric.text, metric.name, fmt::join(names, ", ")));
+  return curves;
+}
+
+double DesignAnalysis::at_node(const Curve& curve, std::size_t node) {
+  const Sample& sample = *nodes_[node];
+  switch (curve.kind) {
+    case MetricKind::deflection:
+      return curve.factor * sample.deflection[curve.index];
+    case MetricKind::stress:
+      return curve.factor * sample.moment[curve.index];
+    case MetricKind::force:
+      return curve.factor * sample.forces[curve.index];
+    case MetricKind::torque_ripple:
+      return curve.factor * sample.ripple;
+    case MetricKind::margin:
+      return sample.growth[curve.index];
+    case MetricKind::margin_per_turn:
+      return sample.growth[curve.index] * 2 * pi / sample.speed;
+    default:
+      return nan;
+  }
+}
+
+double DesignAnalysis::at(const Curve& curve, double speed) {
+  switch (curve.kind) {
+    case MetricKind::deflection:
+    case MetricKind::stress: {
+      const RodModel& rod = model_.rods[curve.index];
+      const std::optional<FourierSeries> q = response(rod, speed, settings_);
+      if (!q) return nan;
+      const RodShape shape = shape_of(model_, rod, speed, *q);
+      return curve.factor *
+             (curve.kind == MetricKind::stress ? shape.bending_moment.max_abs : shape.deflection.max_abs);
+    }
+    case MetricKind::force:
+    case MetricKind::torque_ripple: {
+      std::vector<FourierSeries> all;
+      for (const RodModel& rod : model_.rods) {
+        std::optional<FourierSeries> q = response(rod, speed, settings_);
+        if (!q) return nan;
+        all.push_back(std::move(*q));
+      }
+      const Forces forces = forces_of(model_, speed, all);
+      return curve.factor * (curve.kind == MetricKind::force ? forces.joints[curve.index] : forces.ripple);
+    }
+    case MetricKind::margin:
+    case MetricKind::margin_per_turn: {
+      const double growth =
+          growth_of(analyse_stability(model_.rods[curve.index].system, speed, margin_options(settings_)));
+      return curve.kind == MetricKind::margin ? growth : growth * 2 * pi / speed;
+    }
+    default:
+      return nan;
+  }
+}
+
+MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>& curves) {
+  std::vector<double> speeds;
+  for (const auto& node : nodes_) speeds.push_back(node->speed);
+  std::vector<std::vector<double>> values(curves.size());
+  double highest = -HUGE_VAL, lowest = HUGE_VAL;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      values[c].push_back(at_node(curves[c], k));
+      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where};
+      highest = std::max(highest, values[c].back());
+      lowest = std::min(lowest, values[c].back());
+    }
+  }
+  MetricValue result;
+  result.value = -HUGE_VAL;
+  for (std::size_t c = 0; c < curves.size(); ++c) {
+    // A curve that stays far below the others cannot hold the worst case.
+    const double own = *std::ranges::max_element(values[c]);
+    if (own < highest - 0.5 * (highest - lowest)) continue;
+    const WorstCase found = worst_case([&](double speed) { return at(curves[c], speed); }, speeds, values[c]);
+    if (std::isnan(found.value)) return {nan, found.x, curves[c].where};
+    if (found.value > result.value) result = {found.value, found.x, curves[c].where};
+  }
+  if (metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn) result.value = -result.value;
+  return result;
+}
+
+// For order n the range of r = omega_1/Omega over all speeds must lie on one side of n:
+//     c_n = max(min r/n - 1, 1 - max r/n),   clearance = min over rods and n.
+MetricValue DesignAnalysis::clearance(const Metric& metric) {
+  MetricValue result{HUGE_VAL, std::nullopt, ""};
+  for (const RodModel& rod : model_.rods) {
+    if (!rod.reported) continue;
+    const auto ratio = [&](double speed) {
+      const double w2 = scale_system(rod.system, speed).mean_diagonal().minCoeff();
+      return w2 > 0 ? std::sqrt(w2) : 0.0;
+    };
+    std::vector<double> speeds, values, negative;
+    for (const auto& node : nodes_) {
+      speeds.push_back(node->speed);
+      values.push_back(ratio(node->speed));
+      negative.push_back(-values.back());
+    }
+    const WorstCase most = worst_case(ratio, speeds, values);
+    const WorstCase least = worst_case([&](double speed) { return -ratio(speed); }, speeds, negative);
+    for (int n = 1; n <= metric.orders; ++n) {
+      const double above = -least.value / n - 1, below = 1 - most.value / n;
+      const double c = std::max(above, below);
+      if (c < result.value) result = {c, above > below ? least.x : most.x, rod.name};
+    }
+  }
+  return result;
+}
+
+MetricValue DesignAnalysis::value(const Metric& metric) {
+  if (metric.kind == MetricKind::clearance) return clearance(metric);
+  const std::vector<Curve> curves = curves_of(metric);
+  if (metric.kind == MetricKind::mass) {
+    MetricValue result{0, std::nullopt, metric.name};
+    for (const Curve& curve : curves) result.value += body_at(*model_.linkage(), model_.rods[curve.index].link)->mass;
+    return result;
+  }
+  if (metric.kind == MetricKind::frequency) {
+    MetricValue result{HUGE_VAL, std::nullopt, ""};
+    for (const Curve& curve : curves) {
+      const double hertz = lowest_frequency(model_.rods[curve.index].system) / (2 * pi) / model_.scene.units.time_in_s;
+      if (hertz < result.value) result = {hertz, std::nullopt, curve.where};
+    }
+    return result;
+  }
+  respond();
+  if (metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple) need_forces();
+  if (metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn) find_instabilities();
+  return worst(metric, curves);
+}
+
+DesignCurves DesignAnalysis::curves() {
+  respond();
+  find_instabilities();
+  DesignCurves result;
+  std::vector<std::size_t> rods;
+  for (std::size_t r = 0; r < model_.rods.size(); ++r) {
+    if (!model_.rods[r].reported) continue;
+    rods.push_back(r);
+    result.rods.push_back(model_.rods[r].name);
+  }
+  const auto rows = static_cast<Eigen::Index>(nodes_.size());
+  result.deflection.resize(rows, static_cast<Eigen::Index>(rods.size()));
+  result.growth.resize(rows);
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const Sample& node = *nodes_[static_cast<std::size_t>(k)];
+    result.speed.push_back(node.speed);
+    result.growth(k) = -HUGE_VAL;
+    for (std::size_t j = 0; j < rods.size(); ++j) {
+      result.deflection(k, static_cast<Eigen::Index>(j)) = node.deflection[rods[j]];
+      result.growth(k) = std::max(result.growth(k), node.growth[rods[j]]);
+    }
+  }
+  return result;
+}
+
+}  // namespace hb::tools

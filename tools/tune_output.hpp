@@ -1,0 +1,31 @@
+// What `hb tune` says: table, JSON, CSV, pictures and the tuned scene.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/csv_output.hpp"
+#include "tools/gnuplot.hpp"
+#include "tools/tune_problem.hpp"
+
+namespace hb::tools {
+
+[[nodiscard]] std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene);
+
+// Every design tried: variables, goal, conditions' excess.
+[[nodiscard]] CsvFile history_csv(const TuneTask& task, const TuneResult& result);
+// Speed, deflection of each rod, growth rate.
+[[nodiscard]] CsvFile curves_csv(const TuneTask& task, const DesignCurves& curves, const Scene& scene, bool after);
+// Both designs over the speed: deflection above, growth rate below. Empty at a single speed.
+[[nodiscard]] std::vector<Figure> curves_figures(const TuneTask& task, const TuneResult& result, const Scene& scene);
+
+// The scene with the tuned numbers; relative paths of further files lead from `folder`.
+[[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result,
+                                      const std::filesystem::path& scene_file, const std::filesystem::path& folder);
+
+// Empty, or why the exit status is "not reached".
+[[nodiscard]] std::string shortfall(const TuneResult& result);
+
+}  // namespace hb::tools
