@@ -45,7 +45,9 @@ struct Sweep {
 
 SampleAt samples_of(const HillSystem& system) {
   return [&system](double x) -> std::optional<StabilitySample> {
-    return stability_sample(scale_system(system, x), x, {.tolerance = 1e-11});
+    StabilityOptions options;
+    options.tolerance = 1e-11;
+    return stability_sample(scale_system(system, x), x, options);
   };
 }
 
@@ -196,10 +198,13 @@ TEST(ResponsePeak, OfADampedOscillatorIsTheClosedFormToTenDigits) {
     const HillSystem system = oscillator(b, k, 0);
     const double expected = std::sqrt(k - b * b / 2);
     const auto value = [&](double W) -> std::optional<double> {
-      return fourier::max_abs(solve_steady_state(system, W, {.tolerance = 1e-12}).q, 0).value;
+      SteadyOptions options;
+      options.tolerance = 1e-12;
+      return fourier::max_abs(solve_steady_state(system, W, options).q, 0).value;
     };
     const double reach = std::min(0.3, 20 * b);
-    const std::optional<ResponsePeak> peak = locate_peak(value, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
+    const std::optional<ResponsePeak> peak =
+        locate_peak(value, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
     ASSERT_TRUE(peak);
     EXPECT_TRUE(peak->converged) << b << " " << peak->error;
     EXPECT_NEAR(peak->x, expected, 1e-10 * expected) << b;
