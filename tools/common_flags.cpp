@@ -15,7 +15,7 @@ namespace {
 
 constexpr double smallest = std::numeric_limits<double>::min();
 constexpr double largest = std::numeric_limits<double>::max();
-constexpr int max_modes = 60;      // what the Ritz matrices are made for
+constexpr int max_modes = 60;  // what the Ritz matrices are made for
 constexpr int max_threads = 1024;
 
 [[noreturn]] void refuse(const std::string& flag, const std::string& found, const std::string& allowed) {
@@ -138,8 +138,7 @@ void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
   app.add_option("--rods", flags.rods, "elastic links to look at, as in AB,CD; default all")->type_name("NAMES");
   app.add_option("--only", flags.only, "compute only these: steady,stability,reactions,shape")->type_name("LIST");
   app.add_option("--rpm", flags.rpm, "speed of the crank in revolutions per minute")->type_name("N");
-  app.add_option("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm")
-      ->type_name("W");
+  app.add_option("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm")->type_name("W");
   app.add_option("--threads", flags.threads, "number of threads, 1 or more")->type_name("N");
   app.add_option("--steady-method", flags.steady_method, "automatic, direct or iterative")->type_name("METHOD");
   app.add_option("--stability-method", flags.stability_method, "automatic, hill, slaving or propagation")
@@ -167,8 +166,8 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
   if (!flags.rods.empty()) result.rods = list_flag("--rods", flags.rods);
   if (!flags.only.empty()) result.only = only_flag(flags.only);
   if (!flags.threads.empty()) {
-    result.threads = integer_flag("--threads", flags.threads, 1, max_threads,
-                                  fmt::format("an integer 1 to {}", max_threads));
+    result.threads =
+        integer_flag("--threads", flags.threads, 1, max_threads, fmt::format("an integer 1 to {}", max_threads));
   }
   if (!flags.steady_method.empty()) {
     result.steady_method = choice_flag<SteadyMethod>("--steady-method", flags.steady_method,
@@ -195,16 +194,16 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
 
 SpeedRange speed_range(const CommonFlags& flags, const Scene& scene) {
   if (!flags.rpm.empty() && !flags.omega.empty()) {
-    throw UsageError(fmt::format("--omega: found \"{}\" beside --rpm {}, allowed: one of the two", flags.omega,
-                                 flags.rpm));
+    throw UsageError(
+        fmt::format("--omega: found \"{}\" beside --rpm {}, allowed: one of the two", flags.omega, flags.rpm));
   }
   if (!flags.rpm.empty()) return {speeds_flag("--rpm", flags.rpm), true};
   if (!flags.omega.empty()) return {speeds_flag("--omega", flags.omega), false};
   if (scene.analysis.rpm) return {*scene.analysis.rpm, true};
   if (scene.analysis.omega) return {{*scene.analysis.omega, *scene.analysis.omega, 0}, false};
-  throw UsageError(
-      fmt::format("--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm N, or --omega W (rad per {})",
-                  scene.file.string(), scene.units.time));
+  throw UsageError(fmt::format(
+      "--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm N, or --omega W (rad per {})",
+      scene.file.string(), scene.units.time));
 }
 
 double single_speed(const CommonFlags& flags, const Scene& scene) {

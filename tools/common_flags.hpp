@@ -28,10 +28,10 @@ struct CommonFlags {
 
 // What is asked for; only that is computed.
 struct Only {
-  bool steady = true;     // Fourier coefficients and peaks of q
+  bool steady = true;  // Fourier coefficients and peaks of q
   bool stability = true;  // exponents and verdict
   bool reactions = true;  // joint forces and driving torque
-  bool shape = true;      // deflection and bending moment
+  bool shape = true;  // deflection and bending moment
 };
 
 struct Settings {

@@ -54,8 +54,8 @@ std::string meaning_of_q(const SceneModel& model) {
 CsvFile shape_csv(const SceneModel& model, const SpeedResult& result, const RodResult& rod, bool moment) {
   const OutputUnits units = output_units(model.scene);
   const Body& link = *body_at(*model.linkage(), rod.link);
-  const auto model_rod = std::find_if(model.rods.begin(), model.rods.end(),
-                                      [&](const RodModel& other) { return other.link == rod.link; });
+  const auto model_rod =
+      std::find_if(model.rods.begin(), model.rods.end(), [&](const RodModel& other) { return other.link == rod.link; });
   const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(model_rod->coefficients)];
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(shape_points, 0, link.length);
   const Eigen::Index N = table_samples(rod.steady->q.num_harmonics());
@@ -87,7 +87,8 @@ std::string csv_text(const CsvFile& file) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   for (std::string line : file.comment) {
-    std::replace_if(line.begin(), line.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    std::replace_if(
+        line.begin(), line.end(), [](unsigned char c) { return c < ' '; }, ' ');
     fmt::format_to(out, "# {}\n", line);
   }
   fmt::format_to(out, "{}\n", fmt::join(file.columns, ","));

@@ -10,7 +10,7 @@
 namespace hb::tools {
 
 struct CsvFile {
-  std::string name;                  // of the file
+  std::string name;  // of the file
   std::vector<std::string> comment;  // lines
   std::vector<std::string> columns;  // names with units
   Eigen::MatrixXd rows;

@@ -25,7 +25,9 @@ svg(w, h) = sprintf("set terminal svg size %d,%d font 'DejaVu Sans,13' backgroun
 png(w, h) = sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,13' fontscale 2 linewidth 2.4 pointscale 2", 2*w, 2*h)
 set border 3 linecolor '#444444'
 set tics nomirror textcolor '#222222'
-set grid linecolor '#dddddd' linewidth 0.6
+set grid linecolor '#c8c8c8' linewidth 0.6
+# The next of 1, 2, 5, 10, 20, ... that is not below r: a distance of tics.
+nice(r) = (nice_e = 10.0**floor(log10(r)), nice_m = r/nice_e, nice_e*(nice_m <= 1 ? 1 : nice_m <= 2 ? 2 : nice_m <= 5 ? 5 : 10))
 set linetype 1 linecolor '#0072b2' linewidth 1.6 pointtype 7
 set linetype 2 linecolor '#d55e00' linewidth 1.6 pointtype 5
 set linetype 3 linecolor '#009e73' linewidth 1.6 pointtype 9

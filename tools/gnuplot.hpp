@@ -10,7 +10,7 @@
 namespace hb::tools {
 
 struct Figure {
-  std::string name;      // of the files, without extension
+  std::string name;  // of the files, without extension
   int width = 900, height = 560;  // of the SVG in pixels; the PNG has twice as many
   std::string commands;  // gnuplot, after terminal and output are set
 };

@@ -112,7 +112,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   const Units& units = model.scene.units;
   Json json;
   json["title"] = model.scene.title;
-  json["rpm"] = rpm_from_speed(result.speed, units);
+  json["rpm"] = rpm_of(result.speed, units);
   json["omega"] = result.speed;
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 
 #include "tools/command.hpp"
@@ -86,8 +87,8 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
       stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
       if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
       I = std::min(more, max_auto_modes);
-      state = I == more ? std::move(finer_state)
-                        : solve_steady_state(ritz_system(link, coefficients, I), speed, options);
+      state =
+          I == more ? std::move(finer_state) : solve_steady_state(ritz_system(link, coefficients, I), speed, options);
     }
   }
   result.num_modes = I;
@@ -102,8 +103,8 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
       sentences.push_back(
           fmt::format("{}: no unique periodic solution at this speed (resonance without damping)", rod.name));
     } else if (!(rod.steady->error_bound <= settings.tolerance)) {
-      sentences.push_back(fmt::format("{}: the steady state's error bound {:.1e} exceeds the tolerance {:.1e}", rod.name,
-                                      rod.steady->error_bound, settings.tolerance));
+      sentences.push_back(fmt::format("{}: the steady state's error bound {:.1e} exceeds the tolerance {:.1e}",
+                                      rod.name, rod.steady->error_bound, settings.tolerance));
     }
   }
   if (is_auto(settings) && rod.modes_error && !(*rod.modes_error <= settings.tolerance)) {
@@ -126,9 +127,12 @@ double cut_error(const Body& link, const RodCoefficients& rod, double speed, con
   // The error of I modes falls at least like I^-3, and I grows by half: the difference is at least 1 - 1.5^-3 = 0.7 of
   // the error. The factor 2 covers that and neighbouring modes of unequal weight (chosen by experiment).
   constexpr double safety = 2;
-  // Four points per half-wave of the finest mode, two per period of the highest harmonic and more.
+  // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic.
   const Eigen::Index num_x = std::max<Eigen::Index>(33, 4 * finer.num_components() + 1);
-  const Eigen::Index num_samples = 4 * std::max<Eigen::Index>(16, std::max(q.num_harmonics(), finer.num_harmonics()));
+  const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
+  // A power of two, whose transform is planned at once.
+  const auto num_samples =
+      static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(4 * std::max<Eigen::Index>(16, harmonics))));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
   const Eigen::MatrixXd w = rod_field(link, rod, speed, q, x, num_samples).w;
   const Eigen::MatrixXd w_finer = rod_field(link, rod, speed, finer, x, num_samples).w;
@@ -161,9 +165,9 @@ SceneModel make_model(Scene scene, const Settings& settings) {
 
   for (const std::string& name : settings.rods) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      throw UsageError(fmt::format("--rods: found \"{}\", allowed: {}", name,
-                                   names.empty() ? "nothing, the scene has no elastic links"
-                                                 : fmt::format("{}", fmt::join(names, ", "))));
+      throw UsageError(fmt::format(
+          "--rods: found \"{}\", allowed: {}", name,
+          names.empty() ? "nothing, the scene has no elastic links" : fmt::format("{}", fmt::join(names, ", "))));
     }
   }
   if (!settings.rods.empty()) {
@@ -183,9 +187,9 @@ SceneModel make_model(Scene scene, const Settings& settings) {
 
   if (const Linkage* linkage = model.linkage(); linkage && !model.rods.empty()) {
     model.coefficients = linkage_coefficients(*linkage);
-    model.stages.push_back({"coefficients of the geometry", watch.seconds(),
-                            fmt::format("{} crank angles, tail {:.1e}", model.coefficients.num_samples,
-                                        model.coefficients.tail)});
+    model.stages.push_back(
+        {"coefficients of the geometry", watch.seconds(),
+         fmt::format("{} crank angles, tail {:.1e}", model.coefficients.num_samples, model.coefficients.tail)});
     Stopwatch ritz_watch;
     const std::vector<int>& links = model.coefficients.links;
     for (RodModel& rod : model.rods) {
@@ -238,9 +242,9 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       options.method = settings.stability_method;
       Stopwatch watch;
       const bool same = entry.num_modes == rod.system.num_modes();
-      entry.stability = same ? analyse_stability(rod.system, speed, options)
-                             : analyse_stability(
-                                   ritz_system(link_of(model, rod), coefficients_of(model, rod), entry.num_modes),
+      entry.stability =
+          same ? analyse_stability(rod.system, speed, options)
+               : analyse_stability(ritz_system(link_of(model, rod), coefficients_of(model, rod), entry.num_modes),
                                    speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});
     }

@@ -17,19 +17,19 @@ namespace hb::tools {
 
 // One stage of the work, for --stats.
 struct Stage {
-  std::string name;     // "steady state of AB"
+  std::string name;  // "steady state of AB"
   double seconds = 0;
-  std::string note;     // what was done, or why it was skipped; may be empty
+  std::string note;  // what was done, or why it was skipped; may be empty
   bool skipped = false;
 };
 
 struct RodModel {
-  std::string name;     // "system" for a [hill] scene
-  int link = -1;        // body number; -1 for a [hill] scene
+  std::string name;  // "system" for a [hill] scene
+  int link = -1;  // body number; -1 for a [hill] scene
   int coefficients = -1;  // place in LinkageCoefficients::rods
-  bool reported = true;   // false: solved only because joint forces need it
-  HillSystem system;      // with the number of modes asked for (auto: the number to start from)
-  HillSystem finer;       // with comparison_modes; empty if the error of the cut is not asked for
+  bool reported = true;  // false: solved only because joint forces need it
+  HillSystem system;  // with the number of modes asked for (auto: the number to start from)
+  HillSystem finer;  // with comparison_modes; empty if the error of the cut is not asked for
 };
 
 struct SceneModel {
@@ -47,7 +47,7 @@ struct RodResult {
   bool reported = true;
   Eigen::Index num_modes = 0;
   std::optional<SteadyState> steady;
-  std::vector<Extremum> max_abs;       // of each q_i over the turn
+  std::vector<Extremum> max_abs;  // of each q_i over the turn
   // Estimated max |error of w| / max |w| over rod and turn from cutting the Ritz series, quasi-static tail included.
   std::optional<double> modes_error;
   std::optional<RodShape> shape;
@@ -56,7 +56,7 @@ struct RodResult {
 
 struct SpeedResult {
   double speed = 0;  // rad per unit time
-  Only computed;     // what was asked for and exists in this scene
+  Only computed;  // what was asked for and exists in this scene
   std::vector<RodResult> rods;
   std::optional<JointForces> forces;
   std::vector<std::string> shortfalls;  // one sentence for each thing that missed its tolerance; empty: all reached

@@ -45,7 +45,9 @@ std::string speeds_text(const Scene& scene) {
   return "no speed";
 }
 
-std::string point_text(std::complex<double> point) { return fmt::format("({:.6g}, {:.6g})", point.real(), point.imag()); }
+std::string point_text(std::complex<double> point) {
+  return fmt::format("({:.6g}, {:.6g})", point.real(), point.imag());
+}
 
 using Text = fmt::memory_buffer;
 
@@ -102,9 +104,9 @@ void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
       const Slider& slider = std::get<Slider>(dyad.closing);
       add(text, "  {:<8} {:<12} mass {:.6g} {}, guide through {} {}, direction {:.6g} deg{}\n", "slider", slider.name,
           slider.mass, units.mass, point_text(slider.guide), units.length, slider.direction * degrees_per_radian,
-          slider.force.num_components() == 0
-              ? ""
-              : fmt::format(", applied force of {} harmonics", std::max<Eigen::Index>(0, slider.force.num_harmonics())));
+          slider.force.num_components() == 0 ? ""
+                                             : fmt::format(", applied force of {} harmonics",
+                                                           std::max<Eigen::Index>(0, slider.force.num_harmonics())));
     }
     const TransmissionAngle worst = transmission_angle(linkage, static_cast<int>(d));
     add(text, "  smallest transmission angle {:.4g} deg, at crank angle {:.4g} deg\n",
@@ -121,10 +123,8 @@ Eigen::Index highest_harmonic(const std::array<FourierSeries, 3>& powers) {
 Json point_json(std::complex<double> point) { return Json::array({point.real(), point.imag()}); }
 
 Json body_json(const Body& body, const Units& units) {
-  Json json = {{"length", body.length},
-               {"mass", body.mass},
-               {"com_xy", point_json(body.com)},
-               {"inertia", body.inertia}};
+  Json json = {
+      {"length", body.length}, {"mass", body.mass}, {"com_xy", point_json(body.com)}, {"inertia", body.inertia}};
   if (!body.points.empty()) {
     for (const auto& [name, point] : body.points) json["points_xy"][name] = point_json(point);
   }
@@ -201,7 +201,9 @@ TransmissionAngle transmission_angle(const Linkage& linkage, int dyad) {
   const double angle = (low + high) / 2;
   const double sine = std::min(smallest, sine_at(linkage, dyad, angle, motion));
   const double turn = 2 * std::numbers::pi;
-  return {std::asin(std::min(1.0, sine)), angle < 0 ? angle + turn : angle >= turn ? angle - turn : angle};
+  // The search leaves a width of 1e-9: what lies that near to a full turn is its beginning.
+  const double in_turn = angle < 0 ? angle + turn : angle;
+  return {std::asin(std::min(1.0, sine)), turn - in_turn <= 1e-9 ? 0 : in_turn};
 }
 
 std::vector<double> natural_frequencies(const Body& link, int count) {

@@ -12,7 +12,7 @@ namespace hb::tools {
 // Angle between coupler and rocker, or between coupler and the normal of the guide, folded to [0, pi/2]: how well the
 // dyad passes force on. Smallest over the turn.
 struct TransmissionAngle {
-  double smallest = 0;     // rad
+  double smallest = 0;  // rad
   double crank_angle = 0;  // rad
 };
 [[nodiscard]] TransmissionAngle transmission_angle(const Linkage& linkage, int dyad);

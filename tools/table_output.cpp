@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <complex>
 #include <iterator>
 
 #include "tools/output_units.hpp"
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::size_t max_exponents_shown = 4;
 constexpr std::size_t max_modes_shown = 10;
+constexpr double visible_error = 0.01;  // of a deflection
 
 using Text = fmt::memory_buffer;
 
@@ -50,13 +52,18 @@ void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, 
 void add_stability(Text& text, const Stability& stability, double speed, const Scene& scene) {
   const OutputUnits units = output_units(scene);
   std::vector<std::string> shown;
-  for (const Exponent& exponent : stability.exponents) {
-    if (shown.size() == max_exponents_shown) break;
-    shown.push_back(exponent_text(exponent));
+  std::size_t next = 0;
+  while (next < stability.exponents.size() && shown.size() < max_exponents_shown) {
+    // Of a conjugate pair the first stands for both.
+    const Exponent& exponent = stability.exponents[next++];
+    const bool pair = next < stability.exponents.size() && exponent.value.imag() != 0 &&
+                      stability.exponents[next].value == std::conj(exponent.value);
+    if (pair) ++next;
+    shown.push_back(exponent_text(exponent, pair));
   }
   if (!shown.empty()) {
     add(text, "  exponents [{}]   {}{}\n", units.rate, fmt::join(shown, ", "),
-        stability.exponents.size() > shown.size() ? ", ..." : "");
+        next < stability.exponents.size() ? ", ..." : "");
   }
   add(text, "  growth rate       {} {}{}\n", with_error(stability.growth_rate, stability.growth_error), units.rate,
       stability.converged ? "" : "  NOT REACHED");
@@ -101,7 +108,10 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     if (rod.steady && result.computed.steady) add(text, ", {} harmonics", rod.steady->num_harmonics);
     add(text, "\n");
     if (rod.steady && result.computed.steady) add_steady(text, rod, units, is_linkage, settings.tolerance);
-    if (rod.modes_error) add(text, "  error of the cut  {:.1e} of the largest deflection, estimated\n", *rod.modes_error);
+    if (rod.modes_error) {
+      add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
+          *rod.modes_error <= visible_error ? "" : "; MORE MODES ARE NEEDED (--modes)");
+    }
     if (rod.shape) {
       add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units);
       add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units);

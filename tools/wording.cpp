@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 namespace hb::tools {
 namespace {
@@ -33,8 +34,15 @@ std::string scene_name(const Scene& scene) {
   return scene.title.empty() ? scene.file.filename().string() : scene.title;
 }
 
+double rpm_of(double speed, const Units& units) {
+  const double rpm = rpm_from_speed(speed, units);
+  const double rounded = std::stod(fmt::format("{:.15g}", rpm));
+  return speed_from_rpm(rounded, units) == speed ? rounded : rpm;
+}
+
 std::string speed_text(double speed, const Scene& scene) {
-  if (std::holds_alternative<Linkage>(scene.model)) return fmt::format("{:.10g} rpm", rpm_from_speed(speed, scene.units));
+  if (std::holds_alternative<Linkage>(scene.model))
+    return fmt::format("{:.10g} rpm", rpm_from_speed(speed, scene.units));
   return fmt::format("omega = {:.10g} rad/{}", speed, scene.units.time);
 }
 
@@ -42,11 +50,15 @@ std::string with_error(double value, double error) {
   return fmt::format("{:.{}g} +/- {:.1e}", value, trusted_digits(value, error), error);
 }
 
-std::string exponent_text(const Exponent& exponent) {
+std::string exponent_text(const Exponent& exponent, bool conjugate_pair) {
   const double re = exponent.value.real(), im = exponent.value.imag();
   const std::string real = fmt::format("{:.{}g}", re, trusted_digits(re, exponent.error));
   if (im == 0) return real;
-  return fmt::format("{} {} {:.{}g} i", real, im < 0 ? '-' : '+', std::abs(im), trusted_digits(im, exponent.error));
+  return fmt::format("{} {} {:.{}g} i", real,
+                     conjugate_pair ? "+/-"
+                     : im < 0       ? "-"
+                                    : "+",
+                     std::abs(im), trusted_digits(im, exponent.error));
 }
 
 std::string verdict_sentence(const Stability& stability, double speed, const Units& units) {
@@ -55,17 +67,20 @@ std::string verdict_sentence(const Stability& stability, double speed, const Uni
   switch (stability.verdict) {
     case Verdict::stable: {
       const double halving = std::numbers::ln2 / -growth;
-      return fmt::format("stable: every disturbance dies out, in the long run at least as fast as exp({:.4g} t): halved in "
-                         "{:.3g} {} ({:.3g} turns)",
-                         growth, halving, units.time, halving / turn);
+      return fmt::format(
+          "stable: every disturbance dies out, in the long run at least as fast as exp({:.4g} t): halved in "
+          "{:.3g} {} ({:.3g} turns)",
+          growth, halving, units.time, halving / turn);
     }
     case Verdict::unstable: {
       const double tenfold = std::numbers::ln10 / growth;
-      return fmt::format("UNSTABLE: disturbances grow as exp({:.4g} t){}: tenfold in {:.3g} {} ({:.3g} turns). The periodic "
-                         "state exists but would not be seen in a machine",
-                         growth, kind_of(stability, speed), tenfold, units.time, tenfold / turn);
+      return fmt::format(
+          "UNSTABLE: disturbances grow as exp({:.4g} t){}: tenfold in {:.3g} {} ({:.3g} turns). The periodic "
+          "state exists but would not be seen in a machine",
+          growth, kind_of(stability, speed), tenfold, units.time, tenfold / turn);
     }
-    case Verdict::undecided: break;
+    case Verdict::undecided:
+      break;
   }
   return fmt::format("undecided: the growth rate {:.3g} +/- {:.1e} per {} may be of either sign", growth,
                      stability.growth_error, units.time);
@@ -73,18 +88,24 @@ std::string verdict_sentence(const Stability& stability, double speed, const Uni
 
 const char* status_text(SteadyStatus status) {
   switch (status) {
-    case SteadyStatus::converged: return "converged";
-    case SteadyStatus::not_reached: return "tolerance not reached";
-    case SteadyStatus::singular: break;
+    case SteadyStatus::converged:
+      return "converged";
+    case SteadyStatus::not_reached:
+      return "tolerance not reached";
+    case SteadyStatus::singular:
+      break;
   }
   return "singular";
 }
 
 const char* method_text(SteadyMethod method) {
   switch (method) {
-    case SteadyMethod::direct: return "direct";
-    case SteadyMethod::iterative: return "iterative";
-    case SteadyMethod::automatic: break;
+    case SteadyMethod::direct:
+      return "direct";
+    case SteadyMethod::iterative:
+      return "iterative";
+    case SteadyMethod::automatic:
+      break;
   }
   return "automatic";
 }

@@ -11,13 +11,16 @@ namespace hb::tools {
 
 // The scene's title, or its file's name.
 [[nodiscard]] std::string scene_name(const Scene& scene);
+// The speed in rpm; of the numbers that mean this speed the one with the fewest digits, as someone would have given it.
+[[nodiscard]] double rpm_of(double speed, const Units& units);
 // "300 rpm", or "omega = 2.05 rad/s" for a [hill] scene.
 [[nodiscard]] std::string speed_text(double speed, const Scene& scene);
 // What the verdict means for a disturbance, with the time to halve or to grow tenfold.
 [[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Units& units);
 // "-16.045448 +/- 1.2e-11": digits as far as the error allows.
 [[nodiscard]] std::string with_error(double value, double error);
-[[nodiscard]] std::string exponent_text(const Exponent& exponent);
+// "-16.05 + 0.335 i"; "-16.05 +/- 0.335 i" for a conjugate pair.
+[[nodiscard]] std::string exponent_text(const Exponent& exponent, bool conjugate_pair = false);
 [[nodiscard]] const char* status_text(SteadyStatus status);
 [[nodiscard]] const char* method_text(SteadyMethod method);
 

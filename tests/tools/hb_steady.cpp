@@ -1,0 +1,422 @@
+// `hb steady` and `hb scene` as their users meet them: the built command, its documents, files and exit codes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Steady : public CommandTest {
+ protected:
+  Json document(const std::string& arguments, int expected_status = 0) const {
+    const CommandResult result = hb(arguments + " --json");
+    EXPECT_EQ(result.status, expected_status) << result.err;
+    return Json::parse(result.out);
+  }
+};
+
+// Largest |sum c_n e^{i n tau}| on the 8192 crank angles of the reference, by direct summation.
+double largest(const Json& coefficients) {
+  constexpr int samples = 8192;
+  double result = 0;
+  for (int j = 0; j < samples; ++j) {
+    const double tau = 2 * std::numbers::pi * j / samples;
+    double value = coefficients[0][0];
+    for (std::size_t n = 1; n < coefficients.size(); ++n) {
+      const std::complex<double> c(coefficients[n][0], coefficients[n][1]);
+      value += 2 * (c * std::polar(1.0, static_cast<double>(n) * tau)).real();
+    }
+    result = std::max(result, std::abs(value));
+  }
+  return result;
+}
+
+double reference_tolerance(double value) { return 1e-9 * std::abs(value); }
+
+TEST_F(Steady, GivesTheReferenceValuesOfTheSixLinkMechanism) {
+  const Json reference = Json::parse(read(HB_SOURCE_DIR "/tests/reference/six_link.json"));
+  for (const Json& expected : reference["cases"]) {
+    const std::string arguments = "steady " + scene("six_link") + " --rpm " + expected["rpm"].dump() + " --modes " +
+                                  expected["modes"].dump() + " --set '*.J=" + expected["J"].dump() + "'";
+    SCOPED_TRACE(arguments);
+    const Json found = document(arguments);
+    for (const auto& [name, rod] : expected["rods"].items()) {
+      const Json& mine = found["rods"][name];
+      EXPECT_EQ(mine["modes"], expected["modes"]);
+      for (std::size_t i = 0; i < rod["max_abs_q"].size(); ++i) {
+        const double value = rod["max_abs_q"][i];
+        EXPECT_NEAR(largest(mine["q"]["fourier"][i]), value, reference_tolerance(value)) << name << " q" << i + 1;
+        // The true peak lies between the reference's angles: above its value by (n pi/8192)^2/2 at most, n a harmonic.
+        EXPECT_GE(mine["q"]["max_abs"][i], value * (1 - 1e-9)) << name << " q" << i + 1;
+        EXPECT_LE(mine["q"]["max_abs"][i], value * (1 + 5e-6)) << name << " q" << i + 1;
+      }
+      const double growth = rod["exponents"][0][0];
+      EXPECT_NEAR(mine["growth_rate"], growth, std::max(1e-8 * std::abs(growth), 10 * double(mine["exponent_error"])));
+      EXPECT_EQ(mine["verdict"], growth < 0 ? "stable" : "unstable");
+    }
+  }
+}
+
+TEST_F(Steady, JsonHasTheKeysOfTheContract) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 300");
+  EXPECT_EQ(found["rpm"], 300.0);
+  EXPECT_NEAR(found["omega"], 10 * std::numbers::pi, 1e-13);
+  ASSERT_EQ(found["rods"].size(), 2u);
+  for (const Json& rod : found["rods"]) {
+    EXPECT_EQ(rod["modes"], 5);
+    EXPECT_EQ(rod["q"]["max_abs"].size(), 5u);
+    ASSERT_EQ(rod["q"]["fourier"].size(), 5u);
+    for (const Json& mode : rod["q"]["fourier"]) EXPECT_EQ(mode.size(), rod["harmonics"].get<std::size_t>() + 1);
+    EXPECT_LE(rod["error_bound"], 1e-10);
+    EXPECT_GT(rod["modes_error"], 0.0);
+    for (const char* peak : {"deflection", "bending_moment"}) {
+      for (const char* key : {"max_abs", "x", "crank_angle"}) EXPECT_TRUE(rod[peak][key].is_number()) << peak << key;
+    }
+    EXPECT_EQ(rod["exponents"][0].size(), 2u);
+    EXPECT_EQ(rod["exponents"].size(), rod["exponent_errors"].size());
+    EXPECT_TRUE(rod["growth_rate"].is_number());
+    EXPECT_TRUE(rod["exponent_error"].is_number());
+    EXPECT_EQ(rod["verdict"], "stable");
+  }
+  for (const char* joint : {"AB.0", "AB.1", "CD.0", "CD.1", "crank.pivot", "O2BC.pivot", "O3D.pivot"}) {
+    for (const char* component : {"x", "y", "x_rigid", "y_rigid"}) {
+      const Json& range = found["joints"][joint][component];
+      EXPECT_LE(range["min"], range["max"]) << joint << component;
+    }
+  }
+  EXPECT_LE(found["torque"]["min"], found["torque"]["max"]);
+  EXPECT_LE(found["torque"]["rigid"]["min"], found["torque"]["rigid"]["max"]);
+  EXPECT_FALSE(found.contains("stats"));
+}
+
+TEST_F(Steady, SlidersReportTheNormalForceOfTheirGuide) {
+  const Json found = document("steady " + scene("slider_crank") + " --rpm 600");
+  int guides = 0;
+  for (const auto& [name, joint] : found["joints"].items()) {
+    if (!name.ends_with(".guide")) continue;
+    ++guides;
+    EXPECT_LE(joint["n"]["min"], joint["n"]["max"]);
+    EXPECT_LE(joint["n_rigid"]["min"], joint["n_rigid"]["max"]);
+    EXPECT_FALSE(joint.contains("x"));
+  }
+  EXPECT_EQ(guides, 1);
+}
+
+TEST_F(Steady, AHillSceneHasOneRodNamedSystemAndNoJoints) {
+  const Json found = document("steady " + scene("mathieu") + " --omega 1");
+  ASSERT_EQ(found["rods"].size(), 1u);
+  const Json& system = found["rods"]["system"];
+  EXPECT_TRUE(found["joints"].empty());
+  EXPECT_FALSE(found.contains("torque"));
+  EXPECT_FALSE(system.contains("deflection"));
+  // x(0) and x'(0) of x'' + 0.1 x' + (1.2 + 0.4 cos t) x = cos t.
+  double x = 0, v = 0;
+  const Json& c = system["q"]["fourier"][0];
+  for (std::size_t n = 0; n < c.size(); ++n) {
+    x += (n == 0 ? 1 : 2) * c[n][0].get<double>();
+    v += -2.0 * static_cast<double>(n) * c[n][1].get<double>();
+  }
+  EXPECT_NEAR(x, 4.65595993, 5e-9);
+  EXPECT_NEAR(v, 2.71750522, 5e-9);
+  // Multipliers 0.63284681 +/- 0.36468206 i.
+  const std::complex<double> exponent(system["exponents"][0][0], system["exponents"][0][1]);
+  const std::complex<double> multiplier = std::exp(2 * std::numbers::pi * exponent);
+  EXPECT_NEAR(multiplier.real(), 0.63284681, 6e-9);
+  EXPECT_NEAR(std::abs(multiplier.imag()), 0.36468206, 6e-9);
+}
+
+TEST_F(Steady, OnlyComputesWhatIsAskedFor) {
+  const std::string base = "steady " + scene("six_link") + " --rpm 1500 --only ";
+  const Json full = document("steady " + scene("six_link") + " --rpm 1500");
+  const Json stability = document(base + "stability");
+  EXPECT_FALSE(stability.contains("joints"));
+  EXPECT_FALSE(stability.contains("torque"));
+  EXPECT_FALSE(stability["rods"]["AB"].contains("q"));
+  EXPECT_FALSE(stability["rods"]["AB"].contains("deflection"));
+  EXPECT_EQ(stability["rods"]["AB"]["growth_rate"], full["rods"]["AB"]["growth_rate"]);
+
+  const Json steady = document(base + "steady,shape");
+  EXPECT_FALSE(steady["rods"]["AB"].contains("verdict"));
+  EXPECT_FALSE(steady.contains("joints"));
+  EXPECT_EQ(steady["rods"]["AB"]["q"], full["rods"]["AB"]["q"]);
+  EXPECT_EQ(steady["rods"]["AB"]["deflection"], full["rods"]["AB"]["deflection"]);
+
+  const Json reactions = document(base + "reactions");
+  EXPECT_FALSE(reactions["rods"]["AB"].contains("q"));
+  EXPECT_EQ(reactions["joints"], full["joints"]);
+  EXPECT_EQ(reactions["torque"], full["torque"]);
+}
+
+TEST_F(Steady, RodsPicksRodsWithoutChangingAnyNumber) {
+  const Json full = document("steady " + scene("six_link") + " --rpm 1500");
+  const Json one = document("steady " + scene("six_link") + " --rpm 1500 --rods CD");
+  ASSERT_EQ(one["rods"].size(), 1u);
+  EXPECT_EQ(one["rods"]["CD"], full["rods"]["CD"]);
+  EXPECT_EQ(one["joints"], full["joints"]);
+  const CommandResult unknown = hb("steady " + scene("six_link") + " --rpm 1500 --rods EF");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("\"EF\""), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("AB, CD"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Steady, FlagsWinOverTheScene) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 600 --modes 3 --tol 1e-6 --set AB.J=60");
+  EXPECT_EQ(found["rpm"], 600.0);
+  EXPECT_EQ(found["rods"]["AB"]["modes"], 3);
+  EXPECT_EQ(found["tolerance"], 1e-6);
+  const Json plain = document("steady " + scene("six_link") + " --rpm 600 --modes 3 --tol 1e-6");
+  EXPECT_LT(found["rods"]["AB"]["q"]["max_abs"][0], plain["rods"]["AB"]["q"]["max_abs"][0]);
+  const double omega = plain["omega"];
+  const Json by_omega = document("steady " + scene("six_link") + " --modes 3 --tol 1e-6 --omega " + Json(omega).dump());
+  EXPECT_EQ(by_omega["rods"]["AB"]["growth_rate"], plain["rods"]["AB"]["growth_rate"]);
+}
+
+TEST_F(Steady, AutoModesReachTheToleranceOnTheDeflection) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 1500 --modes auto --tol 1e-6");
+  for (const Json& rod : found["rods"]) {
+    EXPECT_LE(rod["modes_error"], 1e-6);
+    EXPECT_EQ(rod["q"]["max_abs"].size(), rod["modes"].get<std::size_t>());
+  }
+}
+
+TEST_F(Steady, StatsSayWhatWasSkipped) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 300 --only steady --stats");
+  bool skipped = false;
+  for (const Json& stage : found["stats"]) skipped = skipped || stage.contains("skipped");
+  EXPECT_TRUE(skipped);
+}
+
+TEST_F(Steady, TheTableSaysTheVerdictInWords) {
+  const CommandResult stable = hb("steady " + scene("six_link") + " --rpm 300");
+  EXPECT_EQ(stable.status, 0) << stable.err;
+  EXPECT_NE(stable.out.find("stable: every disturbance dies out"), std::string::npos) << stable.out;
+  EXPECT_EQ(stable.out.find(" nan"), std::string::npos);
+  const CommandResult unstable = hb("steady " + scene("six_link") + " --rpm 3000");
+  EXPECT_EQ(unstable.status, 0) << unstable.err;
+  EXPECT_NE(unstable.out.find("would not be seen in a machine"), std::string::npos) << unstable.out;
+  EXPECT_NE(unstable.out.find("period doubling"), std::string::npos) << unstable.out;
+}
+
+TEST_F(Steady, WritesCsvAndPictures) {
+  const CommandResult result = hb("steady " + scene("slider_crank") + " --rpm 600 --modes 2 --out new/results");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const fs::path out = folder_ / "new/results";
+  for (const char* name : {"steady.json", "joint_forces.csv", "torque.csv", "mechanism.csv", "plots.gp"}) {
+    EXPECT_TRUE(fs::is_regular_file(out / name)) << name;
+  }
+  // Every picture of the script is there in both forms, and nothing else lies about.
+  std::size_t svg = 0, png = 0;
+  for (const auto& entry : fs::directory_iterator(out)) {
+    const std::string extension = entry.path().extension().string();
+    svg += extension == ".svg";
+    png += extension == ".png";
+    EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+    if (extension == ".csv") {
+      const std::string text = read(entry.path());
+      EXPECT_EQ(text.front(), '#') << entry.path();
+      EXPECT_EQ(text.find("nan"), std::string::npos) << entry.path();
+    }
+  }
+  EXPECT_EQ(svg, png);
+  EXPECT_GE(svg, 9u);
+  EXPECT_EQ(num_entries(folder_ / "new"), 1u);
+}
+
+TEST_F(Steady, AddsToAFolderWithoutTouchingOtherFiles) {
+  fs::create_directory(folder_ / "out");
+  std::ofstream(folder_ / "out/mine.txt") << "mine";
+  const std::string arguments = "steady " + scene("mathieu") + " --omega 1 --no-plots --out out";
+  ASSERT_EQ(hb(arguments).status, 0);
+  const std::size_t entries = num_entries(folder_ / "out");
+  ASSERT_EQ(hb(arguments).status, 0);
+  EXPECT_EQ(read(folder_ / "out/mine.txt"), "mine");
+  EXPECT_EQ(num_entries(folder_ / "out"), entries);
+  EXPECT_FALSE(fs::exists(folder_ / "out/plots.gp"));
+}
+
+TEST_F(Steady, WithoutGnuplotTheTablesAreWrittenAndItSaysSo) {
+  fs::create_directory(folder_ / "empty");
+  const CommandResult result =
+      hb("steady " + scene("mathieu") + " --omega 1 --out out", "PATH='" + (folder_ / "empty").string() + "'");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("gnuplot is not installed"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out/response_system.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/plots.gp"));
+}
+
+TEST_F(Steady, UnwritableOutputIsAnErrorThatLeavesNothing) {
+  std::ofstream(folder_ / "file") << "x";
+  fs::create_directories(folder_ / "blocked/torque.csv");
+  for (const char* place : {"file", "file/below", "/proc/hb-test", "/dev/null", "''"}) {
+    const CommandResult result = hb("steady " + scene("six_link") + " --rpm 300 --out " + place);
+    EXPECT_EQ(result.status, 2) << place;
+    EXPECT_NE(result.err.find("--out"), std::string::npos) << result.err;
+    EXPECT_TRUE(result.out.empty()) << place;
+  }
+  const CommandResult blocked = hb("steady " + scene("six_link") + " --rpm 300 --no-plots --out blocked");
+  EXPECT_EQ(blocked.status, 2);
+  EXPECT_NE(blocked.err.find("torque.csv"), std::string::npos) << blocked.err;
+  EXPECT_EQ(num_entries(folder_ / "blocked"), 1u);
+  EXPECT_EQ(num_entries(folder_), 2u);
+}
+
+TEST_F(Steady, AFullDiskIsAnErrorThatLeavesNothing) {
+  // A limit on the size of files acts on a write like a full disk.
+  for (const char* options : {"", "--no-plots"}) {
+    const CommandResult result =
+        hb("steady " + scene("six_link") + " --rpm 300 --out deep/out " + options, "ulimit -f 20;");
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
+    EXPECT_EQ(num_entries(folder_), 0u);
+  }
+}
+
+TEST_F(Steady, AFullStandardOutputIsAnError) {
+  const std::string line = "'" HB_COMMAND "' steady " + scene("mathieu") + " --omega 1 --json >/dev/full 2>/dev/null";
+  const int status = std::system(line.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+}
+
+TEST_F(Steady, NothingIsWrittenWhenTheInputIsWrong) {
+  for (const char* arguments :
+       {" --rpm -1", " --rpm 300 --modes 0", " --rpm 300 --rods EF", " --rpm 300 --set AB.nix=1"}) {
+    const CommandResult result = hb("steady " + scene("six_link") + arguments + " --out out");
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_TRUE(result.out.empty()) << arguments;
+    EXPECT_EQ(num_entries(folder_), 0u) << arguments;
+  }
+}
+
+TEST_F(Steady, AResultThatMissesItsToleranceIsMarkedAndGiven) {
+  const CommandResult result = hb("steady " + scene("mathieu") +
+                                  " --omega 1 --set 'hill.damping.0.0=0' "
+                                  "--set 'hill.stiffness.1.cos.0.0=0' --set 'hill.stiffness.0.cos.0.0=1'");
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_NE(result.out.find("NOT REACHED"), std::string::npos) << result.out;
+  const Json found = document("steady " + scene("mathieu") +
+                                  " --omega 1 --set 'hill.damping.0.0=0' "
+                                  "--set 'hill.stiffness.1.cos.0.0=0' --set 'hill.stiffness.0.cos.0.0=1'",
+                              3);
+  EXPECT_EQ(found["status"], "tolerance not reached");
+  EXPECT_EQ(found["rods"]["system"]["status"], "singular");
+  EXPECT_TRUE(found["rods"]["system"]["error_bound"].is_null());
+}
+
+TEST_F(Steady, ASingleSpeedIsNeeded) {
+  std::ofstream(folder_ / "range.toml") << read(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  const CommandResult range = hb("steady range.toml --set 'analysis.rpm=[200, 6000, 20]'");
+  EXPECT_EQ(range.status, 2);
+  EXPECT_NE(range.err.find("give one with --rpm"), std::string::npos) << range.err;
+  const CommandResult flag = hb("steady range.toml --rpm 200:6000:20");
+  EXPECT_EQ(flag.status, 2);
+  EXPECT_NE(flag.err.find("one speed"), std::string::npos) << flag.err;
+}
+
+struct WrongFlag {
+  const char* arguments;
+  const char* named;  // must stand in the message
+  const char* allowed;  // so must this
+};
+
+class WrongFlags : public CommandTest, public testing::WithParamInterface<WrongFlag> {};
+
+TEST_P(WrongFlags, ExitWith2NamingFlagAndWhatIsAllowed) {
+  const CommandResult result = hb("steady " + scene("six_link") + " " + GetParam().arguments);
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_TRUE(result.out.empty());
+  EXPECT_NE(result.err.find(GetParam().named), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find(GetParam().allowed), std::string::npos) << result.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Each, WrongFlags,
+    testing::Values(WrongFlag{"--rpm 0", "--rpm: found \"0\"", "positive"}, WrongFlag{"--rpm -5", "\"-5\"", "positive"},
+                    WrongFlag{"--rpm nan", "\"nan\"", "positive"}, WrongFlag{"--rpm inf", "\"inf\"", "positive"},
+                    WrongFlag{"--rpm 3e2x", "\"3e2x\"", "positive"}, WrongFlag{"--rpm 1e999", "\"1e999\"", "positive"},
+                    WrongFlag{"--rpm 1:2", "\"1:2\"", "FROM:TO:STEP"}, WrongFlag{"--omega 0", "--omega", "positive"},
+                    WrongFlag{"--rpm 300 --omega 2", "--omega", "one of the two"},
+                    WrongFlag{"--rpm 300 --modes 0", "--modes: found \"0\"", "1 to 60"},
+                    WrongFlag{"--rpm 300 --modes 61", "\"61\"", "1 to 60"},
+                    WrongFlag{"--rpm 300 --modes 2.5", "\"2.5\"", "1 to 60"},
+                    WrongFlag{"--rpm 300 --modes many", "\"many\"", "auto"},
+                    WrongFlag{"--rpm 300 --tol 0", "--tol: found \"0\"", "1e-14"},
+                    WrongFlag{"--rpm 300 --tol -1e-3", "\"-1e-3\"", "1e-14"},
+                    WrongFlag{"--rpm 300 --tol nan", "\"nan\"", "1e-14"},
+                    WrongFlag{"--rpm 300 --only all", "--only: found \"all\"", "steady, stability, reactions, shape"},
+                    WrongFlag{"--rpm 300 --only steady,", "--only", "commas"},
+                    WrongFlag{"--rpm 300 --rods AB,,CD", "--rods", "commas"},
+                    WrongFlag{"--rpm 300 --threads 0", "--threads: found \"0\"", "1 to"},
+                    WrongFlag{"--rpm 300 --set AB.J", "--set: found \"AB.J\"", "PATH=VALUE"},
+                    WrongFlag{"--rpm 300 --set AB.J=", "--set", "PATH=VALUE"},
+                    WrongFlag{"--rpm 300 --set AB.J=-1", "AB.J", "> 0"},
+                    WrongFlag{"--rpm 300 --steady-method magic", "--steady-method", "iterative"},
+                    WrongFlag{"--rpm 300 --stability-method magic", "--stability-method", "propagation"},
+                    WrongFlag{"--rpm 300 --rpm 400", "--rpm", "--help"}, WrongFlag{"--rpm", "--rpm", "--help"},
+                    WrongFlag{"--frequency 3", "--frequency", "--help"}));
+
+using Command = CommandTest;
+
+TEST_F(Command, HelpAndVersionSucceed) {
+  for (const char* arguments : {"--help", "steady --help", "scene --help", "--version"}) {
+    const CommandResult result = hb(arguments);
+    EXPECT_EQ(result.status, 0) << arguments;
+    EXPECT_FALSE(result.out.empty()) << arguments;
+  }
+}
+
+TEST_F(Command, WrongCommandsExitWith2) {
+  std::ofstream(folder_ / "empty.toml");
+  for (const char* arguments :
+       {"", "stedy", "steady", "scene", "scene missing.toml", "scene .", "scene empty.toml", "scene a b"}) {
+    const CommandResult result = hb(arguments);
+    EXPECT_EQ(result.status, 2) << arguments << result.err;
+    EXPECT_TRUE(result.out.empty()) << arguments;
+    EXPECT_FALSE(result.err.empty()) << arguments;
+  }
+}
+
+TEST_F(Command, SceneSaysWhatItUnderstood) {
+  const CommandResult table = hb("scene " + scene("six_link"));
+  EXPECT_EQ(table.status, 0) << table.err;
+  for (const char* part : {"O2BC", "natural frequencies", "transmission angle", "mm"}) {
+    EXPECT_NE(table.out.find(part), std::string::npos) << part;
+  }
+  const CommandResult result = hb("scene " + scene("six_link") + " --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json found = Json::parse(result.out);
+  EXPECT_EQ(found["linkage"]["dyads"].size(), 2u);
+  // omega_1 = (pi/l)^2 sqrt(EJ/mu) of AB.
+  const double l = 259, mu = 0.165 / l;
+  const double omega = std::pow(std::numbers::pi / l, 2) * std::sqrt(21e7 * 45 / mu);
+  EXPECT_NEAR(found["linkage"]["dyads"][0]["coupler"]["natural_frequencies"][0], omega, 1e-12 * omega);
+}
+
+TEST_F(Command, TransmissionAngleOfACentricSliderCrankIsSmallestAtRightAngles) {
+  // Coupler at sin(angle to the guide) = r/l when the crank stands across the guide.
+  std::ofstream(folder_ / "s.toml") << "[crank]\npivot = [0, 0]\nlength = 1\n[[dyad]]\non = \"crank\"\n"
+                                       "coupler = { name = \"rod\", length = 3 }\n"
+                                       "slider = { name = \"piston\", mass = 1, guide = [0, 0], direction = 0 }\n"
+                                       "branch = 1\n";
+  const CommandResult result = hb("scene s.toml --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json angle = Json::parse(result.out)["linkage"]["dyads"][0]["transmission_angle"];
+  EXPECT_NEAR(angle["min"], std::acos(1.0 / 3), 1e-12);
+  EXPECT_NEAR(std::abs(std::sin(angle["crank_angle"].get<double>())), 1, 1e-9);
+}
+
+TEST_F(Command, SceneDrawsTheMechanism) {
+  const CommandResult result = hb("scene " + scene("eight_link") + " --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* name : {"mechanism.svg", "mechanism.png", "mechanism.csv"}) {
+    EXPECT_GT(fs::file_size(folder_ / "out" / name), 1000u) << name;
+  }
+}
+
+}  // namespace
