@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -16,7 +15,6 @@ namespace hb {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 // Penalty per unit of violation, in units of the goal's scale: large enough for conditions scaled to order 1
@@ -67,7 +65,7 @@ class Search {
   std::size_t size() const { return scales_.size(); }
   std::size_t num_conditions() const { return static_cast<std::size_t>(problem_.num_conditions); }
   int left() const { return options_.max_evaluations - static_cast<int>(result_.trials.size()); }
-  bool feasible() const { return best_ && violation(*best_->values) <= 0; }
+  bool feasible() const { return best_ && violation(best_->values) <= 0; }
   bool any() const { return best_.has_value(); }
 
   std::vector<double> start() const { return place(problem_.start); }
@@ -81,22 +79,19 @@ class Search {
     DesignTrial trial;
     trial.x.resize(static_cast<Index>(u.size()));
     for (std::size_t i = 0; i < u.size(); ++i) trial.x(static_cast<Index>(i)) = scales_[i].value(u[i]);
-    trial.values = problem_.evaluate(trial.x);
-    if (trial.values && trial.values->conditions.size() != problem_.num_conditions)
-      throw std::invalid_argument(fmt::format("evaluate: found {} conditions, allowed {}",
-                                              trial.values->conditions.size(), problem_.num_conditions));
-    if (!usable(trial.values)) trial.values.reset();
-    if (!trial.values) {
-      ++result_.num_missing;
+    const std::optional<DesignValues> found = problem_.evaluate(trial.x);
+    if (found && found->conditions.size() != problem_.num_conditions)
+      throw std::invalid_argument(
+          fmt::format("evaluate: found {} conditions, allowed {}", found->conditions.size(), problem_.num_conditions));
+    if (usable(found)) {
+      trial.values = *found;
+      note(trial.x, *found);
     } else {
-      if (!scale_) scale_ = std::max(std::abs(trial.values->goal), std::numeric_limits<double>::min());
-      worst_goal_ = std::max(worst_goal_, trial.values->goal);
-      worst_violation_ = std::max(worst_violation_, violation(*trial.values));
-      if (!best_ || better(*trial.values, *best_->values)) best_ = trial;
+      ++result_.num_missing;
     }
     result_.trials.push_back(trial);
     if (options_.progress && best_)
-      options_.progress(static_cast<int>(result_.trials.size()), feasible(), best_->values->goal);
+      options_.progress(static_cast<int>(result_.trials.size()), feasible(), best_->values.goal);
     return seen_.emplace(u, std::move(trial.values)).first->second;
   }
 
@@ -145,7 +140,7 @@ class Search {
     if (!best_)
       throw std::invalid_argument(fmt::format("evaluate: none of the {} designs tried exists", result_.trials.size()));
     result_.x = best_->x;
-    result_.values = *best_->values;
+    result_.values = best_->values;
     result_.status = !feasible() ? DesignStatus::infeasible : converged ? DesignStatus::optimal : DesignStatus::stopped;
     for (const auto& [what, analyses] : said_)
       result_.evidence += fmt::format("{}{} ({} analyses)", result_.evidence.empty() ? "" : ", then ", what, analyses);
@@ -163,11 +158,22 @@ class Search {
   std::exception_ptr waiting;  // thrown inside a callback, to be thrown on behind NLopt
 
  private:
+  struct Best {
+    VectorXd x;
+    DesignValues values;
+  };
+
   // Feasible before infeasible, then the lower goal; among infeasible the smaller violation.
   static bool better(const DesignValues& a, const DesignValues& b) {
     const double va = violation(a), vb = violation(b);
     if (va <= 0 && vb <= 0) return a.goal < b.goal;
     return va < vb;
+  }
+  void note(const VectorXd& x, const DesignValues& values) {
+    if (!scale_) scale_ = std::max(std::abs(values.goal), std::numeric_limits<double>::min());
+    worst_goal_ = std::max(worst_goal_, values.goal);
+    worst_violation_ = std::max(worst_violation_, violation(values));
+    if (!best_ || better(values, best_->values)) best_ = Best{x, values};
   }
   std::vector<double> place(const VectorXd& x) const {
     std::vector<double> u;
@@ -182,7 +188,7 @@ class Search {
   std::map<std::vector<double>, std::optional<DesignValues>> seen_;
   std::optional<double> scale_;
   double worst_goal_ = -std::numeric_limits<double>::max() / 4, worst_violation_ = 0;
-  std::optional<DesignTrial> best_;
+  std::optional<Best> best_;
   std::vector<std::pair<std::string, int>> said_;
   DesignResult result_;
 };
@@ -403,119 +409,6 @@ DesignResult optimise(const DesignProblem& problem, const DesignOptions& options
     converged = false;
   }
   return search.finish(converged);
-}
-
-VectorXd nonnegative_least_squares(const MatrixXd& A, const VectorXd& b) {
-  const Index n = A.cols();
-  VectorXd x = VectorXd::Zero(n);
-  std::vector<bool> free(static_cast<std::size_t>(n), false);
-  const double floor = 1e-12 * (A.transpose() * b).cwiseAbs().maxCoeff();
-  const auto solved = [&] {
-    std::vector<Index> columns;
-    for (Index j = 0; j < n; ++j)
-      if (free[static_cast<std::size_t>(j)]) columns.push_back(j);
-    VectorXd z = VectorXd::Zero(n);
-    if (columns.empty()) return z;
-    const MatrixXd part = A(Eigen::all, columns);
-    const VectorXd values = part.completeOrthogonalDecomposition().solve(b);
-    for (std::size_t k = 0; k < columns.size(); ++k) z(columns[k]) = values(static_cast<Index>(k));
-    return z;
-  };
-  for (Index round = 0; round < 3 * n + 3; ++round) {
-    const VectorXd slope = A.transpose() * (b - A * x);
-    Index enters = -1;
-    for (Index j = 0; j < n; ++j)
-      if (!free[static_cast<std::size_t>(j)] && slope(j) > floor && (enters < 0 || slope(j) > slope(enters)))
-        enters = j;
-    if (enters < 0) break;
-    free[static_cast<std::size_t>(enters)] = true;
-    VectorXd z = solved();
-    while (z.minCoeff() < 0) {
-      double t = 1;
-      for (Index j = 0; j < n; ++j)
-        if (z(j) < 0) t = std::min(t, x(j) / (x(j) - z(j)));
-      x += t * (z - x);
-      for (Index j = 0; j < n; ++j) {
-        if (free[static_cast<std::size_t>(j)] && z(j) < 0 && x(j) <= 1e-14 * x.cwiseAbs().maxCoeff()) {
-          free[static_cast<std::size_t>(j)] = false;
-          x(j) = 0;
-        }
-      }
-      z = solved();
-    }
-    x = z;
-  }
-  return x;
-}
-
-std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem, const VectorXd& x, double active,
-                                                    double step) {
-  const Index n = x.size(), m = problem.num_conditions;
-  const auto at = [&](const VectorXd& y) -> std::optional<VectorXd> {
-    const std::optional<DesignValues> values = problem.evaluate(y);
-    if (!usable(values)) return std::nullopt;
-    VectorXd all(m + 1);
-    all << values->goal, values->conditions;
-    return all;
-  };
-  const std::optional<VectorXd> here = at(x);
-  if (!here) return std::nullopt;
-  const VectorXd width = problem.upper - problem.lower;
-  MatrixXd slopes(m + 1, n);  // rows f, g; columns x_i over their widths
-  for (Index i = 0; i < n; ++i) {
-    const double h = step * width(i);
-    const auto moved = [&](double by) {
-      VectorXd y = x;
-      y(i) += by;
-      return at(y);
-    };
-    const bool low = x(i) - h<problem.lower(i), high = x(i) + h> problem.upper(i);
-    const double sign = low ? 1 : -1;
-    const std::optional<VectorXd> a = low || high ? moved(sign * h) : moved(h);
-    const std::optional<VectorXd> b = low || high ? moved(2 * sign * h) : moved(-h);
-    if (!a || !b) return std::nullopt;
-    slopes.col(i) =
-        low || high ? VectorXd(sign * (4 * *a - *b - 3 * *here) / (2 * step)) : VectorXd((*a - *b) / (2 * step));
-  }
-  DesignSensitivity result;
-  result.multipliers = VectorXd::Zero(m);
-  result.below = result.above = VectorXd::Zero(n);
-  // Columns of the least-squares problem: active conditions, then active bounds.
-  std::vector<VectorXd> columns;
-  std::vector<double*> places;
-  std::vector<double> units;
-  for (Index j = 0; j < m; ++j) {
-    if (!(std::abs((*here)(j + 1)) <= active)) continue;
-    columns.push_back(slopes.row(j + 1).transpose());
-    places.push_back(&result.multipliers(j));
-    units.push_back(1);
-  }
-  for (Index i = 0; i < n; ++i) {
-    const double tolerance = active * width(i);
-    if (x(i) - problem.lower(i) <= tolerance) {
-      columns.push_back(-VectorXd::Unit(n, i));
-      places.push_back(&result.below(i));
-      units.push_back(1 / width(i));
-    }
-    if (problem.upper(i) - x(i) <= tolerance) {
-      columns.push_back(VectorXd::Unit(n, i));
-      places.push_back(&result.above(i));
-      units.push_back(1 / width(i));
-    }
-  }
-  const VectorXd df = slopes.row(0).transpose();
-  VectorXd rest = df;
-  if (!columns.empty()) {
-    MatrixXd A(n, static_cast<Index>(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k) A.col(static_cast<Index>(k)) = columns[k];
-    const VectorXd lambda = nonnegative_least_squares(A, -df);
-    for (std::size_t k = 0; k < columns.size(); ++k) *places[k] = lambda(static_cast<Index>(k)) * units[k];
-    rest += A * lambda;
-  }
-  result.residual = df.norm() > 0 ? rest.norm() / df.norm() : 0;
-  result.goal_gradient = df.cwiseQuotient(width);
-  result.conditions_gradient = slopes.bottomRows(m) * width.cwiseInverse().asDiagonal();
-  return result;
 }
 
 const char* to_string(DesignAlgorithm algorithm) {

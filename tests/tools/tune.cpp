@@ -1,0 +1,226 @@
+// `hb tune` as its users meet it, and its worst cases against brute force.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "run_command.hpp"
+#include "tools/command.hpp"
+#include "tools/tune_design.hpp"
+#include "tools/tune_metric.hpp"
+#include "tools/tune_output.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+using namespace hb::tools;
+namespace fs = std::filesystem;
+
+// A slider-crank whose rod is a steel rectangle; m, kg, s.
+constexpr const char* engine = R"(title = "Engine"
+gravity = 0
+[crank]
+pivot = [0, 0]
+length = 0.03  # m
+[[dyad]]
+on = "crank"
+coupler = { name = "rod", length = 0.12, elastic = { E = 2.1e11, density = 7850, damping_internal = 1e-5, section = { shape = "rectangle", width = 0.006, height = 0.006 } } }
+slider = { name = "piston", mass = 0.2, guide = [0, 0], force = { cos = [-800, -300, -100] } }
+branch = 1
+[analysis]
+modes = 3
+)";
+
+class Tune : public CommandTest {
+ protected:
+  Tune() { std::ofstream(folder_ / "engine.toml") << engine; }
+
+  Json document(const std::string& arguments, int expected_status = 0) const {
+    const CommandResult result = hb("tune engine.toml --json --speeds 8 " + arguments);
+    EXPECT_EQ(result.status, expected_status) << result.err << result.out;
+    return Json::parse(result.out, nullptr, false);
+  }
+  Json steady(const std::string& arguments) const {
+    const CommandResult result = hb("steady " + arguments + " --json");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out, nullptr, false);
+  }
+  std::string refusal(const std::string& arguments) const {
+    const CommandResult result = hb("tune engine.toml " + arguments + " --out written");
+    EXPECT_EQ(result.status, 2) << arguments << result.out;
+    EXPECT_FALSE(fs::exists(folder_ / "written")) << arguments;
+    EXPECT_EQ(result.out, "");
+    return result.err;
+  }
+};
+
+const std::string least_mass =
+    "--minimise mass --vary rod.section.height=0.002:0.02 --keep 'deflection<=5e-5' --over rpm=1000:9000 ";
+
+TEST_F(Tune, StopsWhereTheConditionIsJustMet) {
+  const Json found = document(least_mass + "--keep stable --out tuned --no-plots");
+  EXPECT_EQ(found["status"], "optimal");
+  EXPECT_EQ(found["verified"], true);
+  const Json& condition = found["conditions"][0];
+  EXPECT_NEAR(condition["value"], 5e-5, 5e-5 * 1e-4);
+  EXPECT_EQ(condition["active"], true);
+  EXPECT_GT(condition["multiplier"], 0);
+  // The scene written gives the same deflection at the speed that tune found worst.
+  const double rpm = found["metrics"][1]["after"]["rpm"];
+  const Json written = steady("tuned/tuned.toml --rpm " + Json(rpm).dump());
+  EXPECT_NEAR(written["rods"]["rod"]["deflection"]["max_abs"], condition["value"], 5e-5 * 1e-8);
+  // ... and nowhere a larger one.
+  for (double other = 1000; other <= 9000; other += 400) {
+    const Json there = steady("tuned/tuned.toml --rpm " + Json(other).dump());
+    EXPECT_LE(there["rods"]["rod"]["deflection"]["max_abs"], 5e-5 * (1 + 1e-6)) << other;
+  }
+  for (const char* file : {"tuned.toml", "tune.json", "history.csv", "curves_before.csv", "curves_after.csv"})
+    EXPECT_TRUE(fs::exists(folder_ / "tuned" / file)) << file;
+  EXPECT_NE(read(folder_ / "tuned" / "tuned.toml").find("length = 0.03  # m"), std::string::npos);
+  EXPECT_EQ(read(folder_ / "engine.toml"), engine);
+}
+
+TEST_F(Tune, MultiplierIsWhatASecondSearchGains) {
+  const Json strict = document(least_mass);
+  const Json loose = document(
+      "--minimise mass --vary rod.section.height=0.002:0.02 --keep 'deflection<=5.05e-5' --over rpm=1000:9000 ");
+  const double gain = strict["goal"]["after"].get<double>() - loose["goal"]["after"].get<double>();
+  EXPECT_NEAR(strict["conditions"][0]["gain_of_1_percent"], gain, 0.05 * gain);
+}
+
+TEST_F(Tune, EveryAlgorithmAgrees) {
+  const double expected = document(least_mass)["goal"]["after"];
+  for (const std::string algorithm : {"direct", "mlsl", "cobyla", "bobyqa", "slsqp", "mma"}) {
+    const Json found = document(least_mass + "--algorithm " + algorithm);
+    EXPECT_NEAR(found["goal"]["after"], expected, 1e-3 * expected) << algorithm;
+  }
+}
+
+TEST_F(Tune, SaysWhichConditionCannotBeMet) {
+  const CommandResult result =
+      hb("tune engine.toml --minimise mass --vary rod.section.height=0.002:0.005 --keep 'deflection<=1e-7' --keep "
+         "'mass<=1' --over rpm=1000:9000 --speeds 6");
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.out.find("not met: deflection<=1e-7"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("at its upper bound"), std::string::npos) << result.out;  // the nearest design
+}
+
+TEST_F(Tune, MovesAStartIntoTheBoundsAndSaysSo) {
+  const CommandResult result =
+      hb("tune engine.toml --minimise mass --vary rod.section.height=0.01:0.02 --over rpm=2000:3000 --speeds 4 --json");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("0.006 lies outside 0.01 to 0.02"), std::string::npos) << result.err;
+  const Json found = Json::parse(result.out);
+  EXPECT_EQ(found["variables"][0]["moved_from"], 0.006);
+  EXPECT_NEAR(found["variables"][0]["after"], 0.01, 1e-6);  // mass alone: the lower bound
+}
+
+TEST_F(Tune, CountsLinkagesThatDoNotClose) {
+  // The rod must be longer than the crank.
+  const Json found = document("--minimise mass --vary rod.length=0.02:0.12 --over rpm=1000:1500 --analyses 150");
+  EXPECT_GT(found["not_closing"], 0);
+  EXPECT_GT(found["variables"][0]["after"], 0.03);
+}
+
+TEST_F(Tune, KeepsTiedNumbersTied) {
+  const Json found = document(
+      "--minimise mass --vary rod.section.height=0.004:0.02 --tie rod.section.width=0.5*rod.section.height "
+      "--keep 'stress<=40' --over rpm=1000:4000 --out tuned --no-plots");
+  const double height = found["variables"][0]["after"];
+  EXPECT_EQ(found["variables"][0]["tied"]["rod.section.width"], 0.5 * height);
+  const std::string rpm = found["metrics"][1]["after"]["rpm"].dump();
+  const Json written = steady("tuned/tuned.toml --rpm " + rpm);
+  // sigma = M h/(2 J), J = w h^3/12 with w = h/2.
+  const double moment = written["rods"]["rod"]["bending_moment"]["max_abs"];
+  EXPECT_NEAR(12 * moment / std::pow(height, 3) * 1e-6, 40, 40 * 1e-4);
+}
+
+TEST_F(Tune, RefusesWrongQuestions) {
+  const std::string good = "--minimise deflection --over rpm=1000:2000 ";
+  EXPECT_NE(refusal(good + "--vary rod.hight=1:2").find("rod.hight"), std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=2:1").find("backwards"), std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=1:1").find("empty"), std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=nan:1").find("FROM:TO"), std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=0.001:0.02 --keep 'force:nowhere<=3'").find("rod.0"),
+            std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=0.001:0.02 --keep deflection").find("without a bound"),
+            std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=0.001:0.02 --keep 'stable<=3'").find(">="), std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=0.001:0.02 --tie rod.density=rod.E").find("--tie"),
+            std::string::npos);
+  EXPECT_NE(refusal(good + "--vary rod.section.height=0.001:0.02 --algorithm best").find("slsqp"), std::string::npos);
+  EXPECT_NE(refusal("--vary rod.section.height=0.001:0.02 --over rpm=1:2 --minimise beauty").find("deflection"),
+            std::string::npos);
+  EXPECT_NE(refusal("--vary rod.section.height=0.001:0.02 --over rpm=-1:2 --minimise mass").find("positive"),
+            std::string::npos);
+  EXPECT_NE(refusal(good).find("--vary"), std::string::npos);
+}
+
+TEST_F(Tune, NeverWritesOverItsScene) {
+  fs::create_directory(folder_ / "here");
+  std::ofstream(folder_ / "here" / "tuned.toml") << engine;
+  const CommandResult result =
+      hb("tune here/tuned.toml --minimise mass --vary rod.section.height=0.004:0.02 --over "
+         "rpm=1000:2000 --out here");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(read(folder_ / "here" / "tuned.toml"), engine);
+}
+
+// All speeds one by one.
+struct Brute {
+  double deflection = 0, growth = -HUGE_VAL;
+};
+Brute brute(const SceneModel& model, const Settings& settings, double from, double to, int count) {
+  Brute worst;
+  Settings options = settings;
+  options.only = {true, true, false, true};
+  for (int k = 0; k < count; ++k) {
+    const SpeedResult result = analyse(model, from + (to - from) * k / (count - 1), options);
+    for (const RodResult& rod : result.rods) {
+      worst.deflection = std::max(worst.deflection, rod.shape->deflection.max_abs);
+      worst.growth = std::max(worst.growth, rod.stability->growth_rate);
+    }
+  }
+  return worst;
+}
+
+TEST(WorstCaseOfADesign, IsNotBelowAnySpeedSampled) {
+  for (const char* name : {"six_link", "four_bar"}) {
+    SCOPED_TRACE(name);
+    hb::Scene scene = hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + name + ".toml");
+    const double unit = hb::speed_from_rpm(1, scene.units);
+    Settings settings;
+    settings.modes = 3;
+    const SceneModel model = make_model(std::move(scene), settings);
+    const SpeedSpan span{300 * unit, 1600 * unit, 16};
+    DesignAnalysis design(model, settings, span, {});
+    const Brute dense = brute(model, settings, span.from, span.to, 600);
+    const double deflection = design.value(parse_goal("deflection").terms[0].metric).value;
+    const double margin = design.value(parse_keep("stable").metric).value;
+    EXPECT_GE(deflection, dense.deflection * (1 - 1e-9));
+    EXPECT_LE(deflection, dense.deflection * 1.02);  // the peak between two of the 600
+    EXPECT_LE(margin, -dense.growth + 1e-6 * std::abs(dense.growth));
+  }
+}
+
+TEST(TuneNotation, ReadsGoalsAndConditions) {
+  const Goal goal = parse_goal("0.7*deflection:AB + 1e+1*mass");
+  ASSERT_EQ(goal.terms.size(), 2u);
+  EXPECT_EQ(goal.terms[0].weight, 0.7);
+  EXPECT_EQ(goal.terms[0].metric.name, "AB");
+  EXPECT_EQ(goal.terms[1].weight, 10);
+  EXPECT_TRUE(goal.weighted);
+  EXPECT_FALSE(parse_goal("force:B").weighted);
+  const Keep turn = parse_keep("stable>=0.1/turn");
+  EXPECT_EQ(turn.metric.kind, MetricKind::margin_per_turn);
+  EXPECT_EQ(turn.bound, 0.1);
+  EXPECT_EQ(parse_keep("clearance:3>=0.2").metric.orders, 3);
+  for (const char* wrong :
+       {"", "stable>=x", "mass", "mass<=0", "frequency<=3", "force<=", "mass<=nan", "clearance:0>=1"})
+    EXPECT_THROW((void)parse_keep(wrong), UsageError) << wrong;
+  for (const char* wrong : {"", "mass+", "-1*mass", "frequency", "stable", "deflection:", "torque-ripple:AB"})
+    EXPECT_THROW((void)parse_goal(wrong), UsageError) << wrong;
+}
+
+}  // namespace
