@@ -76,23 +76,21 @@ class Search {
     const auto known = seen_.find(u);
     if (known != seen_.end()) return known->second;
     if (left() <= 0) throw OutOfEvaluations();
-    DesignTrial trial;
-    trial.x.resize(static_cast<Index>(u.size()));
-    for (std::size_t i = 0; i < u.size(); ++i) trial.x(static_cast<Index>(i)) = scales_[i].value(u[i]);
-    const std::optional<DesignValues> found = problem_.evaluate(trial.x);
+    Eigen::VectorXd x(static_cast<Index>(u.size()));
+    for (std::size_t i = 0; i < u.size(); ++i) x(static_cast<Index>(i)) = scales_[i].value(u[i]);
+    const std::optional<DesignValues> found = problem_.evaluate(x);
     if (found && found->conditions.size() != problem_.num_conditions)
       throw std::invalid_argument(
           fmt::format("evaluate: found {} conditions, allowed {}", found->conditions.size(), problem_.num_conditions));
-    if (usable(found)) {
-      trial.values = *found;
-      note(trial.x, *found);
-    } else {
+    const bool known_values = usable(found);
+    if (known_values)
+      note(x, *found);
+    else
       ++result_.num_missing;
-    }
-    result_.trials.push_back(trial);
+    result_.trials.push_back({x, known_values ? found : std::nullopt});
     if (options_.progress && best_)
       options_.progress(static_cast<int>(result_.trials.size()), feasible(), best_->values.goal);
-    return seen_.emplace(u, std::move(trial.values)).first->second;
+    return seen_.emplace(u, known_values ? found : std::nullopt).first->second;
   }
 
   // Goal over its scale at the first design; where there is no design, worse than all that were seen.

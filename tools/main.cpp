@@ -36,6 +36,11 @@ int run(int argc, char** argv) {
   int status = exit_ok;
   add_scene_command(app, status);
   add_steady_command(app, status);
+  add_sweep_command(app, status);
+  add_map_command(app, status);
+  add_check_command(app, status);
+  add_bench_command(app, status);
+  add_tune_command(app, status);
   try {
     app.parse(argc, argv);
     return status;

@@ -287,7 +287,8 @@ std::vector<Figure> curves_figures(const TuneTask& task, const TuneResult& resul
   const double from = shown_speed(task, task.span.from, scene.units), to = shown_speed(task, task.span.to, scene.units);
   figure.commands = fmt::format(
       "set multiplot layout 2,1 title {} margins char 14, char 22, char 4, char 3 spacing char 0, char 2\n"
-      "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nset format y '%g'\nset format x ''\n"
+      "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nunset xlabel\nset format y '%g'\nset "
+      "format x ''\n"
       "set ylabel 'largest deflection{}'\n",
       quoted(scene_name(scene) + ": before (dashed) and after tuning"), from, to, bracketed(units.response));
   std::string above, below;
@@ -306,7 +307,7 @@ std::vector<Figure> curves_figures(const TuneTask& task, const TuneResult& resul
   figure.commands += above + "\n";
   figure.commands += fmt::format(
       "unset logscale y\nset format x '%g'\nset xlabel 'crank speed [{}]'\n"
-      "set ylabel 'largest growth rate [{}], unstable above 0'\n{}\nunset multiplot\n",
+      "set ylabel 'growth rate [{}]'\n{}\nunset multiplot\n",
       speed_unit(task, scene.units), units.rate, below);
   return {figure};
 }
