@@ -226,6 +226,11 @@ class Mesh {
     for (StabilitySample& s : look_between(along, a, b, tracks[0], tracks[1], options_.search)) {
       stations.push_back(tracked(std::move(s), first, last));
     }
+    if (stations.size() == 1 && !is_unstable(a) && !is_unstable(b)) {
+      for (StabilitySample& s : look_at_centres(along, first, last)) {
+        stations.push_back(tracked(std::move(s), first, last));
+      }
+    }
     stations.push_back(last);
     // Two tongues side by side leave a gap of the first verdict.
     for (std::size_t k = 1; stations.size() > 3 && k + 2 < stations.size(); ++k) {
@@ -241,7 +246,7 @@ class Mesh {
     for (std::size_t k = 0; k + 1 < stations.size(); ++k) {
       const Tracked &p = stations[k], &q = stations[k + 1];
       if (is_unstable(p.sample) == is_unstable(q.sample)) continue;
-      const StabilityBoundary boundary = locate_boundary(along, p.sample, q.sample, options_.search);
+      const StabilityBoundary boundary = located(along, p.sample, q.sample);
       if (stations.size() > 2) {
         result.push_back(boundary);
         continue;
@@ -262,7 +267,7 @@ class Mesh {
           peaks.push_back(high.sample);
           for (const StabilitySample& peak : peaks) {
             if (is_unstable(*before) != is_unstable(peak)) {
-              further.push_back(locate_boundary(along, *before, peak, options_.search));
+              further.push_back(located(along, *before, peak));
             }
             before = &peak;
           }
@@ -277,6 +282,93 @@ class Mesh {
       }
     }
     return result;
+  }
+
+  StabilityBoundary located(const SampleAt& along, const StabilitySample& p, const StabilitySample& q) const {
+    // The bar tells how sure a verdict is, not where the growth is likely zero: inside the bracket a growth of a tenth of
+    // its bar counts (bars are bounds, an order above the error; chosen by experiment).
+    const SampleAt likely = [&along](double t) {
+      std::optional<StabilitySample> s = along(t);
+      if (s && s->stability.verdict == Verdict::undecided && s->stability.growth_rate > 0.1 * s->stability.growth_error) {
+        s->stability.verdict = Verdict::unstable;
+      }
+      return s;
+    };
+    StabilityBoundary boundary = locate_boundary(likely, p, q, options_.search);
+    // One oscillator leaves at +1 or -1 only; next to the boundary rounding may hide which.
+    if (boundary.kind == BoundaryKind::complex && p.coupling.weighted.rows() == 1) {
+      const StabilitySample& unstable = is_unstable(p) ? p : q;
+      boundary.kind = boundary_kind(unstable.stability, unstable.speed);
+    }
+    return boundary;
+  }
+
+  // An exponent does not tell the side of the resonance k Omega = 2 omega on which it lies: omega and k Omega - omega
+  // fold to one number. Its distance d from k Omega/2 does not need the side: beside a tongue of centre x0 and half-width
+  // w, d^2 = c^2 ((x - x0)^2 - w^2), a parabola whose vertex is the centre.
+  std::optional<StabilitySample> at_centre(const SampleAt& along, const Tracked& a, const Tracked& b, std::size_t mode,
+                                           double k) const {
+    const auto squared = [&](const StabilitySample& s) {
+      double nearest = HUGE_VAL;
+      for (const Exponent& e : s.stability.exponents) {
+        if (e.mode != static_cast<int>(mode)) continue;
+        const double turn = std::abs(e.value.imag()) / s.speed - 0.5 * k;
+        nearest = std::min(nearest, std::abs(turn - std::round(turn)));
+      }
+      return nearest * nearest;
+    };
+    struct Point {
+      double x, f;
+    };
+    std::array<Point, 3> best = {Point{a.sample.x, squared(a.sample)}, Point{b.sample.x, squared(b.sample)}, {}};
+    const double low = a.sample.x, high = b.sample.x;
+    const double p = std::sqrt(best[0].f), q = std::sqrt(best[1].f);
+    double x = low + (high - low) * p / (p + q);
+    constexpr int most = 24;
+    int failures = 0;
+    double last = std::min(best[0].f, best[1].f);
+    for (int step = 0; step < most; ++step) {
+      if (!(x > low && x < high)) return std::nullopt;
+      std::optional<StabilitySample> s = along(x);
+      if (!s) return std::nullopt;
+      if (is_unstable(*s)) return s;
+      const double f = squared(*s);
+      // Locked but stable: damping wins. No closer, more than once: no resonance here.
+      if (!(f > 1e-24) || (!(f < 0.5 * last) && ++failures == 3)) return std::nullopt;
+      last = std::min(f, last);
+      (step == 0 ? best[2] : *std::max_element(best.begin(), best.end(), [](const Point& u, const Point& v) {
+        return u.f < v.f;
+      })) = {x, f};
+      const auto& [u, v, w] = best;
+      const double uv = (u.f - v.f) / (u.x - v.x), vw = (v.f - w.f) / (v.x - w.x), c = (uv - vw) / (u.x - w.x);
+      x = 0.5 * (u.x + v.x - uv / c);
+      if (!(c > 0)) return std::nullopt;
+    }
+    return std::nullopt;
+  }
+
+  // Tongues of single modes between two stable ends, beside what look_between finds.
+  std::vector<StabilitySample> look_at_centres(const SampleAt& along, const Tracked& a, const Tracked& b) const {
+    std::vector<StabilitySample> found;
+    for (std::size_t m = 0; m < a.modes.size(); ++m) {
+      const double p = 2 * a.modes[m].frequency / a.sample.speed, q = 2 * b.modes[m].frequency / b.sample.speed;
+      if (!(std::abs(p - q) < 8)) continue;
+      // The side may be mistaken near a line: lines a little beyond the ends count.
+      constexpr double slack = 0.35;
+      for (double k = std::max(1.0, std::ceil(std::min(p, q) - slack)); k <= std::max(p, q) + slack; ++k) {
+        const auto strength = [&](const Tracked& t) {
+          return t.sample.coupling.at_order(static_cast<Eigen::Index>(m), k);
+        };
+        const double needed = std::max(std::sqrt(std::abs(a.modes[m].damping() * b.modes[m].damping())),
+                                       options_.search.smallest_order * a.sample.speed);
+        constexpr double safety = 2;  // as in look_between
+        if (!(safety * std::max(strength(a), strength(b)) >= needed)) continue;
+        if (std::optional<StabilitySample> s = at_centre(along, a, b, m, k)) found.push_back(std::move(*s));
+      }
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const StabilitySample& u, const StabilitySample& v) { return u.x < v.x; });
+    return found;
   }
 
   static Tracked tracked(StabilitySample sample, const Tracked& p, const Tracked& q) {

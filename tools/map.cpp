@@ -218,7 +218,7 @@ int run_map(const MapFlags& flags) {
   if (options.out) folder.emplace(*options.out);
   MapSearch search;
   search.stability.method = options.stability_method;
-  search.stability.tolerance = std::min(1e-9, options.tolerance);
+  search.stability.tolerance = std::clamp(0.1 * options.tolerance, 1e-13, 1e-9);
   search.map.search.tolerance = std::clamp(0.1 * options.tolerance, 1e-14, 1e-6);
   search.map.parallel_for = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
     Progress progress("stability map, this step", count);
