@@ -91,8 +91,8 @@ Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int 
   run.status = ShootingStatus::converged;
   if (!motion.loaded()) return run;
   const CyclicSolution cycle = solve_cyclic(segments);
-  // The maps' own errors hide how singular the cycle is.
-  const double map_error = integrator == Integrator::collocation ? 1e-12 : 1e3 * precision.tolerance;
+  // The maps' own errors hide how singular the cycle is; a loose run may still be used, its error bar says how far.
+  const double map_error = integrator == Integrator::collocation ? 1e-12 : std::min(1e3 * precision.tolerance, 1e-6);
   if (!(cycle.reciprocal_condition >= map_error)) {
     run.status = ShootingStatus::singular;
     run.message = "a multiplier is 1 to the accuracy of the integration: no unique periodic solution";

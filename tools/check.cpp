@@ -306,6 +306,13 @@ std::string range_text(const SceneModel& model, const std::vector<SpeedCheck>& c
   return fmt::to_string(text);
 }
 
+bool complete(const std::vector<SpeedCheck>& checks) {
+  return std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& check) {
+    return std::all_of(check.rods.begin(), check.rods.end(),
+                       [](const RodCheck& rod) { return rod.compared || rod.agrees; });
+  });
+}
+
 std::string closing_text(const std::vector<SpeedCheck>& checks, const SceneModel& model) {
   Text text;
   bool agree = true;
@@ -318,8 +325,10 @@ std::string closing_text(const std::vector<SpeedCheck>& checks, const SceneModel
       add(text, "DISAGREES: {}joint forces or torque, largest at {}\n", at, check.joints->worst);
     for (const std::string& sentence : check.shortfalls) add(text, "NOT REACHED: {}{}\n", at, sentence);
   }
-  add(text, "{}\n", agree ? "The paths agree within the sum of their error bars wherever both have a result."
-                          : "The paths DISAGREE.");
+  const bool all = complete(checks);
+  add(text, "{}\n", !agree ? "The paths DISAGREE."
+                   : all  ? "The paths agree within the sum of their error bars."
+                          : "Not everything could be compared; what could agrees within the sum of the error bars.");
   return fmt::to_string(text);
 }
 
