@@ -25,7 +25,7 @@ struct StabilityOptions {
   // Growth rate and verdict only: exponents that a bound shows to lie below the leading ones are not computed.
   bool leading_only = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
-  std::vector<int> keep;
+  std::vector<int> keep = {};
 };
 
 // One Floquet exponent lambda: solutions e^{lambda t} p(t), p of period 2 pi/Omega.

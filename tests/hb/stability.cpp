@@ -227,8 +227,9 @@ TEST(Stability, LeadingExponentsAloneAreThoseOfTheFullSet) {
     const Stability all = analyse_stability(system, 1.0);
     const Stability leading = analyse_stability(system, 1.0, {.leading_only = true});
     EXPECT_LE(std::abs(all.growth_rate - leading.growth_rate), all.growth_error + leading.growth_error) << "system " << i;
-    if (all.verdict != Verdict::undecided && leading.verdict != Verdict::undecided)
+    if (all.verdict != Verdict::undecided && leading.verdict != Verdict::undecided) {
       EXPECT_EQ(all.verdict, leading.verdict) << "system " << i;
+    }
     skipped += leading.exponents.size() < all.exponents.size();
   }
   EXPECT_GE(skipped, 10);
