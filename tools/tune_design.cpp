@@ -25,11 +25,15 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t resonant_modes = 2;
 constexpr double highest_order = 24;
 
-StabilityOptions margin_options(const Settings& settings) {
+// The leading exponents alone where that gives a bound, else all of them.
+Stability leading_stability(const ScaledSystem& system, const Settings& settings) {
   StabilityOptions options;
   options.method = settings.stability_method;
   options.leading_only = true;
-  return options;
+  Stability stability = analyse_stability(system, options);
+  if (std::isfinite(stability.growth_rate + stability.growth_error)) return stability;
+  options.leading_only = false;
+  return analyse_stability(system, options);
 }
 
 double growth_of(const Stability& stability) { return stability.growth_rate + stability.growth_error; }
@@ -238,7 +242,7 @@ void DesignAnalysis::find_instabilities() {
   std::vector<std::vector<Known>> known(num_nodes);
   const auto look = [&](std::size_t r, double speed) {
     const ScaledSystem system = scale_system(shifted(model_.rods[r].system, shift_at(speed)), speed);
-    return Known{stability_sample(system, speed, margin_options(settings_)), mean_modes(system)};
+    return Known{{speed, speed, leading_stability(system, settings_), parametric_coupling(system)}, mean_modes(system)};
   };
   parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
     const double speed = nodes_[k]->speed;
@@ -384,7 +388,7 @@ double DesignAnalysis::at(const Curve& curve, double speed) {
     case MetricKind::margin:
     case MetricKind::margin_per_turn: {
       const double growth =
-          growth_of(analyse_stability(model_.rods[curve.index].system, speed, margin_options(settings_)));
+          growth_of(leading_stability(scale_system(model_.rods[curve.index].system, speed), settings_));
       return curve.kind == MetricKind::margin ? growth : growth * 2 * pi / speed;
     }
     default:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <stdexcept>
 
 #include "tools/command.hpp"
 
@@ -61,7 +62,7 @@ class Tuner {
     }
 
     DesignProblem problem = problem_from(result.start);
-    result.design = optimise(problem, task_.options);
+    result.design = first_search(problem);
     SpeedSpan fine = task_.span;
     fine.num_nodes *= verification;
     // Worst cases on more speeds; where the search was wrong, once more with those.
@@ -95,6 +96,24 @@ class Tuner {
   }
 
  private:
+  DesignResult first_search(const DesignProblem& problem) const {
+    bool any = false;
+    DesignProblem watched = problem;
+    watched.evaluate = [&](const Eigen::VectorXd& x) {
+      std::optional<DesignValues> values = problem.evaluate(x);
+      any = any || values.has_value();
+      return values;
+    };
+    try {
+      return optimise(watched, task_.options);
+    } catch (const std::invalid_argument&) {
+      if (any) throw;
+      throw UsageError(
+          "--vary: found no design within the bounds that closes and has a periodic solution over all these "
+          "speeds; allowed: bounds and speeds with some");
+    }
+  }
+
   std::vector<double> start() const {
     std::vector<double> x;
     for (const TuneVariable& variable : task_.variables) x.push_back(variable.start);

@@ -117,10 +117,10 @@ TEST_F(Tune, MovesAStartIntoTheBoundsAndSaysSo) {
 }
 
 TEST_F(Tune, CountsLinkagesThatDoNotClose) {
-  // The rod must be longer than the crank.
-  const Json found = document("--minimise mass --vary rod.length=0.02:0.12 --over rpm=1000:1500 --analyses 150");
+  // The rod, of length 0.12, must be longer than the crank; the shorter that is, the less the rod bends.
+  const Json found = document("--minimise deflection --vary crank.length=0.01:0.15 --over rpm=1000:1500");
   EXPECT_GT(found["not_closing"], 0);
-  EXPECT_GT(found["variables"][0]["after"], 0.03);
+  EXPECT_NEAR(found["variables"][0]["after"], 0.01, 1e-5);
 }
 
 TEST_F(Tune, KeepsTiedNumbersTied) {
@@ -195,11 +195,11 @@ TEST(WorstCaseOfADesign, IsNotBelowAnySpeedSampled) {
     const SceneModel model = make_model(std::move(scene), settings);
     const SpeedSpan span{300 * unit, 1600 * unit, 16};
     DesignAnalysis design(model, settings, span, {});
-    const Brute dense = brute(model, settings, span.from, span.to, 600);
+    const Brute dense = brute(model, settings, span.from, span.to, 250);
     const double deflection = design.value(parse_goal("deflection").terms[0].metric).value;
     const double margin = design.value(parse_keep("stable").metric).value;
     EXPECT_GE(deflection, dense.deflection * (1 - 1e-9));
-    EXPECT_LE(deflection, dense.deflection * 1.02);  // the peak between two of the 600
+    EXPECT_LE(deflection, dense.deflection * 1.02);  // the peak between two of the 250
     EXPECT_LE(margin, -dense.growth + 1e-6 * std::abs(dense.growth));
   }
 }
