@@ -61,7 +61,7 @@ LogMultipliers log_multipliers(const std::vector<SegmentMap>& segments, double n
   constexpr int sweeps = 200, counted = 100;
   constexpr double same_growth = 0.35;  // log of the ratio per turn below which directions stay in one block
   Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(n, n);
-  Eigen::VectorXd growth = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd growth = Eigen::VectorXd::Zero(n), amplification = growth;
   std::vector<bool> resolved(static_cast<std::size_t>(n), true);
   std::vector<Eigen::MatrixXd> R(segments.size());
   // Many segments need few sweeps for a decaying system; bound the work at about 20 000 factorisations.
@@ -80,6 +80,7 @@ LogMultipliers log_multipliers(const std::vector<SegmentMap>& segments, double n
         const double size = std::abs(R[k](i, i));
         if (!(size > noise * largest)) resolved[static_cast<std::size_t>(i)] = false;
         growth(i) += std::log(std::max(size, 1e-300)) / num_counted;
+        amplification(i) += largest / std::max(size, 1e-300) / num_counted;
       }
     }
   }
@@ -105,14 +106,14 @@ LogMultipliers log_multipliers(const std::vector<SegmentMap>& segments, double n
     }
     for (const std::complex<double>& mu : (S.block(first, first, size, size) * product).eigenvalues()) {
       const std::complex<double> log_mu = std::log(mu);
-      result.values.emplace_back(log_mu.real() + scale,
-                                 log_mu.imag() == -std::numbers::pi ? std::numbers::pi : log_mu.imag());
+      const double angle = log_mu.imag() == -std::numbers::pi ? std::numbers::pi : log_mu.imag();
+      result.values.push_back({{log_mu.real() + scale, angle}, amplification.segment(first, size).maxCoeff()});
     }
     first = last + 1;
   }
   if (static_cast<Eigen::Index>(result.values.size()) < n) result.some_below = true;
-  std::sort(result.values.begin(), result.values.end(), [](const auto& a, const auto& b) {
-    return a.real() != b.real() ? a.real() > b.real() : a.imag() < b.imag();
+  std::sort(result.values.begin(), result.values.end(), [](const LogMultiplier& a, const LogMultiplier& b) {
+    return a.value.real() != b.value.real() ? a.value.real() > b.value.real() : a.value.imag() < b.value.imag();
   });
   return result;
 }

@@ -23,9 +23,14 @@ struct CyclicSolution {
 // SIAM J. Sci. Stat. Comput. 13 (1992) 742, doi:10.1137/0913044).
 [[nodiscard]] CyclicSolution solve_cyclic(const std::vector<SegmentMap>& segments);
 
-// log of an eigenvalue of Phi_(N-1) ... Phi_0: real part log modulus, imaginary part its argument in (-pi, pi].
+// Log of an eigenvalue of Phi_(N-1) ... Phi_0: real part log modulus, imaginary part its argument in (-pi, pi].
+struct LogMultiplier {
+  std::complex<double> value;
+  double amplification = 1;  // a relative error of every segment map appears in `value` about this much larger
+};
+
 struct LogMultipliers {
-  std::vector<std::complex<double>> values;  // real part descending; those above the noise
+  std::vector<LogMultiplier> values;  // real part descending; those above the noise
   bool some_below = false;                   // others vanished below `noise` in some segment
 };
 

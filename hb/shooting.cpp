@@ -134,13 +134,14 @@ double folded_distance(std::complex<double> a, std::complex<double> b) {
 
 std::vector<Exponent> exponents_of(const Run& run, const Run* coarser, double Omega) {
   std::vector<Exponent> exponents;
-  for (const std::complex<double>& log_mu : run.multipliers.values) {
+  for (const auto& [log_mu, amplification] : run.multipliers.values) {
     double error = 0;
     if (coarser != nullptr) {
       error = INFINITY;
-      for (const std::complex<double>& other : coarser->multipliers.values)
-        error = std::min(error, difference_factor * folded_distance(log_mu, other));
-      error += 1e-14 * std::max(1.0, std::abs(log_mu.real())) + 1e-16 * static_cast<double>(run.steps);
+      for (const LogMultiplier& other : coarser->multipliers.values)
+        error = std::min(error, difference_factor * folded_distance(log_mu, other.value));
+      // Rounding of the maps, some 1e-14 of their largest entry (measured; taken as 1e-13), is common to both runs.
+      error += 1e-13 * amplification + 1e-14 * std::max(1.0, std::abs(log_mu.real())) + 1e-16 * static_cast<double>(run.steps);
     }
     exponents.push_back({log_mu * Omega / turn, error * Omega / turn});
   }
@@ -165,7 +166,9 @@ Plan plan_shooting(ScaledMotion& motion, const FrozenSpectrum& spectrum, Integra
   Plan plan;
   plan.integrator = integrator;
   // A segment in which the slow modes change by no more than e^4 keeps them above the integrator's noise.
-  plan.num_segments = power_of_two_at_least(turn * spectrum.slowest / 4, 4096);
+  // Collocation starts anew at no cost: short segments keep the fast decaying modes in sight as well.
+  const double least = integrator == Integrator::collocation ? 32 : 1;
+  plan.num_segments = power_of_two_at_least(std::max(least, turn * spectrum.slowest / 4), 4096);
   plan.num_outputs = std::max(128, plan.num_segments);
   const Eigen::Index columns = 2 * motion.num_modes() + 1;
   double steps = 0;

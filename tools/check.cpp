@@ -249,7 +249,7 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const Ou
   add(text, "  growth rate{:<13} {} and {}\n", bracketed(units.rate),
       with_error(rod.stability.growth_rate, rod.stability.growth_error),
       with_error(shooting.growth_rate, shooting.growth_error));
-  add(text, "  exponents compared       {}{}\n", shooting.exponents.size(),
+  add(text, "  exponents listed         {} and {}{}\n", rod.stability.exponents.size(), shooting.exponents.size(),
       shooting.some_below ? "; the others decay below what the integration resolves" : "");
   add(text, "  verdict                  {} and {}\n", to_string(rod.stability.verdict), to_string(shooting.verdict));
 }

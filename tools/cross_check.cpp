@@ -39,23 +39,31 @@ double distance(std::complex<double> a, std::complex<double> b, double Omega) {
   return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), Omega));
 }
 
-// Every exponent of the shooting path against the nearest of harmonic balance; the worst by excess over its allowance.
-Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting, double Omega) {
+// Growth rates, then every exponent that one path lists against the nearest of the other; the worst by excess over its
+// allowance. Either list may leave out exponents: harmonic balance those that it did not resolve, shooting those below its
+// last. One that is missing there has no partner.
+Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting, Eigen::Index num_modes,
+                             double Omega) {
   Comparison worst{std::abs(stability.growth_rate - shooting.growth_rate),
                    stability.growth_error + shooting.growth_error + 1e-12 * (Omega + std::abs(shooting.growth_rate))};
-  if (stability.exponents.empty()) return worst;
-  for (const Exponent& mine : shooting.exponents) {
-    const auto nearest = std::min_element(
-        stability.exponents.begin(), stability.exponents.end(), [&](const Exponent& a, const Exponent& b) {
-          return distance(a.value, mine.value, Omega) - a.error < distance(b.value, mine.value, Omega) - b.error;
-        });
-    const Comparison here{distance(nearest->value, mine.value, Omega),
-                          nearest->error + mine.error + 1e-12 * (Omega + std::abs(mine.value.real()))};
-    // Harmonic balance may list the leading exponents only; one below them has no partner.
-    const bool beyond = mine.value.real() + mine.error < stability.exponents.back().value.real();
-    if (beyond && !here.agrees()) continue;
-    if (!(here.difference - here.allowed <= worst.difference - worst.allowed)) worst = here;
-  }
+  const auto compare = [&](const std::vector<Exponent>& mine, const std::vector<Exponent>& others, double above) {
+    if (others.empty()) return;
+    for (const Exponent& e : mine) {
+      if (!(e.value.real() - e.error >= above)) continue;
+      const auto nearest = std::min_element(others.begin(), others.end(), [&](const Exponent& a, const Exponent& b) {
+        return distance(a.value, e.value, Omega) - a.error < distance(b.value, e.value, Omega) - b.error;
+      });
+      const Comparison here{distance(nearest->value, e.value, Omega),
+                            nearest->error + e.error + 1e-12 * (Omega + std::abs(e.value.real()))};
+      if (!(here.difference - here.allowed <= worst.difference - worst.allowed)) worst = here;
+    }
+  };
+  const double lowest = shooting.exponents.empty() ? INFINITY
+                        : shooting.some_below      ? shooting.exponents.back().value.real()
+                                                   : -INFINITY;
+  compare(stability.exponents, shooting.exponents, lowest);
+  if (static_cast<Eigen::Index>(stability.exponents.size()) == 2 * num_modes)
+    compare(shooting.exponents, stability.exponents, -INFINITY);
   return worst;
 }
 
@@ -249,7 +257,7 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
                    rod.shooting.coarser.q.size() > 0;
     if (rod.compared) {
       compare_states(rod, model.linkage() != nullptr ? body_at(*model.linkage(), result.link) : nullptr);
-      rod.exponents = compare_exponents(rod.stability, rod.shooting, speed);
+      rod.exponents = compare_exponents(rod.stability, rod.shooting, result.num_modes, speed);
       judge(rod);
     } else {
       complete = false;

@@ -197,9 +197,9 @@ TEST(FloquetProduct, KeepsMultipliersFarBelowUnderflowAndFarAboveOverflow) {
   const SegmentMap segment{basis * map * basis.inverse(), Eigen::VectorXd::Zero(3)};
   const LogMultipliers result = log_multipliers(std::vector<SegmentMap>(100, segment), 1e-12);
   ASSERT_EQ(result.values.size(), 3u);
-  EXPECT_NEAR(result.values[0].real(), -500, 1e-9);
-  EXPECT_NEAR(result.values[1].real(), -2000, 1e-5);  // e^-15 below the leading one: rounding of the map counts
-  EXPECT_NEAR(std::abs(result.values[1].imag()), std::abs(std::remainder(30.0, 2 * pi)), 1e-5);
+  EXPECT_NEAR(result.values[0].value.real(), -500, 1e-9);
+  EXPECT_NEAR(result.values[1].value.real(), -2000, 1e-5);  // e^-15 below the leading one: rounding of the map counts
+  EXPECT_NEAR(std::abs(result.values[1].value.imag()), std::abs(std::remainder(30.0, 2 * pi)), 1e-5);
 }
 
 TEST(FloquetProduct, CyclicSolveIsStableForGrowthAndDecayTogether) {
