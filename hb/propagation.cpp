@@ -295,6 +295,8 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leadi
     for (Index j = 0; j < p; ++j) {
       const double radius = eigenvalue_radius(M, mu(j), change);
       const double size = std::abs(mu(j));
+      // Lost in the product's rounding, but below the leading one for certain.
+      if (leading_only && !(radius < 0.5 * size) && size + radius < 0.5 * mu.cwiseAbs().maxCoeff()) continue;
       double argument = std::arg(mu(j));
       if (argument <= -std::numbers::pi) argument = std::numbers::pi;
       result.s.emplace_back((std::log(std::max(size, 1e-300)) + log_size) / two_pi, argument / two_pi);

@@ -235,6 +235,17 @@ TEST(Stability, LeadingExponentsAloneAreThoseOfTheFullSet) {
   EXPECT_GE(skipped, 10);
 }
 
+TEST(Stability, LeadingExponentsHaveFiniteBarsInsideATongue) {
+  const Linkage linkage = six_link::linkage({.J = 45});
+  const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+  for (const double rpm : {2400.0, 3000.0, 6000.0}) {
+    const HillSystem system = ritz_system(*body_at(linkage, coefficients.links[0]), coefficients.rods[0], 5);
+    const Stability result = analyse_stability(system, rpm * pi / 30, {.leading_only = true});
+    EXPECT_EQ(result.verdict, Verdict::unstable) << rpm;
+    EXPECT_LE(result.growth_error, 1e-6 * result.growth_rate) << rpm;
+  }
+}
+
 TEST(Stability, CombinationResonanceGivesAComplexUnstablePair) {
   // Two oscillators, omega = 1 and 2, cross-coupled by 0.5 cos Omega t: sum combination at Omega = 3.
   HillSystem system;
