@@ -64,9 +64,7 @@ MarchingResult march_fixed_step(const TimeDomainSystem& system, FixedStep method
     throw std::invalid_argument("march_fixed_step: steps_per_turn must be a multiple of 8, is " +
                                 std::to_string(steps_per_turn));
   const Deadline start = std::chrono::steady_clock::now();
-  const auto seconds = [&] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   const Eigen::Index I = system.num_modes();
   const int num_outputs = steps_per_turn % 128 == 0 ? 128 : 8, every = steps_per_turn / num_outputs;
   Equation equation(system);
@@ -87,8 +85,10 @@ MarchingResult march_fixed_step(const TimeDomainSystem& system, FixedStep method
         orbit.q1.col(k / every) = state.q1;
         orbit.q2.col(k / every) = state.q2;
       }
-      if (method == FixedStep::newmark) newmark_step(equation, k * d, d, state);
-      else runge_kutta_step(equation, k * d, d, state);
+      if (method == FixedStep::newmark)
+        newmark_step(equation, k * d, d, state);
+      else
+        runge_kutta_step(equation, k * d, d, state);
       ++result.steps;
       if (k % 256 == 255 && seconds() > time_limit) {
         result.status = ShootingStatus::time_limit;

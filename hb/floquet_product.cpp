@@ -93,7 +93,8 @@ LogMultipliers log_multipliers(const std::vector<SegmentMap>& segments, double n
       break;
     }
     Eigen::Index last = first;
-    while (last + 1 < n && resolved[static_cast<std::size_t>(last + 1)] && growth(last) - growth(last + 1) < same_growth)
+    while (last + 1 < n && resolved[static_cast<std::size_t>(last + 1)] &&
+           growth(last) - growth(last + 1) < same_growth)
       ++last;
     const Eigen::Index size = last - first + 1;
     Eigen::MatrixXd product = Eigen::MatrixXd::Identity(size, size);

@@ -26,8 +26,8 @@ FrozenSpectrum frozen_spectrum(ScaledMotion& motion) {
 }
 
 // A mode lambda costs steps while it is larger than the tolerance, log(1/tol)/|Re lambda| after every start. Steps per
-// radian of its phase: an order-p method holds (omega h)^(p+1) at the tolerance. The factors and the steps per start were
-// measured on the six-link mechanism and Mathieu's equation; they are right to about a factor 2.
+// radian of its phase: an order-p method holds (omega h)^(p+1) at the tolerance. The factors and the steps per start
+// were measured on the six-link mechanism and Mathieu's equation; they are right to about a factor 2.
 double predicted_steps(const FrozenSpectrum& spectrum, Integrator method, double tolerance, int num_segments) {
   const bool adams = method == Integrator::adams;
   const double per_radian = adams ? 0.6 * std::pow(tolerance, -1.0 / 11) : 0.8 * std::pow(tolerance, -1.0 / 6);

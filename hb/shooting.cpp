@@ -11,12 +11,18 @@ namespace hb {
 
 const char* to_string(ShootingStatus status) {
   switch (status) {
-    case ShootingStatus::converged: return "converged";
-    case ShootingStatus::not_reached: return "tolerance not reached";
-    case ShootingStatus::too_expensive: return "too expensive";
-    case ShootingStatus::time_limit: return "time limit";
-    case ShootingStatus::singular: return "singular";
-    case ShootingStatus::failed: return "failed";
+    case ShootingStatus::converged:
+      return "converged";
+    case ShootingStatus::not_reached:
+      return "tolerance not reached";
+    case ShootingStatus::too_expensive:
+      return "too expensive";
+    case ShootingStatus::time_limit:
+      return "time limit";
+    case ShootingStatus::singular:
+      return "singular";
+    case ShootingStatus::failed:
+      return "failed";
   }
   return "";
 }
@@ -25,8 +31,8 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 constexpr double eps = 2.220446049250313e-16;
-// Error of the finer of two runs from their difference. Step sizes respond to the tolerance unevenly: with BDF the finer
-// of two runs was once seen as far from the truth as from the coarser.
+// Error of the finer of two runs from their difference. Step sizes respond to the tolerance unevenly: with BDF the
+// finer of two runs was once seen as far from the truth as from the coarser.
 constexpr double difference_factor = 3;
 
 double seconds_since(Deadline start) {
@@ -41,7 +47,7 @@ Deadline deadline_after(Deadline start, double seconds) {
 struct Run {
   ShootingStatus status = ShootingStatus::failed;
   std::string message;
-  Eigen::MatrixXd states;   // (x; v) at the outputs
+  Eigen::MatrixXd states;  // (x; v) at the outputs
   LogMultipliers multipliers;
   double largest_entry = 0;  // of the segment maps
   long steps = 0;
@@ -49,7 +55,7 @@ struct Run {
 
 struct Precision {
   double tolerance = 0;  // CVODE
-  int cells = 0;         // collocation, between outputs
+  int cells = 0;  // collocation, between outputs
 };
 
 // All 2I unit columns and the forced one over every segment; then the cycle.
@@ -69,13 +75,13 @@ Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int 
     for (int j = 0; j < outputs_per_segment; ++j)
       outputs[static_cast<std::size_t>(j)] = turn * (k * outputs_per_segment + j + 1) / num_outputs;
     const double start = turn * k / num_segments;
-    Trajectory part = integrator == Integrator::collocation
-                          ? integrate_collocation(motion, precision.cells, start, Y0, load, outputs, deadline)
-                          : integrate_cvode(motion, integrator, precision.tolerance, start, Y0, load, outputs, deadline);
+    Trajectory part =
+        integrator == Integrator::collocation
+            ? integrate_collocation(motion, precision.cells, start, Y0, load, outputs, deadline)
+            : integrate_cvode(motion, integrator, precision.tolerance, start, Y0, load, outputs, deadline);
     run.steps += part.steps;
     if (part.status != IntegrationStatus::finished) {
-      run.status =
-          part.status == IntegrationStatus::time_limit ? ShootingStatus::time_limit : ShootingStatus::failed;
+      run.status = part.status == IntegrationStatus::time_limit ? ShootingStatus::time_limit : ShootingStatus::failed;
       run.message = part.message;
       return run;
     }
@@ -115,9 +121,9 @@ PeriodicOrbit orbit_of(ScaledMotion& motion, const Eigen::MatrixXd& states) {
   orbit.q2.resize(I, states.cols());
   for (Eigen::Index j = 0; j < states.cols(); ++j) {
     motion.evaluate(turn * static_cast<double>(j) / static_cast<double>(states.cols()));
-    orbit.q2.col(j) = motion.w().cwiseProduct(motion.f() - motion.K() * states.col(j).head(I) -
-                                              motion.G() * states.col(j).tail(I)) *
-                      motion.q_scale();
+    orbit.q2.col(j) =
+        motion.w().cwiseProduct(motion.f() - motion.K() * states.col(j).head(I) - motion.G() * states.col(j).tail(I)) *
+        motion.q_scale();
   }
   return orbit;
 }
@@ -132,7 +138,9 @@ double folded_distance(std::complex<double> a, std::complex<double> b) {
   return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), turn));
 }
 
-std::vector<Exponent> exponents_of(const Run& run, const Run* coarser, double Omega) {
+// map_error: of the segment maps, relative to their largest entry; an exponent far below the leading one feels it
+// amplified, more than the difference of two runs shows.
+std::vector<Exponent> exponents_of(const Run& run, const Run* coarser, double map_error, double Omega) {
   std::vector<Exponent> exponents;
   for (const auto& [log_mu, amplification] : run.multipliers.values) {
     double error = 0;
@@ -140,8 +148,8 @@ std::vector<Exponent> exponents_of(const Run& run, const Run* coarser, double Om
       error = INFINITY;
       for (const LogMultiplier& other : coarser->multipliers.values)
         error = std::min(error, difference_factor * folded_distance(log_mu, other.value));
-      // Rounding of the maps, some 1e-14 of their largest entry (measured; taken as 1e-13), is common to both runs.
-      error += 1e-13 * amplification + 1e-14 * std::max(1.0, std::abs(log_mu.real())) + 1e-16 * static_cast<double>(run.steps);
+      error += map_error * amplification + 1e-14 * std::max(1.0, std::abs(log_mu.real())) +
+               1e-16 * static_cast<double>(run.steps);
     }
     exponents.push_back({log_mu * Omega / turn, error * Omega / turn});
   }
@@ -173,9 +181,8 @@ Plan plan_shooting(ScaledMotion& motion, const FrozenSpectrum& spectrum, Integra
   const Eigen::Index columns = 2 * motion.num_modes() + 1;
   double steps = 0;
   if (integrator == Integrator::collocation) {
-    const int cells = single_run > 0
-                          ? std::max(1, static_cast<int>(std::ceil(turn / single_run / plan.num_outputs)))
-                          : collocation_cells(spectrum, plan.num_outputs);
+    const int cells = single_run > 0 ? std::max(1, static_cast<int>(std::ceil(turn / single_run / plan.num_outputs)))
+                                     : collocation_cells(spectrum, plan.num_outputs);
     plan.coarse.cells = cells;
     plan.fine.cells = single_run > 0 ? cells : 2 * cells;
     steps = static_cast<double>(plan.num_outputs) * (plan.fine.cells + (single_run > 0 ? 0 : plan.coarse.cells));
@@ -229,7 +236,7 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
       result.message = fine.message;
       fine = std::move(coarse);
       result.orbit = orbit_of(motion, fine.states);
-      result.exponents = exponents_of(fine, nullptr, Omega);
+      result.exponents = exponents_of(fine, nullptr, 0, Omega);
       result.q_error = result.q1_error = result.growth_error = INFINITY;
       if (!result.exponents.empty()) result.growth_rate = result.exponents.front().value.real();
       return;
@@ -240,7 +247,9 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
   if (fine.status != ShootingStatus::converged) return;
 
   result.orbit = orbit_of(motion, fine.states);
-  result.exponents = exponents_of(fine, single ? nullptr : &coarse, Omega);
+  // Collocation: rounding, some 1e-14 (measured), taken tenfold. CVODE: a hundred local errors.
+  const double map_error = collocation ? 1e-13 : 100 * plan.fine.tolerance;
+  result.exponents = exponents_of(fine, single ? nullptr : &coarse, map_error, Omega);
   result.some_below = fine.multipliers.some_below;
   if (!single) {
     result.coarser = orbit_of(motion, coarse.states);
@@ -300,9 +309,10 @@ ShootingResult solve_by_shooting(const TimeDomainSystem& system, const ShootingO
   } else {
     solve_by(motion, plan, options, system.speed, deadline, result);
     // What CVODE cannot reach, collocation of order 17 usually can.
-    const bool may_supplement = options.integrator == Integrator::automatic && options.single_run <= 0 &&
-                                plan.integrator != Integrator::collocation &&
-                                (result.status == ShootingStatus::not_reached || result.status == ShootingStatus::failed);
+    const bool may_supplement =
+        options.integrator == Integrator::automatic && options.single_run <= 0 &&
+        plan.integrator != Integrator::collocation &&
+        (result.status == ShootingStatus::not_reached || result.status == ShootingStatus::failed);
     if (may_supplement) {
       plan = plan_shooting(motion, spectrum, Integrator::collocation, options.tolerance, 0);
       if (affordable(plan)) {
@@ -371,8 +381,8 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
     result.steps += trajectory.steps;
     if (trajectory.status != IntegrationStatus::finished) {
       result.message = trajectory.message;
-      result.status = trajectory.status == IntegrationStatus::time_limit ? ShootingStatus::time_limit
-                                                                         : ShootingStatus::failed;
+      result.status =
+          trajectory.status == IntegrationStatus::time_limit ? ShootingStatus::time_limit : ShootingStatus::failed;
       break;
     }
     ++result.turns;

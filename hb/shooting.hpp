@@ -15,19 +15,19 @@ namespace hb {
 struct ShootingOptions {
   double tolerance = 1e-9;  // wanted: max_t |error of q| / max_t |q|, and error of the growth rate relative to Omega
   Integrator integrator = Integrator::automatic;
-  double time_limit = 60;   // seconds; work predicted to exceed it is not begun
+  double time_limit = 60;  // seconds; work predicted to exceed it is not begun
   // 0: two runs at integrator tolerances 8 apart, chosen from `tolerance`, their difference the error. Else one run at
   // this CVODE tolerance (collocation: 2 pi/this many cells per turn) without an error estimate.
   double single_run = 0;
 };
 
 enum class ShootingStatus {
-  converged,      // both errors within the tolerance
-  not_reached,    // a result, errors above the tolerance
+  converged,  // both errors within the tolerance
+  not_reached,  // a result, errors above the tolerance
   too_expensive,  // predicted to exceed the time limit; nothing was integrated
-  time_limit,     // stopped by the limit
-  singular,       // no unique periodic solution (a multiplier 1 to working accuracy)
-  failed,         // the integrator gave up
+  time_limit,  // stopped by the limit
+  singular,  // no unique periodic solution (a multiplier 1 to working accuracy)
+  failed,  // the integrator gave up
 };
 
 // The state over one turn at tau_j = 2 pi j/N; ' = d/dtau.
@@ -40,14 +40,14 @@ struct ShootingResult {
   std::string message;  // what stopped it; empty if converged
   PeriodicOrbit orbit;
   PeriodicOrbit coarser;  // of the less accurate run: what is computed from both shows its own error
-  double q_error = 0;   // estimate of max_t |error of q| / max_t |q|
+  double q_error = 0;  // estimate of max_t |error of q| / max_t |q|
   double q1_error = 0;  // of q', relative to max_t |q'|
   std::vector<Exponent> exponents;  // real part descending; those that the integration resolves
-  bool some_below = false;          // the others decay faster than all listed
+  bool some_below = false;  // the others decay faster than all listed
   double growth_rate = 0, growth_error = 0;
   Verdict verdict = Verdict::undecided;
   Integrator integrator = Integrator::automatic;  // the one used
-  double integrator_tolerance = 0;                // CVODE's, or collocation's cell length in rad, of the finer run
+  double integrator_tolerance = 0;  // CVODE's, or collocation's cell length in rad, of the finer run
   int num_segments = 0;
   long steps = 0, evaluations = 0;  // all runs
   double predicted_seconds = 0, seconds = 0;
@@ -58,19 +58,20 @@ struct ShootingResult {
 [[nodiscard]] const char* to_string(ShootingStatus status);
 
 struct MarchingOptions {
-  double tolerance = 1e-9;  // march until the state repeats after a turn within this, relative to its largest over the turn
+  double tolerance =
+      1e-9;  // march until the state repeats after a turn within this, relative to its largest over the turn
   double integrator_tolerance = 0;  // CVODE's; 0: tolerance/100
   Integrator integrator = Integrator::automatic;  // adams or bdf
-  double time_limit = 60;           // seconds
-  double growth_rate = 0;           // if known, 1/time: predicts the turns that the transient needs; 0: not known
+  double time_limit = 60;  // seconds
+  double growth_rate = 0;  // if known, 1/time: predicts the turns that the transient needs; 0: not known
 };
 
 struct MarchingResult {
   ShootingStatus status = ShootingStatus::failed;
   std::string message;
-  PeriodicOrbit orbit;        // of the last turn
-  double change = 0;          // of the state over the last turn, relative
-  double q_error = 0;         // change summed to the end of the transient, plus 100 times CVODE's tolerance
+  PeriodicOrbit orbit;  // of the last turn
+  double change = 0;  // of the state over the last turn, relative
+  double q_error = 0;  // change summed to the end of the transient, plus 100 times CVODE's tolerance
   double decay_per_turn = 0;  // measured factor by which the transient shrinks in a turn
   int turns = 0;
   Integrator integrator = Integrator::automatic;

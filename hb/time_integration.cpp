@@ -19,10 +19,14 @@ namespace hb {
 
 const char* to_string(Integrator integrator) {
   switch (integrator) {
-    case Integrator::automatic: return "automatic";
-    case Integrator::adams: return "CVODE Adams";
-    case Integrator::bdf: return "CVODE BDF";
-    case Integrator::collocation: return "Radau collocation";
+    case Integrator::automatic:
+      return "automatic";
+    case Integrator::adams:
+      return "CVODE Adams";
+    case Integrator::bdf:
+      return "CVODE BDF";
+    case Integrator::collocation:
+      return "Radau collocation";
   }
   return "";
 }
@@ -57,8 +61,10 @@ void ScaledMotion::evaluate(double tau) {
   const double Omega2 = system_.speed * system_.speed;
   K_.noalias() = mass_inverse_ * C_;
   K_ = w_.cwiseInverse().asDiagonal() * K_ / Omega2;
-  if (loaded()) f_ = (mass_inverse_ * h_).cwiseQuotient(w_) / (Omega2 * q_scale_);
-  else f_.setZero(w_.size());
+  if (loaded())
+    f_ = (mass_inverse_ * h_).cwiseQuotient(w_) / (Omega2 * q_scale_);
+  else
+    f_.setZero(w_.size());
 }
 
 Eigen::VectorXcd ScaledMotion::frozen_eigenvalues(double tau) {
@@ -117,7 +123,8 @@ int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, real
   motion.evaluate(tau);
   const Eigen::Index I = motion.num_modes();
   const Eigen::VectorXd& w = motion.w();
-  const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(I, I) + gamma * motion.G() + gamma * gamma * motion.K() * w.asDiagonal();
+  const Eigen::MatrixXd A =
+      Eigen::MatrixXd::Identity(I, I) + gamma * motion.G() + gamma * gamma * motion.K() * w.asDiagonal();
   const auto B = problem.matrix(b);
   auto X = problem.matrix(x);
   const Eigen::MatrixXd right = B.bottomRows(I) - gamma * motion.K() * B.topRows(I);
@@ -226,7 +233,8 @@ struct RadauTableau {
 
   RadauTableau() {
     for (Eigen::Index j = 0; j < num_stages - 1; ++j) {
-      double s = -std::cos(std::numbers::pi * (static_cast<double>(j) + 0.75) / (static_cast<double>(num_stages) + 0.25));
+      double s =
+          -std::cos(std::numbers::pi * (static_cast<double>(j) + 0.75) / (static_cast<double>(num_stages) + 0.25));
       for (int step = 0; step < 30; ++step) {
         const auto [p, d] = legendre(num_stages, s);
         const auto [p1, d1] = legendre(num_stages - 1, s);
@@ -247,8 +255,9 @@ struct RadauTableau {
       for (Eigen::Index k = 0; k < num_stages; ++k) {
         V(i, k) = legendre(k, s).first;
         // int P_k ds = (P_(k+1) - P_(k-1))/(2k+1), zero at s = -1; dc = ds/2.
-        R(i, k) = k == 0 ? (s + 1) / 2
-                         : (legendre(k + 1, s).first - legendre(k - 1, s).first) / (2 * (2 * static_cast<double>(k) + 1));
+        R(i, k) = k == 0
+                      ? (s + 1) / 2
+                      : (legendre(k + 1, s).first - legendre(k - 1, s).first) / (2 * (2 * static_cast<double>(k) + 1));
       }
     }
     A_inverse = V * R.inverse();
@@ -264,7 +273,8 @@ const RadauTableau& radau() {
 
 }  // namespace
 
-// Stages X_j = x + Z_j, with U_j = W V_j = x' at the stages: U = A^-1 Z/h, x'' = A^-1 (U - u)/h. The equation at stage j,
+// Stages X_j = x + Z_j, with U_j = W V_j = x' at the stages: U = A^-1 Z/h, x'' = A^-1 (U - u)/h. The equation at stage
+// j,
 //   x''_j + W G W^-1 U_j + W K_j (x + Z_j) = load W f_j,
 // is one linear system of s I unknowns Z per cell. The last stage is the end of the cell.
 Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double tau0, const Eigen::MatrixXd& Y0,

@@ -47,13 +47,13 @@ TimeDomainSystem time_domain_system(const HillSystem& system, double speed) {
   const auto stiffness = std::make_shared<const TrigonometricSum>(system.stiffness, I * I, speed);
   const auto load = std::make_shared<const TrigonometricSum>(system.load, I, speed);
   Eigen::VectorXd entries(I * I);
-  return {speed, system.mass, system.damping,
-          [I, stiffness, load, entries](double tau, Eigen::Ref<Eigen::MatrixXd> C,
-                                        Eigen::Ref<Eigen::VectorXd> h) mutable {
-            stiffness->evaluate(tau, entries);
-            C = Eigen::Map<const Eigen::MatrixXd>(entries.data(), I, I);
-            load->evaluate(tau, h);
-          }};
+  return {
+      speed, system.mass, system.damping,
+      [I, stiffness, load, entries](double tau, Eigen::Ref<Eigen::MatrixXd> C, Eigen::Ref<Eigen::VectorXd> h) mutable {
+        stiffness->evaluate(tau, entries);
+        C = Eigen::Map<const Eigen::MatrixXd>(entries.data(), I, I);
+        load->evaluate(tau, h);
+      }};
 }
 
 }  // namespace hb

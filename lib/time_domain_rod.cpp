@@ -127,8 +127,7 @@ struct Wrench {
 
 Wrench rigid_wrench(const Body& body, const BodyMotion& motion, double gravity, double Omega) {
   if (!body.elastic) {
-    const Complex force =
-        body.mass * (Omega * Omega * motion.acceleration(body.com) + Complex(0, gravity));
+    const Complex force = body.mass * (Omega * Omega * motion.acceleration(body.com) + Complex(0, gravity));
     return {force, cross(motion.e * body.com, force) + body.inertia * Omega * Omega * motion.phi2};
   }
   const double l = body.length;
@@ -163,8 +162,8 @@ Wrench elastic_wrench(const Body& body, const BodyMotion& motion, double gravity
     const double phi1 = motion.phi1, phi2 = motion.phi2;
     const Complex a(-phi2 * w - 2 * phi1 * w1, -phi1 * phi1 * w + w2);
     const Complex v(-phi1 * w, w1);
-    const Complex load = Omega * Omega * mu * a +
-                         Omega * Complex(elastic.damping_x * v.real(), elastic.damping_y * v.imag());
+    const Complex load =
+        Omega * Omega * mu * a + Omega * Complex(elastic.damping_x * v.real(), elastic.damping_y * v.imag());
     const Complex rigid_load = std::conj(motion.e) * line_load(body, motion, gravity, Omega, x);
     wrench.force += rule.weight(j) * motion.e * load;
     wrench.moment += rule.weight(j) * (x * load.imag() + cross(Complex(0, w), rigid_load));

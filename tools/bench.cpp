@@ -35,9 +35,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 struct Row {
   std::string rod, method;
-  double asked = 0;      // tolerance; 0: none
-  long size = 0;         // harmonics, or steps
-  double error = 0;      // max |q - reference| / max |reference|
+  double asked = 0;  // tolerance; 0: none
+  long size = 0;  // harmonics, or steps
+  double error = 0;  // max |q - reference| / max |reference|
   double seconds = 0, median_seconds = 0;
   bool harmonic_balance = false;
 };
@@ -57,8 +57,7 @@ double error_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& reference) {
   double difference = 0;
   for (Eigen::Index j = 0; j < n; ++j)
     difference = std::max(
-        difference,
-        (q.col(j * (q.cols() / n)) - reference.col(j * (reference.cols() / n))).cwiseAbs().maxCoeff());
+        difference, (q.col(j * (q.cols() / n)) - reference.col(j * (reference.cols() / n))).cwiseAbs().maxCoeff());
   const double error = difference / reference.cwiseAbs().maxCoeff();
   return std::isfinite(error) ? error : INFINITY;
 }
@@ -94,7 +93,8 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, double t
   tight.time_limit = 10 * time_limit;
   const ShootingResult reference = solve_by_shooting(system, tight);
   if (reference.orbit.q.size() == 0 || !(reference.orbit.q.cwiseAbs().maxCoeff() > 0)) {
-    bench.notes.push_back("no reference: " + (reference.message.empty() ? "the rod carries no load" : reference.message));
+    bench.notes.push_back("no reference: " +
+                          (reference.message.empty() ? "the rod carries no load" : reference.message));
     return bench;
   }
   const Eigen::MatrixXd& exact = reference.orbit.q;
@@ -121,7 +121,8 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, double t
       Row row{rod.name, std::string("shooting, ") + to_string(integrator), tolerance};
       ShootingResult result;
       time_row(row, [&] {
-        result = solve_by_shooting(system, {.integrator = integrator, .time_limit = time_limit, .single_run = tolerance});
+        result =
+            solve_by_shooting(system, {.integrator = integrator, .time_limit = time_limit, .single_run = tolerance});
       });
       if (result.orbit.q.size() == 0) {
         note(fmt::format("{} at {:.0e}: {}", row.method, tolerance, result.message));
@@ -184,7 +185,8 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, double t
 const Row* fastest(const std::vector<Row>& rows, double error, bool harmonic_balance) {
   const Row* best = nullptr;
   for (const Row& row : rows)
-    if (row.harmonic_balance == harmonic_balance && row.error <= error && (best == nullptr || row.seconds < best->seconds))
+    if (row.harmonic_balance == harmonic_balance && row.error <= error &&
+        (best == nullptr || row.seconds < best->seconds))
       best = &row;
   return best;
 }
@@ -199,8 +201,8 @@ std::string ratio_sentence(const RodBench& bench, double error) {
     return fmt::format("at {:.0e}: only harmonic balance reaches it, in {:.3g} s", error, series->seconds);
   const double ratio = integration->seconds / series->seconds;
   return fmt::format("at {:.0e}: harmonic balance {:.3g} s, the fastest integration ({}) {:.3g} s, {:.3g} times as {}",
-                     error, series->seconds, integration->method, integration->seconds,
-                     ratio >= 1 ? ratio : 1 / ratio, ratio >= 1 ? "long" : "fast");
+                     error, series->seconds, integration->method, integration->seconds, ratio >= 1 ? ratio : 1 / ratio,
+                     ratio >= 1 ? "long" : "fast");
 }
 
 constexpr double accuracies[] = {1e-3, 1e-6, 1e-9, 1e-12};
@@ -216,12 +218,13 @@ std::string bench_text(const SceneModel& model, double speed, const std::vector<
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}, {}: error against run time of the periodic state\n", scene_name(model.scene),
                  speed_text(speed, model.scene));
-  fmt::format_to(out, "Geometry, once for all speeds (harmonic balance only): {:.3g} s. Integration evaluates the "
-                      "equations from the {} at every step.\n",
+  fmt::format_to(out,
+                 "Geometry, once for all speeds (harmonic balance only): {:.3g} s. Integration evaluates the "
+                 "equations from the {} at every step.\n",
                  geometry, model.linkage() != nullptr ? "kinematics" : "series");
   for (const RodBench& bench : benches) {
-    fmt::format_to(out, "\n{}, {}; reference by Radau collocation, error {:.1e}\n", bench.name, to_string(bench.verdict),
-                   bench.reference_error);
+    fmt::format_to(out, "\n{}, {}; reference by Radau collocation, error {:.1e}\n", bench.name,
+                   to_string(bench.verdict), bench.reference_error);
     fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10} {:>11} {:>11}\n", "method", "asked", "harm/steps", "error",
                    "min [s]", "median [s]");
     for (const Row& row : bench.rows)
@@ -243,8 +246,8 @@ std::string bench_csv(const SceneModel& model, double speed, const std::vector<R
   std::replace(scene.begin(), scene.end(), '"', '\'');
   for (const RodBench& bench : benches)
     for (const Row& row : bench.rows)
-      text += fmt::format("\"{}\",{},\"{}\",\"{}\",{},{},{},{},{}\n", scene, speed, row.rod, row.method,
-                          row.asked, row.size, row.error, row.seconds, row.median_seconds);
+      text += fmt::format("\"{}\",{},\"{}\",\"{}\",{},{},{},{},{}\n", scene, speed, row.rod, row.method, row.asked,
+                          row.size, row.error, row.seconds, row.median_seconds);
   return text;
 }
 
@@ -299,7 +302,9 @@ Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench
     figure.commands += fmt::format("{}'{}' using 1:2 with linespoints lt {} ps 0.7 title {}", m == 0 ? "" : ", ", name,
                                    m + 1, tools::quoted(methods[m]));
   }
-  figure.commands += "\nunset logscale xy\nset format xy '%g'\nset yrange [*:*]\nunset title\nunset xlabel\nunset ylabel\nset key default\n";
+  figure.commands +=
+      "\nunset logscale xy\nset format xy '%g'\nset yrange [*:*]\nunset title\nunset xlabel\nunset ylabel\nset key "
+      "default\n";
   return figure;
 }
 
@@ -325,9 +330,9 @@ int run_bench(const BenchFlags& flags) {
   std::vector<RodBench> benches;
   for (const RodModel& rod : model.rods) {
     if (!rod.reported) continue;
-    const TimeDomainSystem system =
-        model.linkage() != nullptr ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
-                                   : time_domain_system(rod.system, speed);
+    const TimeDomainSystem system = model.linkage() != nullptr
+                                        ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
+                                        : time_domain_system(rod.system, speed);
     benches.push_back(bench_rod(rod, system, time_limit));
   }
   const Json document = bench_json(model, speed, benches, geometry);
@@ -340,8 +345,10 @@ int run_bench(const BenchFlags& flags) {
     draw_figures(figures, *folder, options.plots);
     folder->commit();
   }
-  if (options.json) print_json(document);
-  else fmt::print("{}", bench_text(model, speed, benches, geometry));
+  if (options.json)
+    print_json(document);
+  else
+    fmt::print("{}", bench_text(model, speed, benches, geometry));
   const bool complete = std::none_of(benches.begin(), benches.end(), [](const RodBench& b) { return b.rows.empty(); });
   return complete ? exit_ok : exit_not_reached;
 }
@@ -349,8 +356,8 @@ int run_bench(const BenchFlags& flags) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "bench", "error against run time: harmonic balance, shooting, marching, Newmark, Runge-Kutta");
+  CLI::App* command =
+      app.add_subcommand("bench", "error against run time: harmonic balance, shooting, marching, Newmark, Runge-Kutta");
   const auto flags = std::make_shared<BenchFlags>();
   add_scene_flags(*command, flags->common);
   add_analysis_flags(*command, flags->common);

@@ -37,13 +37,16 @@ CheckOptions check_options(const CheckFlags& flags) {
   if (!flags.time_limit.empty())
     options.time_limit = number_flag("--time-limit", flags.time_limit, 1e-3, 1e6, "seconds from 0.001 to 1000000");
   const std::string& name = flags.integrator;
-  if (name.empty() || name == "automatic") options.integrator = Integrator::automatic;
-  else if (name == "adams") options.integrator = Integrator::adams;
-  else if (name == "bdf") options.integrator = Integrator::bdf;
-  else if (name == "collocation") options.integrator = Integrator::collocation;
+  if (name.empty() || name == "automatic")
+    options.integrator = Integrator::automatic;
+  else if (name == "adams")
+    options.integrator = Integrator::adams;
+  else if (name == "bdf")
+    options.integrator = Integrator::bdf;
+  else if (name == "collocation")
+    options.integrator = Integrator::collocation;
   else
-    throw UsageError(
-        fmt::format("--integrator: found \"{}\", allowed: automatic, adams, bdf, collocation", name));
+    throw UsageError(fmt::format("--integrator: found \"{}\", allowed: automatic, adams, bdf, collocation", name));
   return options;
 }
 
@@ -52,8 +55,7 @@ std::vector<double> speeds_of(const SpeedRange& range, const Units& units) {
   constexpr double most = 100000;
   const Speeds& speeds = range.speeds;
   const double steps = speeds.step > 0 ? std::floor((speeds.to - speeds.from) / speeds.step + 1e-3) : 0;
-  if (!(steps < most))
-    throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {:.0f}", steps + 1, most));
+  if (!(steps < most)) throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {:.0f}", steps + 1, most));
   std::vector<double> result;
   for (int k = 0; k <= static_cast<int>(steps); ++k) {
     const double value = speeds.from + k * speeds.step;
@@ -214,8 +216,7 @@ void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
 }
 
 void add_comparison(Text& text, const char* what, const Comparison& c) {
-  add(text, "  {:<24} {:>10.2e}  {:>10.2e}  {}\n", what, c.difference, c.allowed,
-      c.agrees() ? "agrees" : "DISAGREES");
+  add(text, "  {:<24} {:>10.2e}  {:>10.2e}  {}\n", what, c.difference, c.allowed, c.agrees() ? "agrees" : "DISAGREES");
 }
 
 void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const OutputUnits& units) {
@@ -236,8 +237,9 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const Ou
         rod.marching->seconds);
   }
   if (!rod.compared) {
-    add(text, "  {}\n", rod.agrees ? "both paths find no unique periodic solution: they agree"
-                                   : "not compared: one path has no result");
+    add(text, "  {}\n",
+        rod.agrees ? "both paths find no unique periodic solution: they agree"
+                   : "not compared: one path has no result");
     return;
   }
   add(text, "  {:<24} {:>10}  {:>10}\n", "", "difference", "allowed");
@@ -297,7 +299,8 @@ std::string range_text(const SceneModel& model, const std::vector<SpeedCheck>& c
           check.joints->forces.agrees() && check.joints->torque.agrees() ? "yes" : "NO");
   }
   if (const WorstCase worst = worst_case(checks); worst.rod != nullptr)
-    add(text, "\nworst case: {} at {:.6g} rpm, q differs by {:.2e} (allowed {:.2e}), exponents by {:.2e} (allowed {:.2e})\n",
+    add(text,
+        "\nworst case: {} at {:.6g} rpm, q differs by {:.2e} (allowed {:.2e}), exponents by {:.2e} (allowed {:.2e})\n",
         worst.rod->name, rpm_from_speed(worst.check->speed, model.scene.units), worst.rod->q.difference,
         worst.rod->q.allowed, worst.rod->exponents.difference, worst.rod->exponents.allowed);
   const Json seconds = seconds_json(checks, false);
@@ -326,9 +329,10 @@ std::string closing_text(const std::vector<SpeedCheck>& checks, const SceneModel
     for (const std::string& sentence : check.shortfalls) add(text, "NOT REACHED: {}{}\n", at, sentence);
   }
   const bool all = complete(checks);
-  add(text, "{}\n", !agree ? "The paths DISAGREE."
-                   : all  ? "The paths agree within the sum of their error bars."
-                          : "Not everything could be compared; what could agrees within the sum of the error bars.");
+  add(text, "{}\n",
+      !agree ? "The paths DISAGREE."
+      : all  ? "The paths agree within the sum of their error bars."
+             : "Not everything could be compared; what could agrees within the sum of the error bars.");
   return fmt::to_string(text);
 }
 
@@ -375,7 +379,8 @@ Figure curves_figure(const SceneModel& model, const SpeedCheck& check, const Rod
       "set multiplot layout 2,1 title {} margins char 13, char 24, char 4, char 3.5 spacing char 0, char 2\n"
       "set xrange [0:360]\nset xtics 0,60,360\nset key outside right top\nset format x ''\nset format y '%g'\n"
       "set ylabel 'q_1{}'\n"
-      "plot '{}' using 1:2 with lines lt 1 title 'harmonic balance', '' using 1:3 every {} with points lt 2 pt 6 ps 0.6 "
+      "plot '{}' using 1:2 with lines lt 1 title 'harmonic balance', '' using 1:3 every {} with points lt 2 pt 6 ps "
+      "0.6 "
       "title 'shooting'\n",
       quoted(fmt::format("{}, {}, {}: two independent paths ({})", scene_name(model.scene), rod.name,
                          speed_text(check.speed, model.scene), to_string(rod.shooting.integrator))),
@@ -397,8 +402,10 @@ Figure curves_figure(const SceneModel& model, const SpeedCheck& check, const Rod
 CsvFile range_csv(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
   CsvFile file;
   file.name = "check.csv";
-  file.comment = {scene_name(model.scene) + ": harmonic balance against time integration; q relative to its largest, "
-                                            "exponents in 1/" + model.scene.units.time};
+  file.comment = {scene_name(model.scene) +
+                  ": harmonic balance against time integration; q relative to its largest, "
+                  "exponents in 1/" +
+                  model.scene.units.time};
   file.columns = {"rpm"};
   const std::vector<RodCheck>& rods = checks.front().rods;
   for (const RodCheck& rod : rods)
@@ -414,7 +421,8 @@ CsvFile range_csv(const SceneModel& model, const std::vector<SpeedCheck>& checks
       if (rod.compared)
         file.rows.row(row).segment(column, 5) << rod.q.difference, rod.q.allowed, rod.exponents.difference,
             rod.exponents.allowed, rod.shooting.growth_rate;
-      else file.rows.row(row).segment(column, 5).setConstant(NAN);
+      else
+        file.rows.row(row).segment(column, 5).setConstant(NAN);
     }
   }
   return file;
@@ -477,12 +485,14 @@ int run_check(const CheckFlags& flags) {
   Json document = checks.size() > 1 ? range_json(model, checks) : single_json(model, checks.front(), options);
   document["seconds"] = seconds_json(checks, check_with.march);
   if (folder) write_output(model, checks, document, *folder, options.plots);
-  if (options.json) print_json(document);
+  if (options.json)
+    print_json(document);
   else
     fmt::print("{}{}", checks.size() > 1 ? range_text(model, checks) : single_text(model, checks.front(), options),
                closing_text(checks, model));
   const bool agree = std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.agrees(); });
-  const bool reached = std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.shortfalls.empty(); });
+  const bool reached =
+      std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.shortfalls.empty(); });
   return !agree ? exit_failed : reached ? exit_ok : exit_not_reached;
 }
 

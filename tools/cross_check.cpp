@@ -40,8 +40,8 @@ double distance(std::complex<double> a, std::complex<double> b, double Omega) {
 }
 
 // Growth rates, then every exponent that one path lists against the nearest of the other; the worst by excess over its
-// allowance. Either list may leave out exponents: harmonic balance those that it did not resolve, shooting those below its
-// last. One that is missing there has no partner.
+// allowance. Either list may leave out exponents: harmonic balance those that it did not resolve, shooting those below
+// its last. One that is missing there has no partner.
 Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting, Eigen::Index num_modes,
                              double Omega) {
   Comparison worst{std::abs(stability.growth_rate - shooting.growth_rate),
@@ -169,9 +169,9 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
       const Eigen::Index I = rod.shooting.orbit.q.rows();
       for (Eigen::Index i = 0; i < I; ++i) {
         const Eigen::VectorXd unit = error * Eigen::VectorXd::Unit(I, i), none = Eigen::VectorXd::Zero(I);
-        for (const LinkDeflection& wrong : {LinkDeflection{links[r], unit, none, none},
-                                            LinkDeflection{links[r], none, H * unit, none},
-                                            LinkDeflection{links[r], none, none, H * H * unit}})
+        for (const LinkDeflection& wrong :
+             {LinkDeflection{links[r], unit, none, none}, LinkDeflection{links[r], none, H * unit, none},
+              LinkDeflection{links[r], none, none, H * H * unit}})
           effect += (joint_forces_at(linkage, speed, tau, {wrong}) - rigid).cwiseAbs();
       }
     }
@@ -266,7 +266,8 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
     links.push_back(result.link);
     check.rods.push_back(std::move(rod));
   }
-  if (series.forces && complete) check.joints = compare_joints(*model.linkage(), *series.forces, check.rods, links, speed);
+  if (series.forces && complete)
+    check.joints = compare_joints(*model.linkage(), *series.forces, check.rods, links, speed);
   return check;
 }
 

@@ -14,7 +14,7 @@ namespace hb::tools {
 struct CheckOptions {
   Integrator integrator = Integrator::automatic;
   double time_limit = 60;  // seconds for each rod and speed
-  bool march = false;      // also march from rest where the motion is stable
+  bool march = false;  // also march from rest where the motion is stable
 };
 
 // A difference and what the error bars of both paths allow.
@@ -29,19 +29,19 @@ struct RodCheck {
   Stability stability;
   ShootingResult shooting;
   std::optional<MarchingResult> marching;
-  bool compared = false;             // false: one path has no result, `agrees` says nothing then
-  Comparison q, q1;                  // over turn and modes, relative to max |q|, max |q'|
+  bool compared = false;  // false: one path has no result, `agrees` says nothing then
+  Comparison q, q1;  // over turn and modes, relative to max |q|, max |q'|
   std::optional<Comparison> deflection;  // of w(x, tau) with the kept modes, relative to max |w|
-  Comparison exponents;              // largest distance of the exponents that both paths resolve, 1/time
+  Comparison exponents;  // largest distance of the exponents that both paths resolve, 1/time
   std::optional<Comparison> marched;  // q by marching, relative to max |q|
-  bool verdicts_agree = false;       // not opposite; undecided contradicts nothing
-  bool agrees = false;               // all of the above
+  bool verdicts_agree = false;  // not opposite; undecided contradicts nothing
+  bool agrees = false;  // all of the above
   std::vector<std::string> disagreements;  // one sentence each
 };
 
 struct JointCheck {
   Comparison forces, torque;  // relative to the largest
-  std::string worst;          // joint with the largest difference
+  std::string worst;  // joint with the largest difference
 };
 
 struct SpeedCheck {

@@ -93,8 +93,8 @@ INSTANTIATE_TEST_SUITE_P(Shooting, EveryIntegrator,
                                                                        : "Collocation";
                          });
 
-// The published six-link numbers, every mode; peaks of 128 samples lie below the true peaks by less than their spacing's
-// curvature allows, so the Fourier coefficients of the samples are compared instead.
+// The published six-link numbers, every mode; peaks of 128 samples lie below the true peaks by less than their
+// spacing's curvature allows, so the Fourier coefficients of the samples are compared instead.
 TEST(Shooting, GivesTheReferenceOfTheSixLinkMechanismFromTheKinematics) {
   std::ifstream file(std::string(HB_SOURCE_DIR) + "/tests/reference/six_link.json");
   const nlohmann::json reference = nlohmann::json::parse(file);
@@ -162,7 +162,8 @@ TEST(Shooting, ResonanceWithoutDampingIsSingular) {
 TEST(Shooting, WorkBeyondTheTimeLimitIsRefusedBeforeItIsBegun) {
   HillSystem stiff = mathieu(1e-3);
   stiff.stiffness[0] = series({1e16, 0.2});  // 1e8 oscillations a turn
-  for (const Integrator integrator : {Integrator::automatic, Integrator::adams, Integrator::bdf, Integrator::collocation}) {
+  for (const Integrator integrator :
+       {Integrator::automatic, Integrator::adams, Integrator::bdf, Integrator::collocation}) {
     ShootingOptions options;
     options.integrator = integrator;
     options.time_limit = 5;

@@ -139,7 +139,8 @@ TEST(TimeDomainRod, JointForcesAgreeWithTheDyadPathOnRandomLinkages) {
     const double size = largest.head(largest.size() - 1).maxCoeff();
     for (std::size_t k = 0; k < labels.size(); ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      const double scale = labels[k].joint == "torque" ? std::max(largest(i), size * random.linkage.crank.body.length) : size;
+      const double scale =
+          labels[k].joint == "torque" ? std::max(largest(i), size * random.linkage.crank.body.length) : size;
       EXPECT_LE(difference(i), 1e-10 * scale) << labels[k].joint << " " << labels[k].component;
     }
   }
