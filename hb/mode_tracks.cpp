@@ -48,12 +48,26 @@ std::vector<Pair> pairs_of(const Stability& stability) {
   return pairs;
 }
 
-// |+-folded + k Omega| nearest to `expected`; the named frequency itself where it is that one.
+// Of |+-folded + k Omega| the one that continues what is expected; where two nearly do, the one nearer to the frequency
+// that the solver named, so that a wrong turn is not followed further and further.
 double unfolded(const Pair& pair, double speed, double expected) {
-  const double up = pair.folded + speed * std::round((expected - pair.folded) / speed);
-  const double down = -pair.folded + speed * std::round((expected + pair.folded) / speed);
-  const double nearest = std::abs(std::abs(up - expected) <= std::abs(down - expected) ? up : down);
-  return std::abs(nearest - pair.frequency) <= 1e-9 * speed ? pair.frequency : nearest;
+  constexpr double weight_of_name = 0.3;  // chosen by experiment
+  double best = pair.frequency, least = HUGE_VAL;
+  for (const double near : {expected, pair.frequency}) {
+    for (const double sign : {1.0, -1.0}) {
+      const double middle = std::round((near - sign * pair.folded) / speed);
+      for (const double k : {middle - 1, middle, middle + 1}) {
+        const double frequency = std::abs(sign * pair.folded + k * speed);
+        const double distance =
+            std::abs(frequency - expected) + weight_of_name * std::abs(frequency - pair.frequency);
+        if (distance < least) {
+          least = distance;
+          best = frequency;
+        }
+      }
+    }
+  }
+  return std::abs(best - pair.frequency) <= 1e-9 * speed ? pair.frequency : best;
 }
 
 }  // namespace

@@ -69,6 +69,26 @@ double largest_at(const Eigen::VectorXd& a) {
   return best;
 }
 
+// f = c/|x - x0| near x0: then (x0 - l)/(r - x0) = f(r)/f(l), and f(l) f(r)/(f(l) + f(r)) (r - l) = c whatever l, r.
+std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double a, double x, double b) {
+  double distance = 0.25 * std::min(x - a, b - x), last = 0;
+  for (int step = 0; step < 12; ++step) {
+    const double l = x - distance, r = x + distance;
+    const std::optional<double> fl = value(l), fr = value(r);
+    if (!fl || !fr) return std::nullopt;
+    const double residue = *fl * *fr / (*fl + *fr) * (r - l);
+    const bool constant = step > 0 && residue >= 0.8 * last && residue <= 1.25 * last;
+    if (step > 1 && !constant) return std::nullopt;
+    const double next = l + (r - l) * *fr / (*fl + *fr);
+    if (distance <= 2e-7 * std::abs(x) && constant)
+      return ResponsePeak{next, HUGE_VAL, std::abs(next - x) * 1e-2 + 4 * eps * std::abs(x), true};
+    x = next;
+    last = residue;
+    distance *= 0.03;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, double inside, double high,
@@ -80,6 +100,7 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, dou
   constexpr int max_steps = 60;
   double a = low, b = high, x = inside, fa = *f_low, fb = *f_high, fx = *f_inside;
   double last_width = HUGE_VAL;
+  bool tried_pole = false;
   for (int step = 0; step < max_steps; ++step) {
     if (b - a <= 1e-3 * tolerance * std::abs(x)) break;
     const double p = (x - a) * (fx - fb), q = (b - x) * (fx - fa);
@@ -99,6 +120,10 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, dou
     } else {
       (y > x ? b : a) = y;
       (y > x ? fb : fa) = *fy;
+    }
+    if (!tried_pole && fx >= 30 * std::max(*f_low, *f_high)) {
+      tried_pole = true;
+      if (const std::optional<ResponsePeak> pole = locate_pole(value, a, x, b)) return pole;
     }
     // Ends that have come near the top: the function is about parabolic between.
     if (fx - std::min(fa, fb) <= 0.1 * std::abs(fx) && b - a <= 0.25 * (high - low)) break;

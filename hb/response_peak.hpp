@@ -9,7 +9,7 @@ namespace hb {
 
 struct ResponsePeak {
   double x = 0;
-  double value = 0;
+  double value = 0;         // infinite at a pole
   double error = 0;         // estimate, of x
   bool converged = false;   // error within the tolerance
 };
@@ -17,6 +17,7 @@ struct ResponsePeak {
 // Empty where the function does not exist.
 using ResponseAt = std::function<std::optional<double>(double x)>;
 
+// Where it grows like 1/|x - x0| down to 1e-7 of x0 it is unbounded: a pole, located as such.
 // The maximum between low and high, given low < inside < high with value(inside) not below the two others. `tolerance`
 // is relative to |x|. Empty if the function does not exist somewhere on the way.
 [[nodiscard]] std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, double inside, double high,

@@ -365,7 +365,7 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
   const double bar = known ? std::max(upper - growth, growth - lower) : HUGE_VAL;
   result.growth_rate = Omega * growth;
   result.growth_error = Omega * bar;
-  result.converged = bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 0.01);
+  result.converged = bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 1.0);
   if (known && upper < 0) result.verdict = Verdict::stable;
   if (known && lower > 0) result.verdict = Verdict::unstable;
   return result;
@@ -389,15 +389,15 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
   if (options.leading_only && system.num_modes() > 1)
     if (const auto lead = leading(system, options.tolerance, options.keep)) {
       const Stability result = finished(system, *lead, options.tolerance);
-      if (result.verdict != Verdict::undecided) return result;
+      if (result.verdict != Verdict::undecided && result.converged) return result;
     }
   search = by_slaving(system, options.tolerance);
   Stability result = finished(system, search, options.tolerance);
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
-  if (!search.complete || result.verdict == Verdict::undecided) {
+  if (!search.complete || result.verdict == Verdict::undecided || !result.converged) {
     Stability second = finished(system, propagate_all(system, std::min(options.tolerance, 1e-11)), options.tolerance);
     if (!(second.growth_error >= result.growth_error)) {
-      second.evidence += search.complete ? " (second method after an undecided first)"
+      second.evidence += search.complete ? " (second method after a first that was undecided or less accurate than asked)"
                                          : " (the reduction did not account for all exponents)";
       return second;
     }

@@ -82,8 +82,8 @@ struct Cell {
 
 class Mesh {
  public:
-  Mesh(const MapSampleAt& at, Axis x, Axis y, const MapOptions& options)
-      : at_(at), x_(std::move(x)), y_(std::move(y)), options_(options) {}
+  Mesh(const MapSampleAt& at, const MapSampleAt& leading, Axis x, Axis y, const MapOptions& options)
+      : at_(at), leading_(leading), x_(std::move(x)), y_(std::move(y)), options_(options) {}
 
   void build() {
     first_mesh();
@@ -115,9 +115,9 @@ class Mesh {
     }
   }
 
-  std::optional<StabilitySample> sample(double x, double y) const {
+  std::optional<StabilitySample> sample(const MapSampleAt& at, double x, double y) const {
     ++samples_;
-    return at_(x, y);
+    return at(x, y);
   }
 
   std::size_t add_node(int i, int j) {
@@ -169,7 +169,7 @@ class Mesh {
   void evaluate() {
     for_each(nodes_.size() - evaluated_nodes_, [this](std::size_t k) {
       Node& node = nodes_[evaluated_nodes_ + k];
-      node.sample = sample(x_.at(node.i), y_.at(node.j));
+      node.sample = sample(at_, x_.at(node.i), y_.at(node.j));
       if (node.sample) node.sample->stability.evidence = {};
     });
     evaluated_nodes_ = nodes_.size();
@@ -202,7 +202,7 @@ class Mesh {
     if (changes == odd && (!edge.crossings.empty() || !item.search)) return std::nullopt;
     const double fixed = edge.along_x ? y_.at(a.j) : x_.at(a.i);
     const SampleAt along = [&](double t) {
-      std::optional<StabilitySample> s = edge.along_x ? sample(t, fixed) : sample(fixed, t);
+      std::optional<StabilitySample> s = edge.along_x ? sample(leading_, t, fixed) : sample(leading_, fixed, t);
       if (s) s->x = t;
       return s;
     };
@@ -519,7 +519,7 @@ class Mesh {
     for_each(unclear.size(), [&](std::size_t k) {
       const Cell& cell = cells_[unclear[k]];
       const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
-      const auto s = sample(0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)));
+      const auto s = sample(leading_, 0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)));
       centre_unstable[k] = s && is_unstable(*s);
     });
     std::vector<CurveLink> links;
@@ -635,7 +635,7 @@ class Mesh {
     }
   }
 
-  const MapSampleAt& at_;
+  const MapSampleAt &at_, &leading_;
   const Axis x_, y_;
   const MapOptions& options_;
   mutable std::atomic<std::size_t> samples_ = 0;
@@ -651,10 +651,10 @@ class Mesh {
 
 }  // namespace
 
-StabilityMap stability_map(const MapSampleAt& at, std::vector<double> x, std::vector<double> y,
+StabilityMap stability_map(const MapSystem& system, std::vector<double> x, std::vector<double> y,
                            const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
-  Mesh mesh(at, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), options);
+  Mesh mesh(system.at, system.leading ? system.leading : system.at, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), options);
   mesh.build();
   return mesh.result();
 }

@@ -16,6 +16,10 @@ namespace hb {
 // Empty where there is no system (a linkage that does not close). Same place, same result; called from several threads
 // when parallel_for uses several.
 using MapSampleAt = std::function<std::optional<StabilitySample>(double x, double y)>;
+struct MapSystem {
+  MapSampleAt at;       // all exponents
+  MapSampleAt leading;  // the leading ones suffice, for searches along edges; empty: as `at`
+};
 // Calls work(0) .. work(count - 1), each once, in any order.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
@@ -54,7 +58,7 @@ struct StabilityMap {
 };
 
 // x and y ascending, at least two values each; throws std::invalid_argument otherwise.
-[[nodiscard]] StabilityMap stability_map(const MapSampleAt& at, std::vector<double> x, std::vector<double> y,
+[[nodiscard]] StabilityMap stability_map(const MapSystem& system, std::vector<double> x, std::vector<double> y,
                                          const MapOptions& options = {});
 
 }  // namespace hb

@@ -12,6 +12,9 @@ using Eigen::Index;
 
 constexpr std::array<double, 8> weights = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 6};
 
+// What is promised of a boundary, relative; the bracket goes below it.
+constexpr double boundary_tolerance = 1e-10;
+
 double scale_of(double a, double b) { return std::max({std::abs(a), std::abs(b), std::abs(b - a)}); }
 
 // Largest real part of the two modes.
@@ -50,6 +53,10 @@ class Search {
       const double width = std::abs(s_high - s_low) * low.sample.speed;
       return width <= std::max(damping, options_.smallest_order * low.sample.speed);
     };
+    // Narrower than that already: the ends would show it.
+    if (std::abs(s_high - s_low) * low.sample.speed <= 0.5 * damping &&
+        std::max(growth_of(low.modes, line.i, line.j), growth_of(high.modes, line.i, line.j)) < -0.05 * damping)
+      return std::nullopt;
     constexpr int max_steps = 60;
     int side = 0;
     double w_low = s_low, w_high = s_high;
@@ -205,8 +212,18 @@ StabilitySample stability_sample(const ScaledSystem& system, double x, const Sta
   return {x, system.speed, analyse_stability(system, options), parametric_coupling(system)};
 }
 
+namespace {
+
+// The exponents that are resolved begin with the one that gives the growth rate.
+bool leading_resolved(const Stability& stability) {
+  return !stability.exponents.empty() &&
+         stability.exponents.front().value.real() >= stability.growth_rate - stability.growth_error;
+}
+
+}  // namespace
+
 BoundaryKind boundary_kind(const Stability& stability, double speed) {
-  if (stability.exponents.empty()) return BoundaryKind::complex;
+  if (!leading_resolved(stability)) return BoundaryKind::complex;
   const double frequency = std::abs(stability.exponents.front().value.imag());
   const double slack = 1e-7 * speed;
   if (frequency <= slack) return BoundaryKind::plus_one;
@@ -271,19 +288,26 @@ StabilityBoundary locate_boundary(const SampleAt& at, const StabilitySample& a, 
                                   const SweepOptions& options) {
   double low = a.x, high = b.x;
   const bool unstable_above = is_unstable(b);
-  // Positive on the unstable side; what is undecided counts as zero on the stable one.
-  const auto value = [](const StabilitySample& s) {
-    return is_unstable(s) ? s.stability.growth_rate : std::min(s.stability.growth_rate, 0.0);
+  // Where the stable end is certain the sign of the growth rate decides, which is better known than its bound says;
+  // where it is not (no damping), only what is certainly unstable counts.
+  const bool by_sign = (unstable_above ? a : b).stability.verdict == Verdict::stable;
+  const auto value = [&](const StabilitySample& s) {
+    const double growth = s.stability.growth_rate;
+    return by_sign || is_unstable(s) ? growth : std::min(growth, 0.0);
   };
   double f_low = value(a), f_high = value(b);
-  const StabilitySample* unstable = unstable_above ? &b : &a;
   StabilityBoundary boundary;
   boundary.unstable_above = unstable_above;
-  boundary.kind = boundary_kind(unstable->stability, unstable->speed);
+  const auto notice_kind = [&](const StabilitySample& s) {
+    if (leading_resolved(s.stability)) boundary.kind = boundary_kind(s.stability, s.speed);
+  };
+  notice_kind(unstable_above ? b : a);
   const double wanted = options.tolerance * std::max(std::abs(low), std::abs(high));
   const double kappa1 = 0.2 / (high - low);
   const int half = static_cast<int>(std::ceil(std::log2((high - low) / (2 * wanted))));
   const int most = std::max(half, 0) + 1;
+  // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.
+  double certain_low = low, certain_high = high, g_low = f_low, g_high = f_high, growth_error = 0;
   for (int step = 0; step <= most && high - low > 2 * wanted; ++step) {
     const double middle = 0.5 * (low + high);
     const double radius = std::max(0.0, wanted * std::exp2(most - step) - 0.5 * (high - low));
@@ -298,15 +322,23 @@ StabilityBoundary locate_boundary(const SampleAt& at, const StabilitySample& a, 
     if (!(x > low && x < high)) x = middle;
     if (!(x > low && x < high)) break;
     const std::optional<StabilitySample> sample = at(x);
-    if (!sample) break;
-    const bool above = is_unstable(*sample) == unstable_above;  // x lies on b's side
+    if (!sample || !std::isfinite(sample->stability.growth_rate)) break;
+    const double f = value(*sample);
+    const bool above = (f > 0) == unstable_above;  // x lies on b's side
     (above ? high : low) = x;
-    (above ? f_high : f_low) = value(*sample);
-    if (is_unstable(*sample)) boundary.kind = boundary_kind(sample->stability, sample->speed);
+    (above ? f_high : f_low) = f;
+    if (f > 0) notice_kind(*sample);
+    growth_error = sample->stability.growth_error;
+    if (std::abs(f) > 4 * growth_error) {
+      (above ? certain_high : certain_low) = x;
+      (above ? g_high : g_low) = f;
+    }
   }
   boundary.x = 0.5 * (low + high);
   boundary.error = 0.5 * (high - low);
-  boundary.converged = boundary.error <= 1.001 * wanted;
+  const double slope = std::abs((g_high - g_low) / (certain_high - certain_low));
+  if (by_sign && slope > 0) boundary.error += std::min(growth_error / slope, certain_high - certain_low);
+  boundary.converged = boundary.error <= boundary_tolerance * std::max(std::abs(low), std::abs(high));
   return boundary;
 }
 

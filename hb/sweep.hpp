@@ -41,10 +41,10 @@ enum class BoundaryKind { plus_one, minus_one, complex };
 
 struct StabilityBoundary {
   double x = 0;
-  double error = 0;  // half of the bracket that is left
+  double error = 0;  // half of the bracket that is left, and what the growth rate's error bound moves
   BoundaryKind kind = BoundaryKind::complex;
   bool unstable_above = false;
-  bool converged = false;  // error within the tolerance
+  bool converged = false;  // error within 1e-10 of x
 };
 
 struct SweepOptions {

@@ -244,6 +244,11 @@ Scene parse_scene(const std::string& text, const std::string& name, const std::v
 // rpm turns per minute; a unit of time is time_in_s seconds.
 double speed_from_rpm(double rpm, const Units& units) { return rpm * (2 * pi / 60) * units.time_in_s; }
 
-double rpm_from_speed(double speed, const Units& units) { return speed / ((2 * pi / 60) * units.time_in_s); }
+double rpm_from_speed(double speed, const Units& units) {
+  const double rpm = speed / ((2 * pi / 60) * units.time_in_s);
+  // Of all that stand for this speed the rounder number: 1500 comes back as 1500.
+  const double rounder = std::round(rpm * 1e6) / 1e6;
+  return speed_from_rpm(rounder, units) == speed ? rounder : rpm;
+}
 
 }  // namespace hb

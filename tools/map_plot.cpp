@@ -138,10 +138,10 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       fmt::format("'{}' using 1:2:(asinh({}/{})) with image notitle", files.grid, c.value, c.scale)};
   if (some_undecided) {
     layers.push_back(fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha notitle", files.grid));
-    layers.push_back("NaN with points pointtype 5 pointsize 1.6 linecolor '#c6c6c6' title 'undecided'");
+    layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#c6c6c6' title 'undecided'");
   }
   if (some_missing) {
-    layers.push_back("NaN with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system: the linkage does not turn through'");
+    layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system: the linkage does not turn through'");
   }
   if (!r.lines.empty()) {
     layers.push_back(fmt::format("'{}' using 2:3 with lines linewidth 0.8 dashtype (6,6) linecolor '#444444' title "
@@ -154,7 +154,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
     const char *colour, *title;
   };
   for (const Kind& kind : {Kind{BoundaryKind::minus_one, -1, "#000000", "boundary −1: half the speed"},
-                           Kind{BoundaryKind::plus_one, 1, "#00735a", "boundary +1: the speed's period"},
+                           Kind{BoundaryKind::plus_one, 1, "#00735a", "boundary +1: once per turn"},
                            Kind{BoundaryKind::complex, 0, "#7b3294", "boundary, complex pair"}}) {
     const auto has = [&](const std::vector<RodCurve>& curves) {
       return std::any_of(curves.begin(), curves.end(), [&](const RodCurve& rc) { return rc.curve.kind == kind.kind; });

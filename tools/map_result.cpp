@@ -62,12 +62,16 @@ std::vector<MissingPoints> missing_points(const ScenePlane& plane, const Stabili
 
 StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
                      const MapSearch& search) {
-  const MapSampleAt at = [&](double u, double v) -> std::optional<StabilitySample> {
-    const std::optional<ScaledSystem> system = plane.system(rod, u, v);
-    if (!system) return std::nullopt;
-    return stability_sample(*system, u, search.stability);
+  const auto sampler = [&](bool leading_only) -> MapSampleAt {
+    StabilityOptions options = search.stability;
+    options.leading_only = leading_only;
+    return [&plane, rod, options](double u, double v) -> std::optional<StabilitySample> {
+      const std::optional<ScaledSystem> system = plane.system(rod, u, v);
+      if (!system) return std::nullopt;
+      return stability_sample(*system, u, options);
+    };
   };
-  return stability_map(at, std::move(x), std::move(y), search.map);
+  return stability_map({sampler(false), sampler(true)}, std::move(x), std::move(y), search.map);
 }
 
 std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,

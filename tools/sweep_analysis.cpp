@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 
@@ -16,6 +17,9 @@ namespace {
 // Peaks and boundaries are looked for on values more accurate than the points themselves need.
 constexpr double refined_steady_tolerance = 1e-12;
 constexpr double refined_stability_tolerance = 1e-11;
+constexpr double peak_tolerance = 5e-11;  // relative
+// A peak this far from n = omega/Omega, in orders, is not named after that mode.
+constexpr double most_detuning = 0.3;
 // A maximum lower than this above its valleys, relative, is not told from rounding.
 constexpr double least_prominence = 1e-8;
 
@@ -101,9 +105,11 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
 // One rod along the sweep, as functions of x.
 class RodAlong {
  public:
-  RodAlong(const SweepScene& scene, std::size_t rod) : scene_(scene), rod_(rod) {}
+  RodAlong(const SweepScene& scene, std::size_t rod, std::atomic<std::size_t>& evaluations)
+      : scene_(scene), rod_(rod), evaluations_(evaluations) {}
 
   std::optional<StabilitySample> stability(double x) const {
+    ++evaluations_;
     const ScenePlace place = scene_.at(x);
     if (!place.model) return std::nullopt;
     StabilityOptions options;
@@ -113,6 +119,7 @@ class RodAlong {
   }
 
   std::optional<FourierSeries> response(double x) const {
+    ++evaluations_;
     const ScenePlace place = scene_.at(x);
     if (!place.model) return std::nullopt;
     SteadyOptions options;
@@ -132,6 +139,7 @@ class RodAlong {
  private:
   const SweepScene& scene_;
   std::size_t rod_;
+  std::atomic<std::size_t>& evaluations_;
 };
 
 // The places of one rod in ascending x where its response is known.
@@ -307,13 +315,17 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
 
   std::vector<std::size_t> reported;
   std::vector<RodAlong> along;
+  std::atomic<std::size_t> evaluations = 0;
+  const auto counted = [&](const std::string& what) {
+    return fmt::format("{}{} evaluations", what, evaluations.exchange(0));
+  };
   for (std::size_t r = 0; r < model.rods.size(); ++r) {
     SweepRod rod;
     rod.name = model.rods[r].name;
     rod.reported = model.rods[r].reported;
     rod.num_modes = static_cast<int>(model.rods[r].system.num_modes());
     result.rods.push_back(std::move(rod));
-    along.emplace_back(scene, r);
+    along.emplace_back(scene, r, evaluations);
     if (model.rods[r].reported) reported.push_back(r);
   }
   std::vector<const SweepPoint*> grid;
@@ -343,7 +355,7 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
         hooks.stop);
     if (!complete) return std::nullopt;
   }
-  result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), ""});
+  result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
 
   // Boundaries.
   Stopwatch boundary_watch;
@@ -388,7 +400,8 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
     for (const std::size_t r : reported)
       result.rods[r].bands = unstable_bands(samples[r], result.rods[r].boundaries);
   }
-  result.stages.push_back({"boundaries", boundary_watch.seconds(), fmt::format("{} located", boundary_tasks.size())});
+  result.stages.push_back({"boundaries", boundary_watch.seconds(),
+                           counted(fmt::format("{} located, ", boundary_tasks.size()))});
 
   // Resonance peaks: of the largest component, and of each component where its own mode resonates.
   Stopwatch peak_watch;
@@ -423,7 +436,8 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
         const PeakTask& task = tasks[k];
         const RodAlong& rod = along[task.rod];
         const std::optional<ResponsePeak> peak =
-            locate_peak([&](double x) { return rod.largest(x, task.component); }, task.low, task.inside, task.high);
+            locate_peak([&](double x) { return rod.largest(x, task.component); }, task.low, task.inside, task.high,
+                        peak_tolerance);
         if (!peak) return;
         CriticalPoint point;
         point.rod = task.rod;
@@ -441,11 +455,12 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
                 interpolated(modes[task.rod][at], modes[task.rod][at + 1],
                              (peak->x - values[at]) / (values[at + 1] - values[at])));
             const ModeState& state = there[static_cast<std::size_t>(task.component)];
-            if (std::isfinite(state.frequency)) {
+            const double turns = state.frequency / point.speed;
+            if (std::isfinite(turns) && turns >= 0.5 && std::abs(turns - std::round(turns)) <= most_detuning) {
               point.mode = task.component;
               point.frequency = state.frequency;
               point.damping = state.damping();
-              point.order = std::max(1, static_cast<int>(std::lround(state.frequency / point.speed)));
+              point.order = static_cast<int>(std::lround(turns));
             }
           }
         }
@@ -465,7 +480,7 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
   std::stable_sort(result.critical.begin(), result.critical.end(), [](const CriticalPoint& a, const CriticalPoint& b) {
     return a.rod != b.rod ? a.rod < b.rod : a.peak.x < b.peak.x;
   });
-  result.stages.push_back({"resonance peaks", peak_watch.seconds(), fmt::format("{} located", tasks.size())});
+  result.stages.push_back({"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
 
   // Everything at what was found.
   Stopwatch refined_watch;
@@ -474,6 +489,7 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
     for (const StabilityBoundary& boundary : rod.boundaries) places.push_back(boundary.x);
   const double widest = 2 * (values.back() - values.front()) / static_cast<double>(intervals);
   for (const CriticalPoint& point : result.critical) {
+    if (std::isinf(point.peak.value)) continue;
     places.push_back(point.peak.x);
     // Flanks of a resonance of width damping/n.
     const double width = point.order > 0 ? point.damping / point.speed / point.order * point.peak.x : 0;

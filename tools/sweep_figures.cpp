@@ -63,6 +63,20 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+// Values of a column at points of the sweep where every rod is stable; of all points if that is nowhere or not known.
+std::vector<double> where_stable(const SweepResult& result, const CsvFile& csv, int column) {
+  const std::vector<const SweepPoint*> points = all_points(result);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const bool stable = std::all_of(points[k]->rods.begin(), points[k]->rods.end(), [](const RodPoint& rod) {
+      return !rod.stability || rod.stability->stability.verdict == Verdict::stable;
+    });
+    const double value = csv.rows(static_cast<Eigen::Index>(k), column - 1);
+    if (stable && std::isfinite(value)) values.push_back(value);
+  }
+  return values.empty() ? finite(csv, column) : values;
+}
+
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
@@ -92,19 +106,19 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
 
   Figure figure;
   figure.name = figure_name("campbell", rod.name);
-  figure.width = 1000;
+  figure.width = 1060;
   figure.height = 640;
   std::string& text = figure.commands;
   text += title(scene, result, r,
-                "Campbell diagram: grey n Ω, dashed k Ω/2 (parametric)" +
-                    std::string(I > 1 ? ", dotted (ω_i ± ω_j)/2" : "") + "; dots: resonance peaks" + shaded_note(rod));
+                "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
+                    "; dots: resonance peaks" + shaded_note(rod));
   text += axis(scene) + shaded(rod);
-  text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [Hz]'\nunset key\nset rmargin 16\n", top);
-  const double scale = std::max(4 * std::abs(median(finite(csv, columns.growth))), 1e-300);
+  text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [Hz]'\nunset key\nset rmargin 20\n", top);
+  const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
   text += fmt::format(
       "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 '#fc8d59', "
-      "1 '#99000d')\nset cbrange [{}:{}]\nset cblabel 'growth rate of the mode [{}], beyond: as the ends'\n"
-      "set colorbox user origin 0.9, 0.2 size 0.02, 0.6\n",
+      "1 '#99000d')\nset cbrange [{}:{}]\nset cblabel 'growth rate of the mode [{}]' font ',11' offset -0.5, 0\n"
+      "set cbtics font ',10'\nset colorbox user origin 0.88, 0.2 size 0.018, 0.6\n",
       -scale, scale, literal(output_units(scene.scene()).rate));
 
   std::string plot = "plot ";
@@ -116,6 +130,7 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   // Orders that leave the picture before its right end are labelled at the top, the others at the right.
   const double lowest = factor * from + constant;
   const int most = std::min(24, static_cast<int>(std::ceil(top / std::max(fastest, 1e-300))) + 12);
+  double last_label = HUGE_VAL;
   for (int half = 1; half <= 2 * most; ++half) {
     const bool whole = half % 2 == 0;
     const double order = half / 2.0;
@@ -129,9 +144,11 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
     if (at_end <= top) {
       text += fmt::format("set label '{}' at {}, {} left offset 0.4, 0 textcolor rgb '#777777' font ',10'\n", name, to,
                           at_end);
-    } else if (factor > 0) {
-      text += fmt::format("set label '{}' at {}, {} center offset 0, 0.5 textcolor rgb '#777777' font ',10'\n", name,
-                          (top / order - constant) / factor, top);
+    } else if (const double x = factor > 0 ? (top / order - constant) / factor : HUGE_VAL;
+               x < last_label - 0.035 * (to - from) && x > from) {
+      last_label = x;
+      text += fmt::format("set label '{}' at {}, {} center offset 0, 0.5 textcolor rgb '#777777' font ',10'\n", name, x,
+                          top);
     }
   }
   const int shown = std::min(I, max_curves);
@@ -178,7 +195,7 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(rod)) + axis(scene) + shaded(rod);
   double top = 0, bottom = HUGE_VAL;
   for (int i = 0; i < shown; ++i) {
-    for (const double value : finite(csv, columns.first_peak + i)) {
+    for (const double value : where_stable(result, csv, columns.first_peak + i)) {
       if (!(value > 0)) continue;
       top = std::max(top, value);
       bottom = std::min(bottom, value);
@@ -186,7 +203,7 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   }
   if (top > 0) {
     bottom = std::max(bottom, 1e-12 * top);
-    text += fmt::format("set logscale y\nset yrange [{}:{}]\nset format y '{}'\n", bottom / 1.5, 1.5 * top,
+    text += fmt::format("set logscale y\nset yrange [{}:{}]\nset format y '{}'\n", bottom / 2, 10 * top,
                         top / bottom > 300 ? "10^{%T}" : "%g");
   }
   text += fmt::format("set ylabel 'largest |q_i|{}'\nset key outside right top Left reverse samplen 2\nplot ",
@@ -212,13 +229,20 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
   text += fmt::format("set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char 4.5 spacing char 0, char 1.5\n",
                       heading);
   text += axis(scene) + shaded(rod);
+  const auto range = [&](int column) {
+    const std::vector<double> values = where_stable(result, csv, column);
+    double low = HUGE_VAL;
+    for (const double value : values)
+      if (value > 0) low = std::min(low, value);
+    return std::isfinite(low) ? fmt::format("set yrange [{}:{}]\n", low / 2, 10 * largest(values)) : std::string();
+  };
   text += fmt::format(
-      "unset key\nset logscale y\nset format x ''\nunset xlabel\nset ylabel 'deflection [{}]'\n"
+      "unset key\nset logscale y\nset format x ''\nunset xlabel\nset ylabel 'deflection [{}]'\n{}"
       "plot '{}' using 1:{} with lines lt 1 linewidth 1.8\n"
-      "set format x '%g'\nset xlabel {}\nset ylabel 'bending moment [N m]'\n"
+      "set format x '%g'\nset xlabel {}\nset ylabel 'bending moment [N m]'\n{}"
       "plot '{}' using 1:{} with lines lt 2 linewidth 1.8\nunset multiplot\n",
-      literal(output_units(scene.scene()).length), csv.name, columns.deflection, quoted(axis_label(scene)), csv.name,
-      columns.bending_moment);
+      literal(output_units(scene.scene()).length), range(columns.deflection), csv.name, columns.deflection,
+      quoted(axis_label(scene)), range(columns.bending_moment), csv.name, columns.bending_moment);
   text += clean_up;
   return figure;
 }
@@ -241,12 +265,14 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
       "set yrange [{}:{}]\nset ylabel 'growth rate{}'\nset key outside right top Left reverse samplen 2\n"
       "set arrow from graph 0, first 0 to graph 1, first 0 nohead linecolor rgb '#000000' linewidth 0.8\nplot ",
       low - 0.35 * span, high + 0.1 * span, bracketed(units.rate));
+  text += fmt::format("'{}' using 1:{} with lines linecolor rgb '#bbbbbb' linewidth 5 title 'leading'", csv.name,
+                      columns.growth);
   const int shown = std::min(rod.num_modes, max_curves);
   for (int mode = 0; mode < shown; ++mode) {
-    text += fmt::format("'{}' using 1:{} with lines lt {} linewidth 1.2 title 'mode {}', ", csv.name,
-                        columns.first_frequency + 2 * mode + 1, mode + 2, mode + 1);
+    text += fmt::format(", '' using 1:{} with lines lt {} linewidth 1.4 title 'mode {}'",
+                        columns.first_frequency + 2 * mode + 1, mode + 1, mode + 1);
   }
-  text += fmt::format("'{}' using 1:{} with lines lt 1 linewidth 2.2 title 'leading'\n", csv.name, columns.growth);
+  text += "\n";
   text += clean_up;
   return figure;
 }
@@ -273,12 +299,25 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
       const std::string body = components[c].substr(0, components[c].find('.'));
       if (std::find(bodies.begin(), bodies.end(), body) == bodies.end()) continue;
       const int column = 2 + 4 * static_cast<int>(c);
+      double low = 0, high = 0;
+      for (int k = 0; k < 4; ++k) {
+        const std::vector<double> values = where_stable(result, csv, column + k);
+        if (values.empty()) continue;
+        low = std::min(low, *std::min_element(values.begin(), values.end()));
+        high = std::max(high, largest(values));
+        if (k < 2) continue;
+        const std::vector<double> rigid = finite(csv, column + k);  // over the whole sweep
+        low = std::min(low, *std::min_element(rigid.begin(), rigid.end()));
+        high = std::max(high, largest(rigid));
+      }
+      const double margin = 0.15 * (high - low);
+      const std::string range = high > low ? fmt::format("set yrange [{}:{}]\n", low - margin, high + margin) : "";
       panels += fmt::format(
-          "set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#0072b2' fillstyle solid 0.25 "
+          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#0072b2' fillstyle solid 0.25 "
           "notitle, '' using 1:{} with lines lt 1 title 'elastic', '' using 1:{} with lines lt 1 notitle, "
           "'' using 1:{} with lines lt 2 dashtype 2 title 'rigid', '' using 1:{} with lines lt 2 dashtype 2 notitle\n"
           "unset key\n",
-          literal(components[c]), components[c] == "torque" ? "N m" : "N", csv.name, column, column + 1, column,
+          range, literal(components[c]), components[c] == "torque" ? "N m" : "N", csv.name, column, column + 1, column,
           column + 1, column + 2, column + 3);
       ++num_panels;
     }

@@ -119,7 +119,8 @@ Json critical_json(const SweepResult& result, const CriticalPoint& point, const 
   json["omega"] = point.speed;
   json["error"] = point.peak.error;
   json["q"] = point.component + 1;
-  json["max_abs"] = point.peak.value;
+  json["max_abs"] = number(point.peak.value);
+  json["unbounded"] = std::isinf(point.peak.value);
   json["prominence"] = point.prominence;
   if (point.mode >= 0) {
     json["mode"] = point.mode + 1;
@@ -295,7 +296,11 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
       add(text, "  {}\n", found == 0 ? "no resonance peak" : "resonance peaks");
       for (const CriticalPoint& point : result.critical) {
         if (point.rod != r) continue;
-        add(text, "    {:.12g}  max |q_{}| = {:.6g}", point.peak.x, point.component + 1, point.peak.value);
+        if (std::isinf(point.peak.value)) {
+          add(text, "    {:.12g}  |q_{}| unbounded: a multiplier passes +1", point.peak.x, point.component + 1);
+        } else {
+          add(text, "    {:.12g}  max |q_{}| = {:.6g}", point.peak.x, point.component + 1, point.peak.value);
+        }
         if (point.mode >= 0) {
           add(text, ", mode {} at order {} ({:.5g} rad/{}, {:.3g} per turn of the crank)", point.mode + 1, point.order,
               point.frequency, units.time, point.frequency / point.speed);

@@ -75,36 +75,6 @@ TEST_F(Sweep, EachPointIsWhatHbSteadySays) {
   EXPECT_EQ(found["torque"]["max"][1], steady["torque"]["max"]);
 }
 
-TEST_F(Sweep, BandsOfTheSixLinkMechanismAgreeWithBisection) {
-  const Json found = document(scene("six_link") + " --rpm 1000:4000:50 --only stability");
-  const hb::Scene six_link = hb::read_scene(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
-  const hb::Linkage& linkage = std::get<hb::Linkage>(six_link.model);
-  const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
-  int ends = 0;
-  for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
-    const hb::Body& link = *hb::body_at(linkage, coefficients.links[r]);
-    const hb::HillSystem system = hb::ritz_system(link, coefficients.rods[r], 5);
-    const auto unstable = [&](double rpm) {
-      return hb::analyse_stability(system, hb::speed_from_rpm(rpm, six_link.units)).growth_rate > 0;
-    };
-    for (const Json& band : found["unstable_bands"][link.name]) {
-      for (const double end : {band[0].get<double>(), band[1].get<double>()}) {
-        if (end == 1000 || end == 4000) continue;
-        double low = end - 0.01, high = end + 0.013;
-        const bool above = unstable(high);
-        ASSERT_NE(unstable(low), above) << link.name << " " << end;
-        for (int step = 0; step < 40; ++step) {
-          const double middle = 0.5 * (low + high);
-          (unstable(middle) == above ? high : low) = middle;
-        }
-        EXPECT_NEAR(end, 0.5 * (low + high), 1e-10 * end);
-        ++ends;
-      }
-    }
-  }
-  EXPECT_GE(ends, 2);
-}
-
 TEST_F(Sweep, CriticalSpeedOfADampedOscillatorIsTheClosedForm) {
   write("oscillator.toml",
         "[hill]\nmass = [[1.0]]\ndamping = [[0.02]]\nstiffness = [{ harmonic = 0, cos = [[1.0]] }]\n"
@@ -126,12 +96,6 @@ TEST_F(Sweep, CriticalSpeedOfADampedOscillatorIsTheClosedForm) {
   EXPECT_NEAR(third["critical_x"][0], expected / 3, 1e-10);
   EXPECT_NEAR(third["critical_rpm"][0], expected / 3 * 30 / std::numbers::pi, 1e-9);
   EXPECT_EQ(third["critical"][0]["order"], 3);
-}
-
-TEST_F(Sweep, GivesTheSameBitsWhateverTheNumberOfThreads) {
-  const std::string arguments = scene("six_link") + " --rpm 900:2700:100 --modes 3";
-  const Json one = document(arguments + " --threads 1"), two = document(arguments + " --threads 2");
-  EXPECT_EQ(one, two);
 }
 
 TEST_F(Sweep, AnyNumberOfTheSceneMayBeSwept) {
