@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "tools/json_output.hpp"
 #include "tools/output_units.hpp"
@@ -316,19 +316,34 @@ std::string tuned_scene(const TuneTask& task, const TuneResult& result, const st
                         const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   const std::string text = task.source.text_with(overrides_at(task, result.tuned));
-  static const std::regex reference(R"re(\bfile(\s*=\s*)("([^"\\\n]*)"|'([^'\n]*)'))re");
   const fs::path from = fs::absolute(scene_file).parent_path(), to = fs::absolute(folder);
+  // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   std::string changed;
-  auto rest = text.cbegin();
-  for (std::sregex_iterator match(text.begin(), text.end(), reference), end; match != end; ++match) {
-    const fs::path file = (*match)[3].matched ? (*match)[3].str() : (*match)[4].str();
-    changed.append(rest, (*match)[0].first);
-    rest = (*match)[0].second;
-    changed += file.is_absolute() || file.empty()
-                   ? match->str()
-                   : fmt::format("file{}\"{}\"", (*match)[1].str(), (from / file).lexically_relative(to).string());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t key = std::min(text.find("file", at), text.size());
+    changed.append(text, at, key - at);
+    const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+    std::size_t value = std::min(key + 4, text.size());
+    const bool whole = key == 0 || !in_name(text[key - 1]);
+    while (value < text.size() && (text[value] == ' ' || text[value] == '\t')) ++value;
+    const bool assigned = value < text.size() && text[value] == '=';
+    value += assigned ? 1 : 0;
+    while (value < text.size() && (text[value] == ' ' || text[value] == '\t')) ++value;
+    const char quote = value < text.size() ? text[value] : '\0';
+    const std::size_t end = text.find_first_of(std::string{quote, '\n'}, value + 1);
+    if (whole && assigned && (quote == '"' || quote == '\'') && end != std::string::npos && text[end] == quote) {
+      const fs::path file = text.substr(value + 1, end - value - 1);
+      const bool stays = file.is_absolute() || file.empty();
+      changed.append(text, key, value - key);
+      changed += stays ? text.substr(value, end + 1 - value)
+                       : fmt::format("\"{}\"", (from / file).lexically_relative(to).string());
+      at = end + 1;
+    } else {
+      const std::size_t next = std::min(key + 4, text.size());
+      changed.append(text, key, next - key);
+      at = next;
+    }
   }
-  changed.append(rest, text.cend());
   return changed;
 }
 
