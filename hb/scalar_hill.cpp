@@ -12,7 +12,16 @@ using Eigen::Index;
 
 constexpr double eps = 2.220446049250313e-16;
 
-ArrayXd sampled(const FourierSeries& series, Index N) { return fourier::synthesise(series, N).row(0).transpose().array(); }
+ArrayXd sampled(const FourierSeries& series, Index N) {
+  return fourier::synthesise(series, N).row(0).transpose().array();
+}
+
+// Harmonics up to the last one above rounding; what is cut away is added to `error`.
+FourierSeries above_rounding(const FourierSeries& series, double& error) {
+  const Index H = fourier::significant_harmonics(series, 2 * eps);
+  error += 2 * series.c.rightCols(series.num_harmonics() - H).cwiseAbs().sum();
+  return fourier::resized(series, H);
+}
 
 // Samples of L' and L'' of the trigonometric interpolant of L.
 struct Derivatives {
@@ -29,10 +38,11 @@ Derivatives differentiated(const ArrayXd& L) {
 
 }  // namespace
 
-std::optional<ExponentPair> phase_exponents(const FourierSeries& alpha, const FourierSeries& beta, double alpha_error,
-                                            double beta_error, double tolerance) {
-  const Index H = std::max({alpha.num_harmonics(), beta.num_harmonics(), Index(8)});
-  for (Index N = 4 * (H + 1); N <= 16 * (H + 1); N *= 2) {
+std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, const FourierSeries& given_beta,
+                                            double alpha_error, double beta_error, double tolerance) {
+  const FourierSeries alpha = above_rounding(given_alpha, alpha_error), beta = above_rounding(given_beta, beta_error);
+  const Index start = fourier::fast_length(4 * std::max({alpha.num_harmonics(), beta.num_harmonics(), Index(8)}) + 4);
+  for (Index N = start; N <= 4 * start; N *= 2) {
     const ArrayXd a = sampled(alpha, N), b = sampled(beta, N), b1 = sampled(fourier::derivative(beta), N);
     const ArrayXd Q = a - b.square() / 4 - b1 / 2;
     // sigma = +1: oscillating, psi real; sigma = -1: overdamped, psi = -i chi with chi real.
@@ -60,8 +70,9 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& alpha, const Fo
     const double largest_b = b.abs().maxCoeff();
     ExponentPair pair;
     if (sigma > 0) {
-      const double error = (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor +
-                           beta_error + 4 * eps * (psi.maxCoeff() + largest_b);
+      const double error =
+          (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor +
+          beta_error + 4 * eps * (psi.maxCoeff() + largest_b);
       pair.s = {std::complex<double>(-b.mean() / 2, psi.mean()), std::complex<double>(-b.mean() / 2, -psi.mean())};
       pair.error = {error, error};
     } else {

@@ -22,16 +22,6 @@ using cplx = std::complex<double>;
 
 constexpr double eps = 2.220446049250313e-16;
 
-// Smallest 2^a 3^b >= n: lengths that FFTW handles fast.
-Index fft_length(Index n) {
-  Index best = 4;
-  while (best < n) best *= 2;
-  for (Index three = 3; three <= best; three *= 3)
-    for (Index length = 4 * three; length <= best; length *= 2)
-      if (length >= n) best = std::min(best, length);
-  return best;
-}
-
 // Root of D(z) = z^2 + b z + w2 with the larger imaginary part, or the slower one of two real roots.
 cplx root(double b, double w2) {
   const cplx r = std::sqrt(cplx(b * b / 4 - w2, 0));
@@ -88,10 +78,20 @@ class Iteration {
 
  public:
   Iteration(const ScaledSystem& system, const Partition& p, Index num_samples)
-      : S_(p.S), F_(p.F), m_(Index(p.S.size())), n_(Index(p.F.size())), N_(num_samples), H_((num_samples - 1) / 2),
-        G_(system.G), diagonal_damping_(system.diagonal_damping),
-        I_(system.num_modes()), K_(fourier::synthesise(system.K, num_samples).transpose()), alpha_(N_, m_ * m_), beta_(N_, m_ * m_),
-        P_(MatrixXd::Zero(N_, n_ * m_)), R_(MatrixXd::Zero(N_, n_ * m_)) {
+      : S_(p.S),
+        F_(p.F),
+        m_(Index(p.S.size())),
+        n_(Index(p.F.size())),
+        N_(num_samples),
+        H_((num_samples - 1) / 2),
+        G_(system.G),
+        diagonal_damping_(system.diagonal_damping),
+        I_(system.num_modes()),
+        K_(fourier::synthesise(system.K, num_samples).transpose()),
+        alpha_(N_, m_ * m_),
+        beta_(N_, m_ * m_),
+        P_(MatrixXd::Zero(N_, n_ * m_)),
+        R_(MatrixXd::Zero(N_, n_ * m_)) {
     const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
     for (const Index s : S_) weight_.push_back(std::max(1.0, std::abs(root(b(s), w2(s)))));
     // kappa: what an error of A does to alpha.
@@ -135,7 +135,8 @@ class Iteration {
       best = std::min(best, change);
       if (iteration == 1) first = change;
       // Rounding reached: nothing is left to gain.
-      if (change <= std::max(2 * eps, tolerance) * scale || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
+      if (change <= std::max(2 * eps, tolerance) * scale ||
+          (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
         contraction_ = iteration > 1 ? std::pow(std::max(change, eps * eps) / first, 1.0 / (iteration - 1)) : 0;
         change_ = change + tail(x);
         needs_more_samples_ = !(tail(x) <= std::max(1e-13, tolerance) * scale);
@@ -246,7 +247,8 @@ class Iteration {
     double largest = 0;
     const Index count = std::max<Index>(1, H_ / 4);
     for (Index q = 0; q < n_ * m_; ++q)
-      largest = std::max(largest, 2 * (A_of(x, q).tail(count).cwiseAbs().sum() + C_of(x, q).tail(count).cwiseAbs().sum()));
+      largest =
+          std::max(largest, 2 * (A_of(x, q).tail(count).cwiseAbs().sum() + C_of(x, q).tail(count).cwiseAbs().sum()));
     return kappa_ * largest;
   }
 
@@ -359,9 +361,9 @@ class Iteration {
   const MatrixXd& G_;
   bool diagonal_damping_;
   Index I_;
-  MatrixXd K_;            // N x I*I
+  MatrixXd K_;  // N x I*I
   MatrixXd alpha_, beta_;  // N x m*m
-  MatrixXd P_, R_, C_;     // N x n*m
+  MatrixXd P_, R_, C_;  // N x n*m
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
   bool needs_more_samples_ = false;
@@ -390,7 +392,7 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
     return all;
   }
   ReducedSystem reduced;
-  const Index start = fft_length(2 * system.K.num_harmonics() + 16);
+  const Index start = fourier::fast_length(2 * system.K.num_harmonics() + 16);
   for (Index N = start; N <= 4 * start && N <= 4096; N *= 2) {
     Iteration iteration(system, p, N);
     if (iteration.run(tolerance, reduced.iterations)) {
@@ -415,10 +417,10 @@ VectorXd resonance_strength(const ScaledSystem& system, std::span<const Index> s
       const cplx lambda = root(b(s), w2(s));
       for (Index k = -P; k <= P; ++k) {
         const cplx z = lambda + cplx(0, double(k));
-        const double coupling = std::abs(system.K.c(s + I * j, std::abs(k))) * std::abs(system.K.c(j + I * s, std::abs(k))) +
-                                std::abs(system.G(s, j) * system.G(j, s)) * (k == 0 ? std::norm(z) : 0);
-        const double denominator =
-            std::abs(z * z + b(j) * z + w2(j)) * std::max(std::abs(2.0 * lambda + b(s)), 1e-3);
+        const double coupling =
+            std::abs(system.K.c(s + I * j, std::abs(k))) * std::abs(system.K.c(j + I * s, std::abs(k))) +
+            std::abs(system.G(s, j) * system.G(j, s)) * (k == 0 ? std::norm(z) : 0);
+        const double denominator = std::abs(z * z + b(j) * z + w2(j)) * std::max(std::abs(2.0 * lambda + b(s)), 1e-3);
         strength(j) = std::max(strength(j), coupling / std::max(denominator, 1e-300));
       }
     }

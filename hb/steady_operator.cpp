@@ -1,8 +1,6 @@
 #include "hb/steady_operator.hpp"
 
 #include <cmath>
-#include <map>
-#include <memory>
 
 namespace hb::steady {
 
@@ -10,27 +8,9 @@ namespace {
 
 constexpr double eps = 2.220446049250313e-16;
 
-// FFT of I components and N samples. Plans are kept per thread: sweeps ask for the same few lengths again and again.
-fourier::RealTransform& transform(Eigen::Index N, Eigen::Index I) {
-  static thread_local std::map<std::pair<Eigen::Index, Eigen::Index>, std::unique_ptr<fourier::RealTransform>> kept;
-  if (kept.size() > 32) kept.clear();
-  auto& entry = kept[{N, I}];
-  if (!entry) entry = std::make_unique<fourier::RealTransform>(N, I);
-  return *entry;
-}
-
 double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
 
 }  // namespace
-
-Eigen::Index fast_length(Eigen::Index n) {
-  for (Eigen::Index N = std::max<Eigen::Index>(2, n + n % 2);; N += 2) {
-    Eigen::Index rest = N;
-    for (const Eigen::Index p : {2, 3, 5})
-      while (rest % p == 0) rest /= p;
-    if (rest == 1) return N;
-  }
-}
 
 Eigen::VectorXd wiener_norms(const Spectrum& x) {
   if (x.rows() == 0) return Eigen::VectorXd::Zero(x.cols());
@@ -85,7 +65,7 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
   const Eigen::Index I = system_->I, P = system_->P;
   store.N = N;
   store.E.resize(N, I * I);
-  fourier::RealTransform& fft = transform(N, I);
+  fourier::RealTransform& fft = fourier::thread_transform(N, I);
   for (Eigen::Index j = 0; j < I; ++j) {
     auto spectrum = fft.spectrum();
     spectrum.setZero();
@@ -102,9 +82,9 @@ void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result
   ++num_products_;
   result.setZero(num_rows + 1, I);
   // Harmonics reach H+P; what is folded back lands above num_rows when N > H + P + num_rows.
-  const Eigen::Index N = fast_length(std::max(H_ + P + num_rows + 1, 2 * P + 2));
+  const Eigen::Index N = fourier::fast_length(std::max(H_ + P + num_rows + 1, 2 * P + 2));
   const Nodes& at = nodes(N);
-  fourier::RealTransform& fft = transform(N, I);
+  fourier::RealTransform& fft = fourier::thread_transform(N, I);
   auto spectrum = fft.spectrum();
   spectrum.topRows(H_ + 1) = x;
   spectrum.bottomRows(N / 2 - H_).setZero();
@@ -179,7 +159,7 @@ Eigen::VectorXd Operator::rounding(const Spectrum& x) const {
 
 double largest_over_turn(const Spectrum& x, Eigen::Index* component) {
   const Eigen::Index H = x.rows() - 1, I = x.cols();
-  fourier::RealTransform& fft = transform(fast_length(4 * (H + 1)), I);
+  fourier::RealTransform& fft = fourier::thread_transform(fourier::fast_length(4 * (H + 1)), I);
   auto spectrum = fft.spectrum();
   spectrum.setZero();
   spectrum.topRows(H + 1) = x;

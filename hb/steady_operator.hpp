@@ -13,9 +13,6 @@ namespace hb::steady {
 // Half spectrum of I real functions: (H+1) x I, column i holds harmonics 0..H of component i.
 using Spectrum = Eigen::MatrixXcd;
 
-// Smallest even 2^a 3^b 5^c >= n.
-[[nodiscard]] Eigen::Index fast_length(Eigen::Index n);
-
 // Sum over all harmonics (both signs) of |x_k| per component; zero for no harmonics.
 [[nodiscard]] Eigen::VectorXd wiener_norms(const Spectrum& x);
 

@@ -158,36 +158,71 @@ Extremum max_abs(const FourierSeries& series, Eigen::Index component) {
 }
 
 double wiener_norm(const FourierSeries& series, Eigen::Index component) {
-  return std::abs(series.c(component, 0)) +
-         2 * series.c.row(component).tail(series.num_harmonics()).cwiseAbs().sum();
+  return std::abs(series.c(component, 0)) + 2 * series.c.row(component).tail(series.num_harmonics()).cwiseAbs().sum();
 }
+
+namespace {
+
+// Plans of one length, for one component at a time: made once per process, then only read.
+class Plans {
+ public:
+  explicit Plans(int N) : samples_(fftw_alloc_real(at(N))), spectrum_(fftw_alloc_complex(at(N / 2 + 1))) {
+    if (!samples_ || !spectrum_) throw std::bad_alloc();
+    // Columns of odd length start anywhere.
+    const unsigned flags = FFTW_ESTIMATE | (N % 2 == 1 ? FFTW_UNALIGNED : 0U);
+    to_spectrum_ = fftw_plan_dft_r2c_1d(N, samples_.get(), spectrum_.get(), flags | FFTW_PRESERVE_INPUT);
+    to_samples_ = fftw_plan_dft_c2r_1d(N, spectrum_.get(), samples_.get(), flags);
+    if (!to_spectrum_ || !to_samples_) throw std::bad_alloc();
+  }
+  ~Plans() {
+    fftw_destroy_plan(to_spectrum_);
+    fftw_destroy_plan(to_samples_);
+  }
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+
+  // Any arrays aligned as FFTW's own.
+  void forward(double* samples, fftw_complex* spectrum) const { fftw_execute_dft_r2c(to_spectrum_, samples, spectrum); }
+  void backward(fftw_complex* spectrum, double* samples) const { fftw_execute_dft_c2r(to_samples_, spectrum, samples); }
+
+ private:
+  struct Free {
+    void operator()(void* memory) const { fftw_free(memory); }
+  };
+  static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+  std::unique_ptr<double, Free> samples_;
+  std::unique_ptr<fftw_complex, Free> spectrum_;
+  fftw_plan to_spectrum_ = nullptr, to_samples_ = nullptr;
+};
+
+const Plans& plans(Eigen::Index N) {
+  static std::map<Eigen::Index, Plans> made;
+  const std::lock_guard lock(planner_mutex());
+  return made.try_emplace(N, static_cast<int>(N)).first->second;
+}
+
+}  // namespace
 
 struct RealTransform::Impl {
   Eigen::Index N, n;
   double* samples;
   fftw_complex* spectrum;
-  fftw_plan to_spectrum, to_samples;
+  const Plans& plan;
 
-  Impl(Eigen::Index num_samples, Eigen::Index num_components) : N(num_samples), n(num_components) {
-    if (N < 1 || n < 1) throw std::invalid_argument("RealTransform: length and number of components must be positive");
-    const Eigen::Index half = N / 2 + 1;
-    const std::lock_guard lock(planner_mutex());
+  Impl(Eigen::Index num_samples, Eigen::Index num_components)
+      : N(num_samples), n(num_components), samples(nullptr), spectrum(nullptr), plan(checked(N, n)) {
     samples = fftw_alloc_real(static_cast<std::size_t>(N * n));
-    spectrum = fftw_alloc_complex(static_cast<std::size_t>(half * n));
-    const int length[] = {static_cast<int>(N)};
-    to_spectrum = fftw_plan_many_dft_r2c(1, length, static_cast<int>(n), samples, nullptr, 1, static_cast<int>(N),
-                                         spectrum, nullptr, 1, static_cast<int>(half),
-                                         FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
-    to_samples = fftw_plan_many_dft_c2r(1, length, static_cast<int>(n), spectrum, nullptr, 1, static_cast<int>(half),
-                                        samples, nullptr, 1, static_cast<int>(N), FFTW_ESTIMATE);
-    if (!samples || !spectrum || !to_spectrum || !to_samples) throw std::bad_alloc();
+    spectrum = fftw_alloc_complex(static_cast<std::size_t>((N / 2 + 1) * n));
+    if (!samples || !spectrum) throw std::bad_alloc();
   }
   ~Impl() {
-    const std::lock_guard lock(planner_mutex());
-    fftw_destroy_plan(to_spectrum);
-    fftw_destroy_plan(to_samples);
     fftw_free(samples);
     fftw_free(spectrum);
+  }
+  static const Plans& checked(Eigen::Index N, Eigen::Index n) {
+    if (N < 1 || n < 1) throw std::invalid_argument("RealTransform: length and number of components must be positive");
+    return plans(N);
   }
 };
 
@@ -205,11 +240,21 @@ Eigen::Map<Eigen::MatrixXcd> RealTransform::spectrum() {
 }
 
 void RealTransform::forward() {
-  fftw_execute(impl_->to_spectrum);
+  for (Eigen::Index i = 0; i < impl_->n; ++i)
+    impl_->plan.forward(impl_->samples + i * impl_->N, impl_->spectrum + i * (impl_->N / 2 + 1));
   spectrum() /= static_cast<double>(impl_->N);
 }
 
-void RealTransform::backward() { fftw_execute(impl_->to_samples); }
+void RealTransform::backward() {
+  for (Eigen::Index i = 0; i < impl_->n; ++i)
+    impl_->plan.backward(impl_->spectrum + i * (impl_->N / 2 + 1), impl_->samples + i * impl_->N);
+}
+
+Eigen::Index fast_length(Eigen::Index n) {
+  Eigen::Index N = 2;
+  while (N < n) N *= 2;
+  return N / 4 * 3 >= n && N >= 8 ? N / 4 * 3 : N;
+}
 
 RealTransform& thread_transform(Eigen::Index num_samples, Eigen::Index num_components) {
   thread_local std::map<std::pair<Eigen::Index, Eigen::Index>, RealTransform> transforms;

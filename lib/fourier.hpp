@@ -65,9 +65,9 @@ namespace fourier {
 // Upper bound of max_tau |f_i(tau)|: sum over all harmonics (both signs) of |c_k|.
 [[nodiscard]] double wiener_norm(const FourierSeries& series, Eigen::Index component);
 
-// Real FFT of fixed length for inner loops: owns its FFTW plans and aligned buffers. Construction and destruction
-// take a process-wide lock (FFTW's planner is not thread-safe); forward and backward may run in parallel
-// on distinct objects. Plans are made with FFTW_ESTIMATE: same input, same bits.
+// Real FFT of fixed length for inner loops, with aligned buffers of its own. One plan per length serves the process,
+// made under a lock; forward and backward may run in parallel on distinct objects. Plans are made with FFTW_ESTIMATE:
+// same input, same bits.
 class RealTransform {
  public:
   explicit RealTransform(Eigen::Index num_samples, Eigen::Index num_components = 1);
@@ -75,13 +75,13 @@ class RealTransform {
   RealTransform(RealTransform&&) noexcept;
   RealTransform& operator=(RealTransform&&) noexcept;
 
-  Eigen::Index num_samples() const;     // N
+  Eigen::Index num_samples() const;  // N
   Eigen::Index num_components() const;  // n: transforms done at once
   // N x n, column per component.
   Eigen::Map<Eigen::MatrixXd> samples();
   // (N/2+1) x n, column per component.
   Eigen::Map<Eigen::MatrixXcd> spectrum();
-  void forward();   // samples -> spectrum = c_0..c_{N/2}, normalised; samples are kept
+  void forward();  // samples -> spectrum = c_0..c_{N/2}, normalised; samples are kept
   void backward();  // spectrum -> samples; the spectrum is destroyed
 
  private:
@@ -89,7 +89,10 @@ class RealTransform {
   std::unique_ptr<Impl> impl_;
 };
 
-// This thread's own RealTransform of the given size, planned at its first use and kept: planning costs far more than a
+// Smallest 2^k or 3 2^k >= n, even: lengths that are fast, and few, so that plans are shared.
+[[nodiscard]] Eigen::Index fast_length(Eigen::Index n);
+
+// This thread's own RealTransform of the given size, made at its first use and kept: making one costs more than a
 // short transform. The buffers belong to whoever asked last; do not hold on to it across other calls.
 [[nodiscard]] RealTransform& thread_transform(Eigen::Index num_samples, Eigen::Index num_components = 1);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <set>
 
 using namespace hb;
 using std::numbers::pi;
@@ -66,8 +67,8 @@ TEST(Fourier, RangeFindsTrueExtremaBetweenSamples) {
 TEST(Fourier, RangeChoosesTheHigherOfTwoNearlyEqualPeaks) {
   // cos(40 t) peaks equally 40 times; the small cos(t - t0) decides for the peak nearest to t0.
   const double t0 = 2 * pi * 17 / 40;
-  const FourierSeries series = sampled(
-      [](double t) { return std::cos(40 * t) + 1e-6 * std::cos(t - 2 * pi * 17 / 40); }, 128);
+  const FourierSeries series =
+      sampled([](double t) { return std::cos(40 * t) + 1e-6 * std::cos(t - 2 * pi * 17 / 40); }, 128);
   const Extremum peak = fourier::max_abs(series, 0);
   EXPECT_NEAR(peak.value, 1 + 1e-6, 100 * eps);
   EXPECT_NEAR(peak.crank_angle, t0, 1e-7);
@@ -90,6 +91,18 @@ TEST(Fourier, WienerNormBoundsTheMaximum) {
 TEST(Fourier, SignificantHarmonicsFollowTheDecay) {
   EXPECT_EQ(fourier::significant_harmonics(sampled(poisson, 128), std::pow(0.5, 10.5)), 10);
   EXPECT_EQ(fourier::significant_harmonics(FourierSeries(1, 5), 1e-16), 0);
+}
+
+TEST(Fourier, FastLengthsAreLongEnoughAndFew) {
+  std::set<Eigen::Index> lengths;
+  for (Eigen::Index n = 1; n <= 1024; ++n) {
+    const Eigen::Index N = fourier::fast_length(n);
+    EXPECT_GE(N, n);
+    EXPECT_LE(N, std::max<Eigen::Index>(2, 3 * n / 2));
+    EXPECT_EQ(N % 2, 0);
+    lengths.insert(N);
+  }
+  EXPECT_LE(lengths.size(), 20u);
 }
 
 TEST(Fourier, SynthesiseRefusesTooFewSamples) {
