@@ -5,7 +5,7 @@ function(hb_target_options target)
     # GCC 12 sees overlapping copies in std::string operator+ where there are none (GCC bug 105651).
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
     # -ffast-math would remove the NaN tests that detect divergence; these three are safe.
-    -fno-math-errno -fcx-limited-range -fno-trapping-math)
+    -fno-math-errno $<$<CXX_COMPILER_ID:GNU>:-fcx-limited-range> -fno-trapping-math)
   if(HB_NATIVE)
     target_compile_options(${target} PRIVATE -march=native)
   endif()

@@ -35,8 +35,8 @@ struct SteadyState {
   int num_harmonics = 0;  // H used
   double error_bound = 0;  // bound on max_t |error| / max_t |q| (both in the norm max_i |q_i|), rounding included
   double residual = 0;  // sum over harmonics of |exact residual|, relative to |f|
-  // Nearness to resonance: smallest singular value (estimate) of the preconditioned operator D^-1 A; 1 far away,
-  // 0 at resonance. Response to a change of load grows like 1/resonance_distance.
+  // Nearness to resonance: smallest singular value (estimate) of A, each row divided by the size of its diagonal without
+  // cancellation, k^2 + |b k| + w^2; 1 far away, 0 at resonance. Response to a change of load grows like 1/resonance_distance.
   double resonance_distance = 1;
   SteadyMethod method = SteadyMethod::direct;  // the one that gave the result
   int iterations = 0;  // matrix products, or factorisations if direct

@@ -201,9 +201,9 @@ TransmissionAngle transmission_angle(const Linkage& linkage, int dyad) {
   const double angle = (low + high) / 2;
   const double sine = std::min(smallest, sine_at(linkage, dyad, angle, motion));
   const double turn = 2 * std::numbers::pi;
-  // The search leaves a width of 1e-9: what lies that near to a full turn is its beginning.
+  // A smooth minimum is found to the root of rounding: what lies that near to a full turn is its beginning.
   const double in_turn = angle < 0 ? angle + turn : angle;
-  return {std::asin(std::min(1.0, sine)), turn - in_turn <= 1e-9 ? 0 : in_turn};
+  return {std::asin(std::min(1.0, sine)), turn - in_turn <= 1e-7 ? 0 : in_turn};
 }
 
 std::vector<double> natural_frequencies(const Body& link, int count) {
@@ -232,6 +232,7 @@ std::string scene_table(const Scene& scene) {
   }
   add(text, "\nanalysis: {}, modes {}, tolerance {:.1e}\n", speeds_text(scene), modes_text(scene.analysis),
       scene.analysis.tolerance);
+  for (const std::string& warning : scene.warnings) add(text, "\nWARNING: {}\n", warning);
   return fmt::to_string(text);
 }
 
@@ -258,6 +259,7 @@ Json scene_json(const Scene& scene) {
     analysis["rpm"] = rpm.step == 0 ? Json(rpm.from) : Json::array({rpm.from, rpm.to, rpm.step});
   }
   if (scene.analysis.omega) analysis["omega"] = *scene.analysis.omega;
+  json["warnings"] = scene.warnings;
   return json;
 }
 

@@ -385,13 +385,16 @@ TEST_F(Command, WrongCommandsExitWith2) {
 TEST_F(Command, SceneSaysWhatItUnderstood) {
   const CommandResult table = hb("scene " + scene("six_link"));
   EXPECT_EQ(table.status, 0) << table.err;
-  for (const char* part : {"O2BC", "natural frequencies", "transmission angle", "mm"}) {
+  for (const char* part : {"O2BC", "natural frequencies", "transmission angle", "mm", "WARNING"}) {
     EXPECT_NE(table.out.find(part), std::string::npos) << part;
   }
   const CommandResult result = hb("scene " + scene("six_link") + " --json");
   ASSERT_EQ(result.status, 0) << result.err;
   const Json found = Json::parse(result.out);
   EXPECT_EQ(found["linkage"]["dyads"].size(), 2u);
+  // The paper's moments of inertia of both rockers are smaller than mass times radius^2.
+  ASSERT_EQ(found["warnings"].size(), 2u);
+  EXPECT_NE(found["warnings"][0].get<std::string>().find("inertia_pivot"), std::string::npos);
   // omega_1 = (pi/l)^2 sqrt(EJ/mu) of AB.
   const double l = 259, mu = 0.165 / l;
   const double omega = std::pow(std::numbers::pi / l, 2) * std::sqrt(21e7 * 45 / mu);
