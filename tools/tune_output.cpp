@@ -322,7 +322,9 @@ std::string tuned_scene(const TuneTask& task, const TuneResult& result, const st
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t key = std::min(text.find("file", at), text.size());
     changed.append(text, at, key - at);
-    const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+    const auto in_name = [](char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    };
     std::size_t value = std::min(key + 4, text.size());
     const bool whole = key == 0 || !in_name(text[key - 1]);
     while (value < text.size() && (text[value] == ' ' || text[value] == '\t')) ++value;
