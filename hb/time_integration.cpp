@@ -195,7 +195,8 @@ Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double toler
     if (flag < 0) {
       trajectory.status = problem.late ? IntegrationStatus::time_limit : IntegrationStatus::failed;
       char* name = CVodeGetReturnFlagName(flag);
-      trajectory.message = std::string(name) + " at crank angle " + std::to_string(reached) + " rad";
+      trajectory.message =
+          (problem.late ? "time limit" : std::string(name)) + " at crank angle " + std::to_string(reached) + " rad";
       std::free(name);
       return trajectory;
     }
