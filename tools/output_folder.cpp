@@ -3,9 +3,11 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
@@ -29,6 +31,32 @@ fs::path make_temporary(const fs::path& parent, const std::string& prefix, const
   umask(mask);
   fs::permissions(name, static_cast<fs::perms>(0777 & ~mask));
   return name;
+}
+
+// What Ctrl-C or SIGTERM removes before the program ends; empty: nothing.
+char unfinished[4096];
+
+// Only calls that a signal handler may make.
+void remove_unfinished(int signal) {
+  if (unfinished[0] != '\0') {
+    const pid_t child = fork();
+    if (child == 0) {
+      execl("/bin/rm", "rm", "-rf", "--", unfinished, nullptr);
+      _exit(1);
+    }
+    if (child > 0) waitpid(child, nullptr, 0);
+  }
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+void remove_when_interrupted(const std::string& path) {
+  if (path.size() >= sizeof unfinished) return;
+  std::strcpy(unfinished, path.c_str());
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction now {};
+    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) std::signal(signal, remove_unfinished);
+  }
 }
 
 }  // namespace
@@ -55,6 +83,7 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   if (existed_ && !fs::is_directory(status)) fail(folder_, "it exists and is not a folder");
   if (existed_) {
     scratch_ = make_temporary(absolute, ".hb-", folder_);
+    remove_when_interrupted(scratch_.string());
     return;
   }
   std::vector<fs::path> missing;  // parents to make, innermost first
@@ -72,10 +101,12 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
     for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, error);
     throw;
   }
+  remove_when_interrupted((made_parents_.empty() ? scratch_ : made_parents_.front()).string());
 }
 
 OutputFolder::~OutputFolder() {
   if (committed_) return;
+  unfinished[0] = '\0';
   std::error_code ignored;
   fs::remove_all(scratch_, ignored);
   for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
@@ -104,6 +135,7 @@ void OutputFolder::write(const std::string& name, const std::string& text) {
 void OutputFolder::commit() {
   std::error_code error;
   const fs::path place = fs::absolute(folder_);
+  unfinished[0] = '\0';
   if (!existed_) {
     fs::rename(scratch_, place, error);
     if (error) fail(folder_, error.message());

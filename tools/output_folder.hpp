@@ -16,7 +16,7 @@ class OutputFolder {
   // Makes the temporary folder: inside `folder` if that exists, else beside it. Throws OutputError naming the folder
   // and the reason; nothing is left behind then.
   explicit OutputFolder(std::filesystem::path folder);
-  // Removes what was not committed.
+  // Removes what was not committed; Ctrl-C, SIGTERM and SIGHUP do so too. One folder at a time.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
