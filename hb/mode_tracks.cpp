@@ -11,6 +11,8 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Beside distances in units of the crank's speed: an exponent that the solver gave to another mode is believed less.
 constexpr double renaming_penalty = 0.05;
+// ... and not at all beyond this.
+constexpr double farthest_renamed = 0.5;
 
 // Two exponents of one mode: a conjugate pair, or two that are locked to the crank (or overdamped).
 struct Pair {
@@ -104,13 +106,14 @@ std::vector<ModeState> modes_by_continuity(const Stability& stability, double sp
       const bool renamed = pairs[p].mode != static_cast<int>(m);
       const ModeState& state = expected[m];
       if (std::isnan(state.frequency)) {  // nothing to be near to: the name decides, after all others
-        matches.push_back({renamed ? 2e3 : 1e3, p, m, pairs[p].frequency});
+        if (!renamed) matches.push_back({1e3, p, m, pairs[p].frequency});
         continue;
       }
       const double frequency = unfolded(pairs[p], speed, state.frequency);
       const double damping = -0.5 * (pairs[p].growth + pairs[p].growth_low);
       const double distance =
           std::hypot(frequency - state.frequency, damping - state.damping()) / speed + (renamed ? renaming_penalty : 0);
+      if (renamed && distance > farthest_renamed) continue;
       matches.push_back({distance, p, m, frequency});
     }
   }

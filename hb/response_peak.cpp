@@ -91,16 +91,16 @@ std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double a, doubl
 
 }  // namespace
 
-std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, double inside, double high,
-                                        double tolerance) {
-  std::optional<double> f_low = value(low), f_inside = value(inside), f_high = value(high);
+std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseAt& value, double low, double inside,
+                                        double high, double tolerance) {
+  std::optional<double> f_low = rough(low), f_inside = rough(inside), f_high = rough(high);
   if (!f_low || !f_inside || !f_high) return std::nullopt;
   // Golden sections with parabolas until the parabola describes what is between: a width to interpolate over.
   constexpr double golden = 0.3819660112501051;
   constexpr int max_steps = 60;
   double a = low, b = high, x = inside, fa = *f_low, fb = *f_high, fx = *f_inside;
   double last_width = HUGE_VAL;
-  bool tried_pole = false;
+  double next_pole = 10;  // growth at which a pole is suspected
   for (int step = 0; step < max_steps; ++step) {
     if (b - a <= 1e-3 * tolerance * std::abs(x)) break;
     const double p = (x - a) * (fx - fb), q = (b - x) * (fx - fa);
@@ -110,7 +110,7 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, dou
     last_width = b - a;
     const bool parabola = std::isfinite(y) && y > a + margin && y < b - margin && shrinks;
     if (!parabola || std::abs(y - x) <= margin) y = b - x > x - a ? x + golden * (b - x) : x - golden * (x - a);
-    const std::optional<double> fy = value(y);
+    const std::optional<double> fy = rough(y);
     if (!fy) return std::nullopt;
     if (*fy > fx) {
       (y > x ? a : b) = x;
@@ -121,9 +121,9 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, dou
       (y > x ? b : a) = y;
       (y > x ? fb : fa) = *fy;
     }
-    if (!tried_pole && fx >= 30 * std::max(*f_low, *f_high)) {
-      tried_pole = true;
-      if (const std::optional<ResponsePeak> pole = locate_pole(value, a, x, b)) return pole;
+    if (fx >= next_pole * std::max(*f_low, *f_high)) {
+      next_pole *= 10;
+      if (const std::optional<ResponsePeak> pole = locate_pole(rough, a, x, b)) return pole;
     }
     // Ends that have come near the top: the function is about parabolic between.
     if (fx - std::min(fa, fb) <= 0.1 * std::abs(fx) && b - a <= 0.25 * (high - low)) break;

@@ -19,8 +19,9 @@ using ResponseAt = std::function<std::optional<double>(double x)>;
 
 // Where it grows like 1/|x - x0| down to 1e-7 of x0 it is unbounded: a pole, located as such.
 // The maximum between low and high, given low < inside < high with value(inside) not below the two others. `tolerance`
-// is relative to |x|. Empty if the function does not exist somewhere on the way.
-[[nodiscard]] std::optional<ResponsePeak> locate_peak(const ResponseAt& value, double low, double inside, double high,
-                                                      double tolerance = 1e-11);
+// is relative to |x|. `rough` serves to find the neighbourhood: a few digits of `value` are enough for that. Empty if
+// the function does not exist somewhere on the way.
+[[nodiscard]] std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseAt& value, double low,
+                                                      double inside, double high, double tolerance = 1e-11);
 
 }  // namespace hb

@@ -82,11 +82,14 @@ struct Cell {
 
 class Mesh {
  public:
-  Mesh(const MapSampleAt& at, const MapSampleAt& leading, Axis x, Axis y, const MapOptions& options)
-      : at_(at), leading_(leading), x_(std::move(x)), y_(std::move(y)), options_(options) {}
+  Mesh(const MapSystemAt& at, Axis x, Axis y, const MapOptions& options)
+      : at_(at), x_(std::move(x)), y_(std::move(y)), options_(options), search_(options.search) {
+    search_.stability.leading_only = true;
+  }
 
   void build() {
     first_mesh();
+    count_modes();
     evaluate();
     growth_range();
     for (;;) {
@@ -115,9 +118,10 @@ class Mesh {
     }
   }
 
-  std::optional<StabilitySample> sample(const MapSampleAt& at, double x, double y) const {
+  // All exponents at a node; the leading ones suffice elsewhere.
+  std::optional<StabilitySample> sample(double x, double y, const StabilityOptions& stability) const {
     ++samples_;
-    return at(x, y);
+    return stability_sample([&](double t) { return at_(t, y); }, x, stability);
   }
 
   std::size_t add_node(int i, int j) {
@@ -161,6 +165,15 @@ class Mesh {
     }
   }
 
+  void count_modes() {
+    for (const Node& node : nodes_) {
+      if (const std::optional<ScaledSystem> system = at_(x_.at(node.i), y_.at(node.j))) {
+        num_modes_ = static_cast<int>(system->num_modes());
+        return;
+      }
+    }
+  }
+
   double coordinate(std::size_t node, bool along_x) const {
     return along_x ? x_.at(nodes_[node].i) : y_.at(nodes_[node].j);
   }
@@ -169,7 +182,7 @@ class Mesh {
   void evaluate() {
     for_each(nodes_.size() - evaluated_nodes_, [this](std::size_t k) {
       Node& node = nodes_[evaluated_nodes_ + k];
-      node.sample = sample(at_, x_.at(node.i), y_.at(node.j));
+      node.sample = sample(x_.at(node.i), y_.at(node.j), options_.search.stability);
       if (node.sample) node.sample->stability.evidence = {};
     });
     evaluated_nodes_ = nodes_.size();
@@ -201,10 +214,9 @@ class Mesh {
     const bool changes = a.unstable() != b.unstable(), odd = edge.crossings.size() % 2 == 1;
     if (changes == odd && (!edge.crossings.empty() || !item.search)) return std::nullopt;
     const double fixed = edge.along_x ? y_.at(a.j) : x_.at(a.i);
-    const SampleAt along = [&](double t) {
-      std::optional<StabilitySample> s = edge.along_x ? sample(leading_, t, fixed) : sample(leading_, fixed, t);
-      if (s) s->x = t;
-      return s;
+    const SystemAt along = [&](double t) {
+      ++samples_;
+      return edge.along_x ? at_(t, fixed) : at_(fixed, t);
     };
     StabilitySample first = *a.sample, last = *b.sample;
     first.x = coordinate(edge.a, edge.along_x);
@@ -217,13 +229,12 @@ class Mesh {
     std::vector<ModeState> modes;
   };
 
-  std::vector<StabilityBoundary> boundaries_along(const SampleAt& along, const StabilitySample& a,
+  std::vector<StabilityBoundary> boundaries_along(const SystemAt& along, const StabilitySample& a,
                                                   const StabilitySample& b) const {
-    const int num_modes = static_cast<int>(a.coupling.weighted.rows());
-    const auto tracks = track_modes({{a.x, a.speed, &a.stability}, {b.x, b.speed, &b.stability}}, num_modes);
+    const auto tracks = track_modes({{a.x, a.speed, &a.stability}, {b.x, b.speed, &b.stability}}, num_modes_);
     const Tracked first{a, tracks[0]}, last{b, tracks[1]};
     std::vector<Tracked> stations = {first};
-    for (StabilitySample& s : look_between(along, a, b, tracks[0], tracks[1], options_.search)) {
+    for (StabilitySample& s : look_between(along, a, b, tracks[0], tracks[1], search_)) {
       stations.push_back(tracked(std::move(s), first, last));
     }
     if (stations.size() == 1 && !is_unstable(a) && !is_unstable(b)) {
@@ -236,8 +247,7 @@ class Mesh {
     for (std::size_t k = 1; stations.size() > 3 && k + 2 < stations.size(); ++k) {
       const Tracked &p = stations[k], &q = stations[k + 1];
       if (!(p.sample.x < q.sample.x)) continue;
-      std::vector<StabilitySample> gap =
-          look_between(along, p.sample, q.sample, p.modes, q.modes, options_.search);
+      std::vector<StabilitySample> gap = look_between(along, p.sample, q.sample, p.modes, q.modes, search_);
       if (gap.empty()) continue;
       stations.insert(stations.begin() + static_cast<std::ptrdiff_t>(k) + 1, tracked(std::move(gap.front()), p, q));
       ++k;
@@ -258,12 +268,13 @@ class Mesh {
       const double near = boundary.x - std::copysign(std::max(4 * boundary.error, 1e-9 * std::abs(room)), room);
       std::vector<StabilityBoundary> further;
       if (std::abs(room) > 1e-3 * std::abs(b.x - a.x)) {
-        if (std::optional<StabilitySample> s = along(near); s && !is_unstable(*s)) {
+        if (std::optional<StabilitySample> s = stability_sample(along, near, search_.stability);
+            s && !is_unstable(*s)) {
           const Tracked edge = tracked(std::move(*s), p, q);
           const Tracked &low = rising ? stable : edge, &high = rising ? edge : stable;
           const StabilitySample* before = &low.sample;
           std::vector<StabilitySample> peaks =
-              look_between(along, low.sample, high.sample, low.modes, high.modes, options_.search);
+              look_between(along, low.sample, high.sample, low.modes, high.modes, search_);
           peaks.push_back(high.sample);
           for (const StabilitySample& peak : peaks) {
             if (is_unstable(*before) != is_unstable(peak)) {
@@ -284,29 +295,26 @@ class Mesh {
     return result;
   }
 
-  StabilityBoundary located(const SampleAt& along, const StabilitySample& p, const StabilitySample& q) const {
-    // The bar tells how sure a verdict is, not where the growth is likely zero: inside the bracket a growth of a tenth of
-    // its bar counts (bars are bounds, an order above the error; chosen by experiment).
-    const SampleAt likely = [&along](double t) {
-      std::optional<StabilitySample> s = along(t);
-      if (s && s->stability.verdict == Verdict::undecided && s->stability.growth_rate > 0.1 * s->stability.growth_error) {
-        s->stability.verdict = Verdict::unstable;
-      }
-      return s;
-    };
-    StabilityBoundary boundary = locate_boundary(likely, p, q, options_.search);
-    // One oscillator leaves at +1 or -1 only; next to the boundary rounding may hide which.
-    if (boundary.kind == BoundaryKind::complex && p.coupling.weighted.rows() == 1) {
-      const StabilitySample& unstable = is_unstable(p) ? p : q;
-      boundary.kind = boundary_kind(unstable.stability, unstable.speed);
+  StabilityBoundary located(const SystemAt& along, const StabilitySample& p, const StabilitySample& q) const {
+    StabilityBoundary boundary = locate_boundary(along, p, q, search_);
+    // At the boundary itself rounding may hide that the exponent is locked: a millionth inside it shows.
+    const StabilitySample& unstable = is_unstable(p) ? p : q;
+    if (boundary.kind == BoundaryKind::complex) {
+      const double room = unstable.x - boundary.x;
+      const double step = std::min(std::abs(room), 1e-6 * std::max(std::abs(p.x), std::abs(q.x)));
+      const std::optional<StabilitySample> inside =
+          stability_sample(along, boundary.x + std::copysign(step, room), search_.stability);
+      if (inside && is_unstable(*inside)) boundary.kind = boundary_kind(inside->stability, inside->speed);
+      // One oscillator leaves at +1 or -1 only.
+      if (num_modes_ == 1) boundary.kind = boundary_kind(unstable.stability, unstable.speed);
     }
     return boundary;
   }
 
   // An exponent does not tell the side of the resonance k Omega = 2 omega on which it lies: omega and k Omega - omega
-  // fold to one number. Its distance d from k Omega/2 does not need the side: beside a tongue of centre x0 and half-width
-  // w, d^2 = c^2 ((x - x0)^2 - w^2), a parabola whose vertex is the centre.
-  std::optional<StabilitySample> at_centre(const SampleAt& along, const Tracked& a, const Tracked& b, std::size_t mode,
+  // fold to one number. Its distance d from k Omega/2 does not need the side: beside a tongue of centre x0 and
+  // half-width w, d^2 = c^2 ((x - x0)^2 - w^2), a parabola whose vertex is the centre.
+  std::optional<StabilitySample> at_centre(const SystemAt& along, const Tracked& a, const Tracked& b, std::size_t mode,
                                            double k) const {
     const auto squared = [&](const StabilitySample& s) {
       double nearest = HUGE_VAL;
@@ -329,7 +337,7 @@ class Mesh {
     double last = std::min(best[0].f, best[1].f);
     for (int step = 0; step < most; ++step) {
       if (!(x > low && x < high)) return std::nullopt;
-      std::optional<StabilitySample> s = along(x);
+      std::optional<StabilitySample> s = stability_sample(along, x, search_.stability);
       if (!s) return std::nullopt;
       if (is_unstable(*s)) return s;
       const double f = squared(*s);
@@ -348,21 +356,19 @@ class Mesh {
   }
 
   // Tongues of single modes between two stable ends, beside what look_between finds.
-  std::vector<StabilitySample> look_at_centres(const SampleAt& along, const Tracked& a, const Tracked& b) const {
+  std::vector<StabilitySample> look_at_centres(const SystemAt& along, const Tracked& a, const Tracked& b) const {
     std::vector<StabilitySample> found;
+    ResonanceStrength strength(along, a.sample.x, b.sample.x, search_.max_order);
     for (std::size_t m = 0; m < a.modes.size(); ++m) {
       const double p = 2 * a.modes[m].frequency / a.sample.speed, q = 2 * b.modes[m].frequency / b.sample.speed;
       if (!(std::abs(p - q) < 8)) continue;
       // The side may be mistaken near a line: lines a little beyond the ends count.
       constexpr double slack = 0.35;
-      for (double k = std::max(1.0, std::ceil(std::min(p, q) - slack)); k <= std::max(p, q) + slack; ++k) {
-        const auto strength = [&](const Tracked& t) {
-          return t.sample.coupling.at_order(static_cast<Eigen::Index>(m), k);
-        };
+      for (double k = std::max(1.0, std::ceil(std::min(p, q) - slack));
+           k <= std::min<double>(std::max(p, q) + slack, search_.max_order); ++k) {
         const double needed = std::max(std::sqrt(std::abs(a.modes[m].damping() * b.modes[m].damping())),
-                                       options_.search.smallest_order * a.sample.speed);
-        constexpr double safety = 2;  // as in look_between
-        if (!(safety * std::max(strength(a), strength(b)) >= needed)) continue;
+                                       search_.least_growth * a.sample.speed);
+        if (!(strength(m, m, k) >= needed)) continue;
         if (std::optional<StabilitySample> s = at_centre(along, a, b, m, k)) found.push_back(std::move(*s));
       }
     }
@@ -423,9 +429,23 @@ class Mesh {
       return !crossings.empty() || (present > 0 && present < 4) || (present == 4 && uneven(cell));
     }
     if (present < 4 || crossings.empty()) return false;
-    if (crossings.size() > 2) return true;
+    if (crossings.size() > 2) return !thin_tongue(cell);
     const Crossing &p = crossings_[crossings[0]], &q = crossings_[crossings[1]];
     return p.boundary.kind != q.boundary.kind || one_side(cell);
+  }
+
+  // Two crossings of one kind on each of two sides, in a cell smaller than the grid's: a tongue passes through.
+  bool thin_tongue(const Cell& cell) const {
+    if (width(cell) >= x_.units || height(cell) >= y_.units) return false;
+    std::vector<std::size_t> all;
+    for (const std::size_t e : cell.edges) {
+      const std::size_t before = all.size();
+      append_crossings(e, all);
+      if (all.size() != before && all.size() != before + 2) return false;
+    }
+    const auto kind = [&](std::size_t c) { return crossings_[c].boundary.kind; };
+    return all.size() == 4 && !nodes_[cell.corners[0]].unstable() &&
+           std::all_of(all.begin(), all.end(), [&](std::size_t c) { return kind(c) == kind(all[0]); });
   }
 
   // Both crossings on one side: the tip of a tongue.
@@ -459,8 +479,7 @@ class Mesh {
     if (edges_[e].halved) return;
     const Edge edge = edges_[e];
     const Node a = nodes_[edge.a], b = nodes_[edge.b];
-    const std::size_t middle =
-        edge.along_x ? add_node(middle_of(a.i, b.i), a.j) : add_node(a.i, middle_of(a.j, b.j));
+    const std::size_t middle = edge.along_x ? add_node(middle_of(a.i, b.i), a.j) : add_node(a.i, middle_of(a.j, b.j));
     const double t = coordinate(middle, edge.along_x);
     std::array<std::size_t, 2> children = {add_edge(edge.a, middle, edge.along_x),
                                            add_edge(middle, edge.b, edge.along_x)};
@@ -518,8 +537,13 @@ class Mesh {
     std::vector<char> centre_unstable(unclear.size(), 0);
     for_each(unclear.size(), [&](std::size_t k) {
       const Cell& cell = cells_[unclear[k]];
+      if (thin_tongue(cell)) {
+        centre_unstable[k] = 1;
+        return;
+      }
       const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
-      const auto s = sample(leading_, 0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)));
+      const auto s =
+          sample(0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)), search_.stability);
       centre_unstable[k] = s && is_unstable(*s);
     });
     std::vector<CurveLink> links;
@@ -588,7 +612,7 @@ class Mesh {
 
   static MapPoint known(const StabilitySample& sample) {
     const Stability& s = sample.stability;
-    return {MapSource::evaluated, sample.speed, s.growth_rate, s.growth_error, s.verdict,
+    return {MapSource::evaluated,           sample.speed, s.growth_rate, s.growth_error, s.verdict,
             boundary_kind(s, sample.speed), s.converged};
   }
 
@@ -599,8 +623,8 @@ class Mesh {
     std::vector<bool> set(nx * ny, false);
     for (const Node& node : nodes_) {
       if (node.i % x_.units != 0 || node.j % y_.units != 0) continue;
-      const std::size_t place = static_cast<std::size_t>(node.i / x_.units) +
-                                nx * static_cast<std::size_t>(node.j / y_.units);
+      const std::size_t place =
+          static_cast<std::size_t>(node.i / x_.units) + nx * static_cast<std::size_t>(node.j / y_.units);
       set[place] = true;
       if (node.sample) map.points[place] = known(*node.sample);
     }
@@ -635,9 +659,11 @@ class Mesh {
     }
   }
 
-  const MapSampleAt &at_, &leading_;
+  const MapSystemAt& at_;
   const Axis x_, y_;
   const MapOptions& options_;
+  SweepOptions search_;
+  int num_modes_ = 0;
   mutable std::atomic<std::size_t> samples_ = 0;
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;
@@ -651,10 +677,10 @@ class Mesh {
 
 }  // namespace
 
-StabilityMap stability_map(const MapSystem& system, std::vector<double> x, std::vector<double> y,
+StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                            const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
-  Mesh mesh(system.at, system.leading ? system.leading : system.at, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), options);
+  Mesh mesh(system, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), options);
   mesh.build();
   return mesh.result();
 }

@@ -15,32 +15,28 @@ namespace hb {
 
 // Empty where there is no system (a linkage that does not close). Same place, same result; called from several threads
 // when parallel_for uses several.
-using MapSampleAt = std::function<std::optional<StabilitySample>(double x, double y)>;
-struct MapSystem {
-  MapSampleAt at;       // all exponents
-  MapSampleAt leading;  // the leading ones suffice, for searches along edges; empty: as `at`
-};
+using MapSystemAt = std::function<std::optional<ScaledSystem>(double x, double y)>;
 // Calls work(0) .. work(count - 1), each once, in any order.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
 struct MapOptions {
-  SweepOptions search{1e-11, 1e-9};  // of the boundary along an edge
+  SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
   std::size_t evaluate_all = 40000;  // grids of at most so many points are evaluated at every point
-  double sag = 2e-4;                 // of a boundary's chord, relative to the map's width and height
-  bool curves_only = false;          // no grid values; the grid serves the search alone
-  ParallelFor parallel_for;          // empty: one after the other
+  double sag = 2e-4;  // of a boundary's chord, relative to the map's width and height
+  bool curves_only = false;  // no grid values; the grid serves the search alone
+  ParallelFor parallel_for;  // empty: one after the other
 };
 
 enum class MapSource {
   evaluated,
   interpolated,  // inside a cell whose corners and edges have one verdict, growth bilinear
-  missing,       // no system here
+  missing,  // no system here
 };
 
 struct MapPoint {
   MapSource source = MapSource::missing;
-  double speed = 0;         // rad per unit time
-  double growth_rate = 0;   // 1/time
+  double speed = 0;  // rad per unit time
+  double growth_rate = 0;  // 1/time
   double growth_error = 0;  // bound where evaluated, NaN where interpolated
   Verdict verdict = Verdict::undecided;
   BoundaryKind kind = BoundaryKind::complex;  // of the leading exponent
@@ -51,14 +47,14 @@ struct StabilityMap {
   std::vector<double> x, y;
   std::vector<MapPoint> points;  // x fastest: point (i, j) is [i + nx j]
   std::vector<BoundaryCurve> boundaries;
-  std::size_t samples = 0;       // places where the exponents were computed
-  std::size_t not_converged = 0; // boundary points whose bracket stayed wider than asked
+  std::size_t samples = 0;  // places where the exponents were computed
+  std::size_t not_converged = 0;  // boundary points whose bracket stayed wider than asked
 
   const MapPoint& at(std::size_t i, std::size_t j) const { return points[i + x.size() * j]; }
 };
 
 // x and y ascending, at least two values each; throws std::invalid_argument otherwise.
-[[nodiscard]] StabilityMap stability_map(const MapSystem& system, std::vector<double> x, std::vector<double> y,
+[[nodiscard]] StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                                          const MapOptions& options = {});
 
 }  // namespace hb

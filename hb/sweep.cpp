@@ -1,7 +1,6 @@
 #include "hb/sweep.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace hb {
@@ -9,8 +8,6 @@ namespace hb {
 namespace {
 
 using Eigen::Index;
-
-constexpr std::array<double, 8> weights = {1, 1.25, 1.6, 2, 2.5, 3.2, 4, 6};
 
 // What is promised of a boundary, relative; the bracket goes below it.
 constexpr double boundary_tolerance = 1e-10;
@@ -40,7 +37,7 @@ struct Place {
 
 class Search {
  public:
-  Search(const SampleAt& at, const Place& a, const Place& b, const SweepOptions& options)
+  Search(const SystemAt& at, const Place& a, const Place& b, const SweepOptions& options)
       : at_(at), a_(a), b_(b), options_(options), found_(is_unstable(a.sample)) {}
 
   // A sample on the other side of the verdict near the line, if there is one.
@@ -51,7 +48,7 @@ class Search {
     // A tongue that reaches instability locks its exponents over a detuning of at least twice the damping.
     const auto resolved = [&] {
       const double width = std::abs(s_high - s_low) * low.sample.speed;
-      return width <= std::max(damping, options_.smallest_order * low.sample.speed);
+      return width <= std::max(damping, options_.least_growth * low.sample.speed);
     };
     // Narrower than that already: the ends would show it.
     if (std::abs(s_high - s_low) * low.sample.speed <= 0.5 * damping &&
@@ -101,7 +98,7 @@ class Search {
 
  private:
   std::optional<Place> place(double x, const Place& low, const Place& high) const {
-    std::optional<StabilitySample> sample = at_(x);
+    std::optional<StabilitySample> sample = stability_sample(at_, x, options_.stability);
     if (!sample) return std::nullopt;
     const double fraction = (x - low.sample.x) / (high.sample.x - low.sample.x);
     std::vector<ModeState> modes =
@@ -154,7 +151,7 @@ class Search {
     return std::nullopt;
   }
 
-  const SampleAt& at_;
+  const SystemAt& at_;
   const Place &a_, &b_;
   const SweepOptions& options_;
   const bool found_;  // verdict that is known already: unstable?
@@ -162,54 +159,61 @@ class Search {
 
 }  // namespace
 
-// Order k needs the harmonics of E = K - mean to add up to k. With weights rho^|m|, every path of such harmonics is at
-// most ||E||_rho rho^-k times further factors ||E||_rho/D (D = 2 w - 1: detuning one harmonic away): rho may grow until
-// those factors reach 1/2, and the sum over all paths is then below 2 ||E||_rho rho^-k. Coupling per radian: E/(2 w).
-ParametricCoupling parametric_coupling(const ScaledSystem& system) {
+std::optional<StabilitySample> stability_sample(const SystemAt& at, double x, const StabilityOptions& options) {
+  const std::optional<ScaledSystem> system = at(x);
+  if (!system) return std::nullopt;
+  StabilitySample sample{x, system->speed, analyse_stability(*system, options)};
+  if (options.leading_only && !std::isfinite(sample.stability.growth_rate + sample.stability.growth_error)) {
+    StabilityOptions all = options;
+    all.leading_only = false;
+    sample.stability = analyse_stability(*system, all);
+  }
+  return sample;
+}
+
+// Mode i at frequency w_i reaches mode j at w_i - k by harmonics that add up to k. In units of growth
+// E_jl,m / (2 sqrt(w_j w_l)) the amplitudes on the way are
+//     a_k(j) = E_ji,k + sum_{0<m<k} sum_l E_jl,k-m a_m(l) / delta_m(l),    delta_m(l) = |w_l^2 - (w_i - m)^2| / (2 w_l)
+// with moduli throughout. delta is held above a quarter: a path through a resonance counts much, not infinitely.
+Eigen::MatrixXd parametric_coupling(const ScaledSystem& system, Index mode, Index orders) {
   const Index I = system.num_modes(), H = system.K.num_harmonics();
-  const auto R = static_cast<Index>(weights.size());
-  ParametricCoupling coupling;
-  coupling.weighted = Eigen::ArrayXXd::Constant(I, R, HUGE_VAL);
   const Eigen::VectorXd w = system.mean_diagonal().cwiseAbs().cwiseSqrt().cwiseMax(0.25);
-  // ||E_i||_rho: coupling of mode i with all, in units that make it symmetric.
-  Eigen::ArrayXXd norm = Eigen::ArrayXXd::Zero(I, R);
-  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(I);
-  Eigen::Array<double, 1, Eigen::Dynamic> power = Eigen::ArrayXd::Ones(R).transpose();
-  const Eigen::Array<double, 1, Eigen::Dynamic> rho =
-      Eigen::Map<const Eigen::ArrayXd>(weights.data(), R).transpose();
-  Eigen::MatrixXd units(I, I);
-  for (Index j = 0; j < I; ++j)
-    for (Index i = 0; i < I; ++i) units(i, j) = std::sqrt(w(i) / w(j));
-  for (Index m = 0; m <= H; ++m) {
+  Eigen::VectorXd unit(I);
+  for (Index i = 0; i < I; ++i) unit(i) = 1 / std::sqrt(2 * w(i));
+  std::vector<Eigen::MatrixXd> E;  // m = 1, 2, ..., H
+  for (Index m = 1; m <= H; ++m) {
     const Eigen::Map<const Eigen::MatrixXcd> K(system.K.c.col(m).data(), I, I);
-    Eigen::MatrixXd size = K.real().cwiseAbs() + K.imag().cwiseAbs();
-    if (m == 0) size.diagonal().setZero();
-    const Eigen::ArrayXd row = size.cwiseProduct(units).rowwise().sum();
-    if (m == 0) {
-      mean = row;
-    } else {
-      power *= rho;
-      norm += 2 * (row.matrix() * power.matrix()).array();
-    }
+    E.push_back(unit.asDiagonal() * K.cwiseAbs() * unit.asDiagonal());
   }
-  for (Index i = 0; i < I; ++i) {
-    const double D = std::max(1.0, 2 * w(i) - 1);
-    coupling.weighted(i, 0) = system.speed * norm(i, 0) / (2 * w(i));
-    for (Index r = 1; r < R && norm(i, r) + mean(i) <= D / 2; ++r)
-      coupling.weighted(i, r) = system.speed * norm(i, r) / w(i);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(I, orders), relative = a;  // relative: a/delta
+  for (Index k = 1; k <= orders; ++k) {
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(I);
+    if (k <= H) sum = E[static_cast<std::size_t>(k - 1)].col(mode);
+    for (Index m = std::max<Index>(1, k - H); m < k; ++m)
+      sum.noalias() += E[static_cast<std::size_t>(k - m - 1)] * relative.col(m - 1);
+    a.col(k - 1) = sum;
+    const double frequency = w(mode) - static_cast<double>(k);
+    for (Index l = 0; l < I; ++l)
+      relative(l, k - 1) = sum(l) / std::max(0.25, std::abs(w(l) * w(l) - frequency * frequency) / (2 * w(l)));
   }
-  return coupling;
+  return a * system.speed;
 }
 
-double ParametricCoupling::at_order(Index mode, double k) const {
-  double least = HUGE_VAL;
-  for (Index r = 0; r < weighted.cols(); ++r)
-    least = std::min(least, weighted(mode, r) * std::pow(weights[static_cast<std::size_t>(r)], -k));
-  return least;
-}
-
-StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options) {
-  return {x, system.speed, analyse_stability(system, options), parametric_coupling(system)};
+double ResonanceStrength::operator()(std::size_t i, std::size_t j, double k) {
+  if (of_mode_.empty()) {
+    first_ = at_(a_);
+    last_ = at_(b_);
+    if (!first_ || !last_) return 0;
+    of_mode_.resize(static_cast<std::size_t>(first_->num_modes()));
+  }
+  Eigen::MatrixXd& coupling = of_mode_[i];
+  if (coupling.size() == 0) {
+    coupling = parametric_coupling(*first_, static_cast<Index>(i), orders_)
+                   .cwiseMax(parametric_coupling(*last_, static_cast<Index>(i), orders_));
+  }
+  // Paths that turn back are not in it (chosen by experiment on Mathieu's tongues).
+  constexpr double safety = 3;
+  return safety * coupling(static_cast<Index>(j), static_cast<Index>(k) - 1);
 }
 
 namespace {
@@ -233,14 +237,17 @@ BoundaryKind boundary_kind(const Stability& stability, double speed) {
 
 const char* to_string(BoundaryKind kind) {
   switch (kind) {
-    case BoundaryKind::plus_one: return "+1";
-    case BoundaryKind::minus_one: return "-1";
-    case BoundaryKind::complex: return "complex";
+    case BoundaryKind::plus_one:
+      return "+1";
+    case BoundaryKind::minus_one:
+      return "-1";
+    case BoundaryKind::complex:
+      return "complex";
   }
   return "";
 }
 
-std::vector<StabilitySample> look_between(const SampleAt& at, const StabilitySample& a, const StabilitySample& b,
+std::vector<StabilitySample> look_between(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
                                           const std::vector<ModeState>& modes_a, const std::vector<ModeState>& modes_b,
                                           const SweepOptions& options) {
   std::vector<StabilitySample> found;
@@ -253,9 +260,9 @@ std::vector<StabilitySample> look_between(const SampleAt& at, const StabilitySam
     }
     return found;
   }
+  // Lines that cross the interval.
   const std::size_t I = std::min(modes_a.size(), modes_b.size());
-  // Safety on the estimate of the coupling (chosen by experiment on Mathieu's tongues up to order 6).
-  constexpr double safety = 2;
+  std::vector<Line> lines;
   for (std::size_t i = 0; i < I; ++i) {
     for (std::size_t j = i; j < I; ++j) {
       for (const double sign : {1.0, -1.0}) {
@@ -263,20 +270,22 @@ std::vector<StabilitySample> look_between(const SampleAt& at, const StabilitySam
         Line line{i, j, sign, 0};
         const double first = line.detuning(modes_a, a.speed), last = line.detuning(modes_b, b.speed);
         if (!std::isfinite(first) || !std::isfinite(last)) continue;
-        const double low = std::min(first, last), high = std::max(first, last);
-        if (!(high - low <= 1e6)) continue;
-        for (line.k = std::max(1.0, std::floor(low) + 1); line.k < high; ++line.k) {
-          const auto strength = [&](const StabilitySample& sample) {
-            const ParametricCoupling& c = sample.coupling;
-            return safety * std::sqrt(c.at_order(Index(i), line.k) * c.at_order(Index(j), line.k));
-          };
-          const double needed = std::max(std::sqrt(std::abs(modes_a[i].damping() * modes_a[j].damping())),
-                                         options.smallest_order * a.speed);
-          if (!(std::max(strength(a), strength(b)) >= needed)) break;  // higher orders are weaker still
-          if (std::optional<StabilitySample> sample = search.along(line)) found.push_back(std::move(*sample));
-        }
+        const double high = std::min(std::max(first, last), options.max_order + 0.5);
+        for (line.k = std::max(1.0, std::floor(std::min(first, last)) + 1); line.k < high; ++line.k)
+          lines.push_back(line);
       }
     }
+  }
+  if (lines.empty()) return found;
+  // Those strong enough to overcome the damping.
+  const double highest =
+      std::max_element(lines.begin(), lines.end(), [](const Line& p, const Line& q) { return p.k < q.k; })->k;
+  ResonanceStrength strength(at, a.x, b.x, static_cast<int>(highest));
+  for (const Line& line : lines) {
+    const double needed = std::max(std::sqrt(std::abs(modes_a[line.i].damping() * modes_a[line.j].damping())),
+                                   options.least_growth * a.speed);
+    if (!(strength(line.i, line.j, line.k) >= needed)) continue;
+    if (std::optional<StabilitySample> sample = search.along(line)) found.push_back(std::move(*sample));
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const StabilitySample& p, const StabilitySample& q) { return p.x < q.x; });
@@ -284,16 +293,17 @@ std::vector<StabilitySample> look_between(const SampleAt& at, const StabilitySam
 }
 
 // ITP: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, doi:10.1145/3423597.
-StabilityBoundary locate_boundary(const SampleAt& at, const StabilitySample& a, const StabilitySample& b,
+StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
                                   const SweepOptions& options) {
   double low = a.x, high = b.x;
   const bool unstable_above = is_unstable(b);
-  // Where the stable end is certain the sign of the growth rate decides, which is better known than its bound says;
-  // where it is not (no damping), only what is certainly unstable counts.
+  // Where the stable end is certain the sign of the growth rate decides, which is better known than its bound says.
+  // Where it is not (no damping), a growth of a tenth of its bar counts: bars are bounds, an order above the error
+  // (chosen by experiment).
   const bool by_sign = (unstable_above ? a : b).stability.verdict == Verdict::stable;
   const auto value = [&](const StabilitySample& s) {
     const double growth = s.stability.growth_rate;
-    return by_sign || is_unstable(s) ? growth : std::min(growth, 0.0);
+    return by_sign || growth > 0.1 * s.stability.growth_error ? growth : std::min(growth, 0.0);
   };
   double f_low = value(a), f_high = value(b);
   StabilityBoundary boundary;
@@ -321,7 +331,7 @@ StabilityBoundary locate_boundary(const SampleAt& at, const StabilitySample& a, 
     }
     if (!(x > low && x < high)) x = middle;
     if (!(x > low && x < high)) break;
-    const std::optional<StabilitySample> sample = at(x);
+    const std::optional<StabilitySample> sample = stability_sample(at, x, options.stability);
     if (!sample || !std::isfinite(sample->stability.growth_rate)) break;
     const double f = value(*sample);
     const bool above = (f > 0) == unstable_above;  // x lies on b's side

@@ -37,7 +37,8 @@ struct AxisRange {
 };
 
 AxisRange axis_range(const std::string& flag, const std::string& text) {
-  if (text.empty()) throw UsageError(fmt::format("{}: not given, allowed: PATH=FROM:TO:N, as in rpm=200:6000:100", flag));
+  if (text.empty())
+    throw UsageError(fmt::format("{}: not given, allowed: PATH=FROM:TO:N, as in rpm=200:6000:100", flag));
   const NamedRange named = named_range(flag, text);
   AxisRange range;
   range.axis.path = named.path;
@@ -46,8 +47,10 @@ AxisRange axis_range(const std::string& flag, const std::string& text) {
   range.axis.to = range.values.back();
   for (std::size_t k = 0; k + 1 < range.values.size(); ++k) {
     if (!(range.values[k] < range.values[k + 1])) {
-      throw UsageError(fmt::format("{}: found \"{}\", whose points are too close to be told apart; allowed: a wider range "
-                                   "or fewer points", flag, text));
+      throw UsageError(
+          fmt::format("{}: found \"{}\", whose points are too close to be told apart; allowed: a wider range "
+                      "or fewer points",
+                      flag, text));
     }
   }
   if (named.path == "rpm" || named.path == "analysis.rpm") {
@@ -78,21 +81,21 @@ bool same_number(const SceneSource& source, const std::string& a, const std::str
 
 void require_different(const MapFlags& flags, const SceneSource& source, const AxisRange& x, const AxisRange& y) {
   if ((is_speed(x) && is_speed(y)) || same_number(source, x.axis.path, y.axis.path)) {
-    throw UsageError(fmt::format("--y: found {} beside --x {}, allowed: two different parameters", y.axis.path,
-                                 x.axis.path));
+    throw UsageError(
+        fmt::format("--y: found {} beside --x {}, allowed: two different parameters", y.axis.path, x.axis.path));
   }
   for (const AxisRange* range : {&x, &y}) {
     const char* flag = range == &x ? "--x" : "--y";
     for (const Override& set : overrides(flags)) {
       if (same_number(source, set.path, range->axis.path)) {
-        throw UsageError(fmt::format("--set: found {} beside {} {}, allowed: one of the two", set.path, flag,
-                                     range->axis.path));
+        throw UsageError(
+            fmt::format("--set: found {} beside {} {}, allowed: one of the two", set.path, flag, range->axis.path));
       }
     }
     if (is_speed(*range) && (!flags.rpm.empty() || !flags.omega.empty())) {
       throw UsageError(fmt::format("--{}: found {} beside {} {}, allowed: one of the two",
-                                   flags.rpm.empty() ? "omega" : "rpm", flags.rpm.empty() ? flags.omega : flags.rpm, flag,
-                                   range->axis.path));
+                                   flags.rpm.empty() ? "omega" : "rpm", flags.rpm.empty() ? flags.omega : flags.rpm,
+                                   flag, range->axis.path));
     }
   }
 }
@@ -216,11 +219,11 @@ int run_map(const MapFlags& flags) {
 
   std::optional<OutputFolder> folder;
   if (options.out) folder.emplace(*options.out);
-  MapSearch search;
-  search.stability.method = options.stability_method;
-  search.stability.tolerance = std::clamp(0.1 * options.tolerance, 1e-13, 1e-9);
-  search.map.search.tolerance = std::clamp(0.1 * options.tolerance, 1e-14, 1e-6);
-  search.map.parallel_for = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
+  MapOptions search;
+  search.search.stability.method = options.stability_method;
+  search.search.stability.tolerance = std::clamp(0.1 * options.tolerance, 1e-13, 1e-9);
+  search.search.tolerance = std::clamp(0.1 * options.tolerance, 1e-14, 1e-6);
+  search.parallel_for = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
     Progress progress("stability map, this step", count);
     spread(count, [&](std::size_t k) {
       work(k);
@@ -235,8 +238,8 @@ int run_map(const MapFlags& flags) {
     const SceneSource as_set(source.text_with(set), flags.scene_file, file.parent_path());
     for (const double factor : {factors->low, factors->high}) {
       const ScenePlane damped = plane_with(damping_overrides(as_set, scene, x, y, factor));
-      MapSearch curves = search;
-      curves.map.curves_only = true;
+      MapOptions curves = search;
+      curves.curves_only = true;
       std::vector<StabilityMap> maps;
       for (std::size_t r = 0; r < damped.rods().size(); ++r) {
         maps.push_back(rod_map(damped, r, x.values, y.values, curves));
@@ -245,7 +248,7 @@ int run_map(const MapFlags& flags) {
     }
   }
 
-  const MapDocument document{result, plane.scene(), plane_options.num_modes, search.map.search.tolerance};
+  const MapDocument document{result, plane.scene(), plane_options.num_modes, search.search.tolerance};
   const nlohmann::ordered_json json = options.json || folder ? map_json(document) : nlohmann::ordered_json();
   if (folder) {
     folder->write("map.json", json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
@@ -276,11 +279,14 @@ void add_map_command(CLI::App& app, int& status) {
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags);
   command->add_option("--x", flags->x, "first parameter, as in rpm=200:6000:100 (N points)")->type_name("PATH=A:B:N");
-  command->add_option("--y", flags->y, "second parameter, as in AB.J=30:60:50 or *.J=30:60:50")->type_name("PATH=A:B:N");
-  command->add_option("--damping-range", flags->damping_range,
-                      "boundaries also with the internal damping (of a [hill] scene: the damping) times both factors")
+  command->add_option("--y", flags->y, "second parameter, as in AB.J=30:60:50 or *.J=30:60:50")
+      ->type_name("PATH=A:B:N");
+  command
+      ->add_option("--damping-range", flags->damping_range,
+                   "boundaries also with the internal damping (of a [hill] scene: the damping) times both factors")
       ->type_name("A:B");
-  command->add_option("--colour", flags->colour, "colours of the picture: growth, turn (growth per turn), tenfold (time)")
+  command
+      ->add_option("--colour", flags->colour, "colours of the picture: growth, turn (growth per turn), tenfold (time)")
       ->type_name("WHAT");
   command->callback([flags, &status] { status = run_map(*flags); });
 }

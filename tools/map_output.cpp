@@ -158,8 +158,9 @@ CsvFile map_grid_csv(const MapDocument& document) {
   file.comment = {first_line(document, "growth rate, largest over the rods"),
                   "verdict 1 unstable, 0 undecided, -1 stable; interpolated 1: inside a cell of one verdict; "
                   "nan: no system"};
-  file.columns = {r.x_axis.path,          r.y_axis.path, "growth [1/" + time + "]", "growth per turn",
-                  "tenfold time [" + time + "]", "verdict",     "interpolated"};
+  file.columns = {
+      r.x_axis.path, r.y_axis.path, "growth [1/" + time + "]", "growth per turn", "tenfold time [" + time + "]",
+      "verdict",     "interpolated"};
   for (const std::string& rod : r.rods) file.columns.push_back("growth " + rod + " [1/" + time + "]");
   file.rows.resize(static_cast<Eigen::Index>(r.worst.size()), static_cast<Eigen::Index>(file.columns.size()));
   for (std::size_t p = 0; p < r.worst.size(); ++p) {
@@ -234,8 +235,9 @@ std::string map_summary(const MapDocument& document) {
   text += fmt::format("  x  {} = {} ... {}, {} values\n  y  {} = {} ... {}, {} values\n", r.x_axis.path, r.x().front(),
                       r.x().back(), r.x().size(), r.y_axis.path, r.y().front(), r.y().back(), r.y().size());
   text += fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes);
-  text += fmt::format("  stable {:.4g} %, unstable {:.4g} %, undecided {:.4g} %", 100 * static_cast<double>(n.stable) / all,
-                      100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
+  text +=
+      fmt::format("  stable {:.4g} %, unstable {:.4g} %, undecided {:.4g} %", 100 * static_cast<double>(n.stable) / all,
+                  100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
   if (n.missing > 0) text += fmt::format(", no system {:.4g} %", 100 * static_cast<double>(n.missing) / all);
   text += fmt::format(" of {} points", r.worst.size());
   if (n.interpolated > 0) text += fmt::format(" ({} of them interpolated)", n.interpolated);
@@ -265,8 +267,8 @@ std::string map_summary(const MapDocument& document) {
     const auto [y0, y1] = std::minmax_element(points.begin(), points.end(),
                                               [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.y < b.y; });
     text += fmt::format("    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", r.rods[r.boundaries[k].rod],
-                        to_string(r.boundaries[k].curve.kind), points.size(), fmt::format("{:.8g} ... {:.8g}", x0->x, x1->x),
-                        fmt::format("{:.8g} ... {:.8g}", y0->y, y1->y));
+                        to_string(r.boundaries[k].curve.kind), points.size(),
+                        fmt::format("{:.8g} ... {:.8g}", x0->x, x1->x), fmt::format("{:.8g} ... {:.8g}", y0->y, y1->y));
   }
   if (r.boundaries.size() > most) text += fmt::format("    ... {} more (--json has all)\n", r.boundaries.size() - most);
   return text;

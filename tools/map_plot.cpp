@@ -25,7 +25,7 @@ std::string axis_label(const MapDocument& document, const PlaneAxis& axis) {
 struct ColourScale {
   std::string value;  // gnuplot expression of columns 3 (growth), 4 (per turn)
   std::string label;
-  double scale = 1;   // values up to about here are shown linearly, larger ones by their logarithm
+  double scale = 1;  // values up to about here are shown linearly, larger ones by their logarithm
   double largest = 1;
 };
 
@@ -38,10 +38,9 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   }
   ColourScale result;
   result.value = per_turn ? "$4" : "$3";
-  result.label = per_turn ? "growth exponent per turn"
-                 : colour == MapColour::tenfold_time
-                     ? "time to grow (right of 0) or to fall tenfold [" + time + "]"
-                     : "growth rate [1/" + time + "]";
+  result.label = per_turn                            ? "growth exponent per turn"
+                 : colour == MapColour::tenfold_time ? "time to grow (right of 0) or to fall tenfold [" + time + "]"
+                                                     : "growth rate [1/" + time + "]";
   if (sizes.empty()) return result;
   std::sort(sizes.begin(), sizes.end());
   result.largest = sizes.back() > 0 ? sizes.back() : 1;
@@ -67,7 +66,8 @@ std::string ticks(const ColourScale& c, MapColour colour) {
   std::string text = "set cbtics (\"0\" 0";
   for (const double v : values) {
     const double place = std::asinh(v / c.scale);
-    const std::string up = colour == MapColour::tenfold_time ? fmt::format("{:.3g}", std::log(10.0) / v) : fmt::format("{:g}", v);
+    const std::string up =
+        colour == MapColour::tenfold_time ? fmt::format("{:.3g}", std::log(10.0) / v) : fmt::format("{:g}", v);
     const std::string down = colour == MapColour::tenfold_time ? up : "−" + up;
     text += fmt::format(", \"{}\" {}, \"{}\" {}", up, place, down, -place);
   }
@@ -129,24 +129,29 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "set key outside below horizontal samplen 3 width 1\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(scene_name(document.scene)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),
-      r.y().front(), r.y().back(), axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label), -limit,
-      limit, ticks(c, colour), palette, line_labels(r));
+      r.y().front(), r.y().back(), axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label),
+      -limit, limit, ticks(c, colour), palette, line_labels(r));
   if (some_missing) {
-    figure.commands += "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
+    figure.commands +=
+        "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
   }
   std::vector<std::string> layers = {
       fmt::format("'{}' using 1:2:(asinh({}/{})) with image notitle", files.grid, c.value, c.scale)};
   if (some_undecided) {
-    layers.push_back(fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha notitle", files.grid));
+    layers.push_back(
+        fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha notitle", files.grid));
     layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#c6c6c6' title 'undecided'");
   }
   if (some_missing) {
-    layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system: the linkage does not turn through'");
+    layers.push_back(
+        "keyentry with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system: the linkage does not "
+        "turn through'");
   }
   if (!r.lines.empty()) {
-    layers.push_back(fmt::format("'{}' using 2:3 with lines linewidth 0.8 dashtype (6,6) linecolor '#444444' title "
-                                 "'resonance lines of the mean frequencies (speed = ...)'",
-                                 files.resonance));
+    layers.push_back(
+        fmt::format("'{}' using 2:3 with lines linewidth 0.8 dashtype (6,6) linecolor '#444444' title "
+                    "'resonance lines of the mean frequencies (speed = ...)'",
+                    files.resonance));
   }
   struct Kind {
     BoundaryKind kind;
@@ -160,15 +165,20 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       return std::any_of(curves.begin(), curves.end(), [&](const RodCurve& rc) { return rc.curve.kind == kind.kind; });
     };
     if (has(r.boundaries)) {
-      layers.push_back(fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 2.2 linecolor '{}' title '{}'",
-                                   files.boundaries, kind.number, kind.colour, kind.title));
+      layers.push_back(
+          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 2.2 linecolor '{}' title '{}'",
+                      files.boundaries, kind.number, kind.colour, kind.title));
     }
     for (std::size_t d = 0; d < r.damping.size(); ++d) {
       if (!has(r.damping[d].boundaries)) continue;
-      layers.push_back(fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 1.2 dashtype {} linecolor '{}' "
-                                   "title '{} at damping x {:g}'",
-                                   files.damping[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
-                                   kind.number == 0 ? "complex" : kind.number == 1 ? "+1" : "−1", r.damping[d].factor));
+      layers.push_back(
+          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 1.2 dashtype {} linecolor '{}' "
+                      "title '{} at damping x {:g}'",
+                      files.damping[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
+                      kind.number == 0   ? "complex"
+                      : kind.number == 1 ? "+1"
+                                         : "−1",
+                      r.damping[d].factor));
     }
   }
   figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));

@@ -9,9 +9,9 @@ namespace {
 
 constexpr std::size_t max_lines = 10;
 
-void for_each(const MapSearch& search, std::size_t count, const std::function<void(std::size_t)>& work) {
-  if (search.map.parallel_for) {
-    search.map.parallel_for(count, work);
+void for_each(const MapOptions& search, std::size_t count, const std::function<void(std::size_t)>& work) {
+  if (search.parallel_for) {
+    search.parallel_for(count, work);
   } else {
     for (std::size_t k = 0; k < count; ++k) work(k);
   }
@@ -20,7 +20,9 @@ void for_each(const MapSearch& search, std::size_t count, const std::function<vo
 // Least stable point of all rods: unstable before undecided before stable, then by growth.
 MapPoint worse(const MapPoint& a, const MapPoint& b) {
   if (a.source == MapSource::missing || b.source == MapSource::missing) return {};
-  const auto rank = [](const MapPoint& p) { return p.verdict == Verdict::unstable ? 2 : p.verdict == Verdict::undecided; };
+  const auto rank = [](const MapPoint& p) {
+    return p.verdict == Verdict::unstable ? 2 : p.verdict == Verdict::undecided;
+  };
   MapPoint result = b.growth_rate > a.growth_rate ? b : a;
   if (rank(a) != rank(b)) result.verdict = rank(a) > rank(b) ? a.verdict : b.verdict;
   if (a.source == MapSource::interpolated || b.source == MapSource::interpolated) {
@@ -61,21 +63,13 @@ std::vector<MissingPoints> missing_points(const ScenePlane& plane, const Stabili
 }  // namespace
 
 StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
-                     const MapSearch& search) {
-  const auto sampler = [&](bool leading_only) -> MapSampleAt {
-    StabilityOptions options = search.stability;
-    options.leading_only = leading_only;
-    return [&plane, rod, options](double u, double v) -> std::optional<StabilitySample> {
-      const std::optional<ScaledSystem> system = plane.system(rod, u, v);
-      if (!system) return std::nullopt;
-      return stability_sample(*system, u, options);
-    };
-  };
-  return stability_map({sampler(false), sampler(true)}, std::move(x), std::move(y), search.map);
+                     const MapOptions& search) {
+  const MapSystemAt at = [&plane, rod](double u, double v) { return plane.system(rod, u, v); };
+  return stability_map(at, std::move(x), std::move(y), search);
 }
 
 std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
-                                       const MapSearch& search) {
+                                       const MapOptions& search) {
   struct Place {
     std::size_t rod;
     double x, y;
@@ -88,7 +82,7 @@ std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vecto
   }
   std::vector<char> hidden(places.size(), 0);
   if (maps.size() > 1) {
-    StabilityOptions options = search.stability;
+    StabilityOptions options = search.search.stability;
     options.leading_only = true;
     for_each(search, places.size(), [&](std::size_t k) {
       for (std::size_t r = 0; r < maps.size() && !hidden[k]; ++r) {
@@ -121,7 +115,7 @@ std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vecto
 }
 
 MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x, const PlaneAxis& y_axis,
-                      std::vector<double> y, const MapSearch& search) {
+                      std::vector<double> y, const MapOptions& search) {
   MapResult result;
   result.x_axis = x_axis;
   result.y_axis = y_axis;
@@ -134,9 +128,9 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
     }
   }
   result.boundaries = worst_boundaries(plane, result.maps, search);
-  result.lines = resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
-                                 {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()},
-                                 max_lines);
+  result.lines =
+      resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
+                      {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()}, max_lines);
   result.missing = missing_points(plane, result.maps.front());
   return result;
 }

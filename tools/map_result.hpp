@@ -42,20 +42,15 @@ struct MapResult {
   const std::vector<double>& y() const { return maps.front().y; }
 };
 
-struct MapSearch {
-  StabilityOptions stability;
-  MapOptions map;
-};
-
 // Boundaries of the worst rod alone.
 [[nodiscard]] std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
-                                                     const MapSearch& search);
+                                                     const MapOptions& search);
 
 [[nodiscard]] StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x,
-                                   std::vector<double> y, const MapSearch& search);
+                                   std::vector<double> y, const MapOptions& search);
 
 // Everything but the damping range.
 [[nodiscard]] MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x,
-                                    const PlaneAxis& y_axis, std::vector<double> y, const MapSearch& search);
+                                    const PlaneAxis& y_axis, std::vector<double> y, const MapOptions& search);
 
 }  // namespace hb::tools

@@ -17,9 +17,7 @@ constexpr int max_order = 8;
 
 using Place = std::array<double, 2>;
 
-Place between(const Place& p, const Place& q, double f) {
-  return {p[0] + (q[0] - p[0]) * f, p[1] + (q[1] - p[1]) * f};
-}
+Place between(const Place& p, const Place& q, double f) { return {p[0] + (q[0] - p[0]) * f, p[1] + (q[1] - p[1]) * f}; }
 
 // Pieces of the line where `values` (lattice x lattice, NaN: unknown) are zero, straight inside each cell.
 std::vector<std::vector<Place>> zero_lines(const std::vector<Place>& places, const std::vector<double>& values) {
@@ -68,7 +66,7 @@ std::string ResonanceLine::name(bool subscripts) const {
   return k == 1 ? pair : fmt::format("({}){}", pair, over);
 }
 
-std::vector<ResonanceLine> resonance_lines(const SystemAt& at, std::array<double, 2> x, std::array<double, 2> y,
+std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<double, 2> x, std::array<double, 2> y,
                                            std::size_t max_lines) {
   std::vector<Place> places;
   std::array<std::vector<double>, max_modes> w;  // frequencies over the speed
@@ -81,9 +79,8 @@ std::vector<ResonanceLine> resonance_lines(const SystemAt& at, std::array<double
       Eigen::VectorXd squares = system ? system->mean_diagonal() : Eigen::VectorXd();
       std::sort(squares.begin(), squares.end());
       for (int m = 0; m < max_modes; ++m) {
-        w[static_cast<std::size_t>(m)].push_back(m < squares.size() && squares(m) >= 0
-                                                     ? std::sqrt(squares(m))
-                                                     : std::numeric_limits<double>::quiet_NaN());
+        w[static_cast<std::size_t>(m)].push_back(
+            m < squares.size() && squares(m) >= 0 ? std::sqrt(squares(m)) : std::numeric_limits<double>::quiet_NaN());
       }
     }
   }
@@ -95,8 +92,8 @@ std::vector<ResonanceLine> resonance_lines(const SystemAt& at, std::array<double
     for (int k = 1; k <= max_order; ++k) {
       std::vector<double> detuning(places.size());
       for (std::size_t p = 0; p < places.size(); ++p) {
-        detuning[p] = std::abs(w[static_cast<std::size_t>(kind.j)][p] +
-                               kind.sign * w[static_cast<std::size_t>(kind.i)][p]) - k;
+        detuning[p] =
+            std::abs(w[static_cast<std::size_t>(kind.j)][p] + kind.sign * w[static_cast<std::size_t>(kind.i)][p]) - k;
       }
       ResonanceLine line{kind.i, kind.j, kind.sign, k, zero_lines(places, detuning)};
       if (!line.pieces.empty()) lines.push_back(std::move(line));

@@ -4,18 +4,16 @@
 #pragma once
 
 #include <array>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "hb/scaled_system.hpp"
+#include "hb/stability_map.hpp"
 
 namespace hb::tools {
 
 struct ResonanceLine {
   int i = 0, j = 0;  // modes, from 0
-  int sign = 1;      // of omega_j
+  int sign = 1;  // of omega_j
   int k = 1;
   std::vector<std::vector<std::array<double, 2>>> pieces;  // points (x, y)
 
@@ -23,11 +21,9 @@ struct ResonanceLine {
   [[nodiscard]] std::string name(bool subscripts) const;
 };
 
-using SystemAt = std::function<std::optional<ScaledSystem>(double x, double y)>;
-
 // Lines of the lowest two modes that cross the rectangle, strongest kinds first (sums before differences, then by k),
 // at most `max_lines`.
-[[nodiscard]] std::vector<ResonanceLine> resonance_lines(const SystemAt& at, std::array<double, 2> x,
+[[nodiscard]] std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<double, 2> x,
                                                          std::array<double, 2> y, std::size_t max_lines);
 
 }  // namespace hb::tools

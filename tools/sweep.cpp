@@ -36,8 +36,12 @@ void require_speeds(const std::string& flag, const Axis& axis, const Units& unit
   }
 }
 
-// The axis, and the speed where that is not the axis.
-std::pair<Axis, double> axis_of(const SweepFlags& flags, const Scene& scene) {
+struct AxisAndSpeed {
+  Axis axis;
+  double speed = 0, rpm = 0;  // where that is not the axis
+};
+
+AxisAndSpeed axis_of(const SweepFlags& flags, const Scene& scene) {
   Axis axis;
   if (flags.x.empty()) {
     const auto [speeds, in_rpm] = speed_range(flags, scene);
@@ -51,7 +55,7 @@ std::pair<Axis, double> axis_of(const SweepFlags& flags, const Scene& scene) {
     }
     axis.values = range_by_step(flag, speeds.from, speeds.to, speeds.step);
     require_speeds(flag, axis, scene.units);
-    return {std::move(axis), 0};
+    return {std::move(axis)};
   }
   const NamedRange range = named_range("--x", flags.x);
   axis.path = range.path;
@@ -69,10 +73,12 @@ std::pair<Axis, double> axis_of(const SweepFlags& flags, const Scene& scene) {
                                    flags.x));
     }
     require_speeds("--x", axis, scene.units);
-    return {std::move(axis), 0};
+    return {std::move(axis)};
   }
   axis.kind = Axis::Kind::parameter;
-  return {std::move(axis), single_speed(flags, scene)};
+  const double speed = single_speed(flags, scene);
+  const auto [speeds, in_rpm] = speed_range(flags, scene);
+  return {std::move(axis), speed, in_rpm ? speeds.from : rpm_from_speed(speed, scene.units)};
 }
 
 std::vector<Figure> write_tables(const SweepScene& scene, const SweepResult& result, OutputFolder& folder) {
@@ -143,13 +149,13 @@ int run_sweep_command(const SweepFlags& flags) {
   const std::vector<Override> set = overrides(flags);
   const Scene scene = source.with(set);
   Settings options = settings(flags, scene);
-  auto [axis, fixed_speed] = axis_of(flags, scene);
+  AxisAndSpeed asked = axis_of(flags, scene);
   std::optional<OutputFolder> folder;
   if (options.out) folder.emplace(*options.out);
 
   if (flags.resume && !options.out) throw UsageError("--resume: found no --out, allowed: the folder of the run to go on with");
 
-  const SweepScene sweep_scene(std::move(source), set, options, std::move(axis), fixed_speed);
+  const SweepScene sweep_scene(std::move(source), set, options, std::move(asked.axis), asked.speed, asked.rpm);
   const std::optional<SweepResult> finished =
       folder ? run_with_checkpoint(sweep_scene, part_file(*options.out), flags.resume) : run_sweep(sweep_scene);
   if (!finished) return exit_interrupted;

@@ -15,7 +15,7 @@ namespace hb::tools {
 namespace {
 
 // Peaks and boundaries are looked for on values more accurate than the points themselves need.
-constexpr double refined_steady_tolerance = 1e-12;
+constexpr double refined_steady_tolerance = 1e-12, rough_steady_tolerance = 1e-5;
 constexpr double refined_stability_tolerance = 1e-11;
 constexpr double peak_tolerance = 5e-11;  // relative
 // A peak this far from n = omega/Omega, in orders, is not named after that mode.
@@ -60,9 +60,9 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
       for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
         point.max_abs.push_back(fourier::max_abs(state.q, i).value);
       if (only.shape && rod.reported) {
-        const RodShape shape = rod_shape(*body_at(*model.linkage(), rod.link),
-                                         model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], speed,
-                                         state.q);
+        const RodShape shape =
+            rod_shape(*body_at(*model.linkage(), rod.link),
+                      model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], speed, state.q);
         point.deflection = shape.deflection.max_abs;
         point.bending_moment = shape.bending_moment.max_abs;
       }
@@ -72,7 +72,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   if (only.stability && rod.reported) {
     StabilityOptions options;
     options.method = settings.stability_method;
-    point.stability = stability_sample(scale_system(rod.system, speed), x, options);
+    point.stability = StabilitySample{x, speed, analyse_stability(rod.system, speed, options)};
   }
   return point;
 }
@@ -108,32 +108,32 @@ class RodAlong {
   RodAlong(const SweepScene& scene, std::size_t rod, std::atomic<std::size_t>& evaluations)
       : scene_(scene), rod_(rod), evaluations_(evaluations) {}
 
-  std::optional<StabilitySample> stability(double x) const {
+  std::optional<ScaledSystem> system(double x) const {
     ++evaluations_;
     const ScenePlace place = scene_.at(x);
     if (!place.model) return std::nullopt;
-    StabilityOptions options;
-    options.method = scene_.settings().stability_method;
-    options.tolerance = refined_stability_tolerance;
-    return stability_sample(scale_system(place.model->rods[rod_].system, place.speed), x, options);
+    return scale_system(place.model->rods[rod_].system, place.speed);
   }
 
-  std::optional<FourierSeries> response(double x) const {
+  std::optional<FourierSeries> response(double x, double tolerance) const {
     ++evaluations_;
     const ScenePlace place = scene_.at(x);
     if (!place.model) return std::nullopt;
     SteadyOptions options;
     options.method = scene_.settings().steady_method;
-    options.tolerance = std::min(scene_.settings().tolerance, refined_steady_tolerance);
+    options.tolerance = tolerance;
     SteadyState state = solve_steady_state(place.model->rods[rod_].system, place.speed, options);
     if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
     return std::move(state.q);
   }
 
-  std::optional<double> largest(double x, int component) const {
-    const std::optional<FourierSeries> q = response(x);
-    if (!q) return std::nullopt;
-    return fourier::max_abs(*q, component).value;
+  // max |q_i| over the turn.
+  ResponseAt largest(int component, double tolerance) const {
+    return [this, component, tolerance](double x) -> std::optional<double> {
+      const std::optional<FourierSeries> q = response(x, tolerance);
+      if (!q) return std::nullopt;
+      return fourier::max_abs(*q, component).value;
+    };
   }
 
  private:
@@ -172,11 +172,10 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const SweepP
       const double flank = std::min({3 * half_width / (high - low) * (b.x - a.x), 0.5 * (x - a.x), 0.5 * (b.x - x)});
       std::vector<ResponseSample> here;
       for (const double place : {x - flank, x, x + flank}) {
-        const std::optional<FourierSeries> q = rod.response(place);
+        const std::optional<FourierSeries> q = rod.response(place, rough_steady_tolerance);
         if (!q) break;
         ResponseSample sample{place, {}};
-        for (Eigen::Index i = 0; i < q->num_components(); ++i)
-          sample.max_abs.push_back(fourier::max_abs(*q, i).value);
+        for (Eigen::Index i = 0; i < q->num_components(); ++i) sample.max_abs.push_back(fourier::max_abs(*q, i).value);
         here.push_back(std::move(sample));
       }
       if (here.size() == 3 && here[1].max_abs[j] > std::max(rod_a.max_abs[j], rod_b.max_abs[j]))
@@ -213,12 +212,13 @@ void add_maxima(const std::vector<ResponseSample>& samples, std::size_t rod, int
 }  // namespace
 
 SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis,
-                       double fixed_speed)
+                       double fixed_speed, double fixed_rpm)
     : source_(std::move(source)),
       overrides_(std::move(overrides)),
       settings_(std::move(settings)),
       axis_(std::move(axis)),
-      fixed_speed_(fixed_speed) {
+      fixed_speed_(fixed_speed),
+      fixed_rpm_(fixed_rpm) {
   // The error of the cut is no part of a sweep: no finer Ritz matrices.
   Settings model_settings = settings_;
   model_settings.only.steady = model_settings.only.shape = false;
@@ -260,9 +260,12 @@ SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Sett
 
 ScenePlace SweepScene::at(double x) const {
   switch (axis_.kind) {
-    case Axis::Kind::rpm: return {first_, speed_from_rpm(x, units_), ""};
-    case Axis::Kind::omega: return {first_, x, ""};
-    case Axis::Kind::parameter: break;
+    case Axis::Kind::rpm:
+      return {first_, speed_from_rpm(x, units_), ""};
+    case Axis::Kind::omega:
+      return {first_, x, ""};
+    case Axis::Kind::parameter:
+      break;
   }
   // Several questions are asked at one place in a row.
   struct Last {
@@ -294,6 +297,9 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
   result.computed = available(model, settings.only);
   const Only& only = result.computed;
   result.stages = model.stages;
+  SweepOptions sweep_options;
+  sweep_options.stability.method = settings.stability_method;
+  sweep_options.stability.tolerance = refined_stability_tolerance;
 
   // The points asked for.
   Stopwatch watch;
@@ -345,8 +351,8 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
           const std::size_t r = reported[task / intervals], k = task % intervals;
           const SweepPoint &a = result.points[k], &b = result.points[k + 1];
           if (!a.problem.empty() || !b.problem.empty()) return;
-          bands_between[task] = look_between([&](double x) { return along[r].stability(x); }, *a.rods[r].stability,
-                                             *b.rods[r].stability, modes[r][k], modes[r][k + 1]);
+          bands_between[task] = look_between([&](double x) { return along[r].system(x); }, *a.rods[r].stability,
+                                             *b.rods[r].stability, modes[r][k], modes[r][k + 1], sweep_options);
           if (only.steady) {
             peaks_between[task] =
                 resonances_between(along[r], a, b, a.rods[r], b.rods[r], modes[r][k], modes[r][k + 1]);
@@ -385,7 +391,7 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
         [&](std::size_t k) {
           BoundaryTask& task = boundary_tasks[k];
           task.boundary =
-              locate_boundary([&](double x) { return along[task.rod].stability(x); }, *task.a, *task.b);
+              locate_boundary([&](double x) { return along[task.rod].system(x); }, *task.a, *task.b, sweep_options);
         },
         hooks.stop);
     if (!complete) return std::nullopt;
@@ -397,11 +403,10 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
       }
       result.rods[task.rod].boundaries.push_back(task.boundary);
     }
-    for (const std::size_t r : reported)
-      result.rods[r].bands = unstable_bands(samples[r], result.rods[r].boundaries);
+    for (const std::size_t r : reported) result.rods[r].bands = unstable_bands(samples[r], result.rods[r].boundaries);
   }
-  result.stages.push_back({"boundaries", boundary_watch.seconds(),
-                           counted(fmt::format("{} located, ", boundary_tasks.size()))});
+  result.stages.push_back(
+      {"boundaries", boundary_watch.seconds(), counted(fmt::format("{} located, ", boundary_tasks.size()))});
 
   // Resonance peaks: of the largest component, and of each component where its own mode resonates.
   Stopwatch peak_watch;
@@ -412,7 +417,8 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
       std::vector<ResponseSample> run;
       const auto finish = [&] {
         for (int c = 0; c < result.rods[r].num_modes; ++c) {
-          add_maxima(run, r, c, [&](const ResponseSample& s) { return largest_component(s.max_abs) == c; }, tasks);
+          add_maxima(
+              run, r, c, [&](const ResponseSample& s) { return largest_component(s.max_abs) == c; }, tasks);
         }
         run.clear();
       };
@@ -435,9 +441,9 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
       [&](std::size_t k) {
         const PeakTask& task = tasks[k];
         const RodAlong& rod = along[task.rod];
-        const std::optional<ResponsePeak> peak =
-            locate_peak([&](double x) { return rod.largest(x, task.component); }, task.low, task.inside, task.high,
-                        peak_tolerance);
+        const std::optional<ResponsePeak> peak = locate_peak(rod.largest(task.component, rough_steady_tolerance),
+                                                             rod.largest(task.component, refined_steady_tolerance),
+                                                             task.low, task.inside, task.high, peak_tolerance);
         if (!peak) return;
         CriticalPoint point;
         point.rod = task.rod;
@@ -446,14 +452,16 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
         point.prominence = task.prominence;
         point.speed = scene.at(peak->x).speed;
         if (only.stability) {
-          if (const std::optional<StabilitySample> sample = rod.stability(peak->x)) {
+          const SystemAt system = [&](double x) { return rod.system(x); };
+          if (const std::optional<StabilitySample> sample =
+                  stability_sample(system, peak->x, sweep_options.stability)) {
             const auto after = std::upper_bound(values.begin(), values.end(), peak->x);
             const std::size_t at = static_cast<std::size_t>(
                 std::clamp<std::ptrdiff_t>(after - values.begin() - 1, 0, static_cast<std::ptrdiff_t>(intervals) - 1));
-            const std::vector<ModeState> there = modes_by_continuity(
-                sample->stability, sample->speed,
-                interpolated(modes[task.rod][at], modes[task.rod][at + 1],
-                             (peak->x - values[at]) / (values[at + 1] - values[at])));
+            const std::vector<ModeState> there =
+                modes_by_continuity(sample->stability, sample->speed,
+                                    interpolated(modes[task.rod][at], modes[task.rod][at + 1],
+                                                 (peak->x - values[at]) / (values[at + 1] - values[at])));
             const ModeState& state = there[static_cast<std::size_t>(task.component)];
             const double turns = state.frequency / point.speed;
             if (std::isfinite(turns) && turns >= 0.5 && std::abs(turns - std::round(turns)) <= most_detuning) {
@@ -480,7 +488,8 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
   std::stable_sort(result.critical.begin(), result.critical.end(), [](const CriticalPoint& a, const CriticalPoint& b) {
     return a.rod != b.rod ? a.rod < b.rod : a.peak.x < b.peak.x;
   });
-  result.stages.push_back({"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
+  result.stages.push_back(
+      {"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
 
   // Everything at what was found.
   Stopwatch refined_watch;
@@ -504,8 +513,9 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
   });
   places.erase(std::unique(places.begin(), places.end()), places.end());
   result.refined.resize(places.size());
-  if (!parallel_for(places.size(), settings.threads,
-                    [&](std::size_t k) { result.refined[k] = analyse_point(scene, places[k], only); }, hooks.stop)) {
+  if (!parallel_for(
+          places.size(), settings.threads,
+          [&](std::size_t k) { result.refined[k] = analyse_point(scene, places[k], only); }, hooks.stop)) {
     return std::nullopt;
   }
   result.stages.push_back({"refined points", refined_watch.seconds(), fmt::format("{} points", places.size())});
@@ -526,8 +536,9 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
           fmt::format("{}: no unique periodic solution at {} points (resonance without damping)", name, singular));
     }
     if (steady > 0) {
-      result.shortfalls.push_back(fmt::format("{}: the steady state's error bound exceeds the tolerance {:.1e} at {} points",
-                                              name, settings.tolerance, steady));
+      result.shortfalls.push_back(
+          fmt::format("{}: the steady state's error bound exceeds the tolerance {:.1e} at {} points", name,
+                      settings.tolerance, steady));
     }
     if (stability > 0) {
       result.shortfalls.push_back(
@@ -549,8 +560,7 @@ std::vector<const SweepPoint*> all_points(const SweepResult& result) {
   std::vector<const SweepPoint*> points;
   for (const SweepPoint& point : result.points) points.push_back(&point);
   for (const SweepPoint& point : result.refined) points.push_back(&point);
-  std::stable_sort(points.begin(), points.end(),
-                   [](const SweepPoint* a, const SweepPoint* b) { return a->x < b->x; });
+  std::stable_sort(points.begin(), points.end(), [](const SweepPoint* a, const SweepPoint* b) { return a->x < b->x; });
   return points;
 }
 
@@ -563,7 +573,5 @@ std::vector<std::vector<ModeState>> tracks(const SweepResult& result, std::size_
   }
   return track_modes(places, result.rods[rod].num_modes);
 }
-
-double rpm_of(const SweepPoint& point, const Units& units) { return rpm_from_speed(point.speed, units); }
 
 }  // namespace hb::tools

@@ -24,19 +24,21 @@ struct Axis {
 // The scene with the axis at one value.
 struct ScenePlace {
   std::shared_ptr<const SceneModel> model;  // null: no linkage there
-  double speed = 0;                         // rad per unit time
-  std::string problem;                      // why there is none
+  double speed = 0;  // rad per unit time
+  std::string problem;  // why there is none
 };
 
 // Immutable; free to share by threads.
 class SweepScene {
  public:
-  // `fixed_speed` (rad per unit time) is used where the axis is not the speed. Throws SceneError or UsageError for
-  // what cannot be at any value; a linkage that does not close is a place's problem instead.
-  SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis, double fixed_speed);
+  // `fixed_speed` (rad per unit time; `fixed_rpm` as given) is used where the axis is not the speed. Throws SceneError
+  // or UsageError for what cannot be at any value; a linkage that does not close is a place's problem instead.
+  SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis, double fixed_speed,
+             double fixed_rpm);
 
   [[nodiscard]] ScenePlace at(double x) const;
   const Axis& axis() const { return axis_; }
+  double fixed_rpm() const { return fixed_rpm_; }
   const Settings& settings() const { return settings_; }
   const Scene& scene() const { return first_->scene; }  // at the first value that closes
   const SceneModel& first() const { return *first_; }
@@ -46,7 +48,7 @@ class SweepScene {
   std::vector<Override> overrides_;
   Settings settings_;
   Axis axis_;
-  double fixed_speed_;
+  double fixed_speed_, fixed_rpm_;
   Units units_;
   std::shared_ptr<const SceneModel> first_;
 };
@@ -60,7 +62,7 @@ struct RodPoint {
   std::optional<SteadyStatus> steady;  // empty: not asked for
   int num_harmonics = 0;
   double error_bound = 0, resonance_distance = 0;
-  std::vector<double> max_abs;         // of each q_i over the turn; empty if singular
+  std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
   std::optional<double> deflection, bending_moment;  // largest over rod and turn
   std::optional<StabilitySample> stability;
 };
@@ -76,11 +78,11 @@ struct SweepPoint {
 // A local maximum of a rod's largest |q_i|.
 struct CriticalPoint {
   std::size_t rod = 0;
-  int component = 0;   // i - 1: the q_i that peaks
-  int mode = -1;       // whose frequency is met; -1 if not known (stability not asked for)
-  int order = 0;       // n = omega/Omega, rounded; 0 if not known
+  int component = 0;  // i - 1: the q_i that peaks
+  int mode = -1;  // whose frequency is met; -1 if not known (stability not asked for)
+  int order = 0;  // n = omega/Omega, rounded; 0 if not known
   double frequency = 0;  // of that mode there, rad per unit time
-  double damping = 0;    // its decay rate, 1/time
+  double damping = 0;  // its decay rate, 1/time
   double speed = 0;
   double prominence = 0;  // height above the higher of the two valleys beside it, relative to the peak
   ResponsePeak peak;
@@ -97,7 +99,7 @@ struct SweepRod {
 struct SweepResult {
   Only computed;
   std::vector<SweepRod> rods;
-  std::vector<SweepPoint> points;   // as asked for
+  std::vector<SweepPoint> points;  // as asked for
   std::vector<SweepPoint> refined;  // between them: at peaks with their flanks, and at boundaries; ascending
   std::vector<CriticalPoint> critical;  // by rod, then ascending x
   std::vector<std::string> joint_components;  // "AB.0 x"
@@ -106,9 +108,9 @@ struct SweepResult {
 };
 
 struct SweepHooks {
-  std::function<std::optional<SweepPoint>(std::size_t)> finished;     // an earlier run's point
-  std::function<void(std::size_t, const SweepPoint&)> store;          // called from any thread
-  std::function<bool()> stop;                                         // true: end early
+  std::function<std::optional<SweepPoint>(std::size_t)> finished;  // an earlier run's point
+  std::function<void(std::size_t, const SweepPoint&)> store;  // called from any thread
+  std::function<bool()> stop;  // true: end early
 };
 
 // Empty if stopped.
@@ -119,8 +121,5 @@ struct SweepHooks {
 // Tracked modes of one rod at these points.
 [[nodiscard]] std::vector<std::vector<ModeState>> tracks(const SweepResult& result, std::size_t rod,
                                                          const std::vector<const SweepPoint*>& points);
-
-// Axis value as speed in rpm, if it is one.
-[[nodiscard]] double rpm_of(const SweepPoint& point, const Units& units);
 
 }  // namespace hb::tools

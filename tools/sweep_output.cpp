@@ -180,7 +180,9 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result) {
   json["x"] = {{"path", scene.axis().path}, {"values", scene.axis().values}};
   Json rpm = Json::array(), omega = Json::array();
   for (const SweepPoint& point : points) {
-    rpm.push_back(scene.axis().kind == Axis::Kind::rpm ? point.x : rpm_from_speed(point.speed, units));
+    rpm.push_back(scene.axis().kind == Axis::Kind::rpm     ? point.x
+                  : scene.axis().kind == Axis::Kind::omega ? rpm_from_speed(point.speed, units)
+                                                           : scene.fixed_rpm());
     omega.push_back(point.speed);
   }
   json["rpm"] = std::move(rpm);

@@ -82,13 +82,6 @@ void visit_stability(Visit& visit, StabilitySample& sample) {
   as_number(visit, verdict);
   stability.verdict = static_cast<Verdict>(verdict);
   as_number(visit, stability.converged);
-  Eigen::ArrayXXd& weighted = sample.coupling.weighted;
-  Eigen::Index rows = weighted.rows(), columns = weighted.cols();
-  as_number(visit, rows);
-  as_number(visit, columns);
-  if (!(rows >= 0 && rows <= 1000 && columns >= 0 && columns <= 1000)) throw std::out_of_range("part of a sweep");
-  weighted.resize(rows, columns);
-  for (double& value : weighted.reshaped()) visit(value);
 }
 
 template <class Visit>

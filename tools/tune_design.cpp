@@ -240,9 +240,15 @@ void DesignAnalysis::find_instabilities() {
     std::vector<ModeState> modes;
   };
   std::vector<std::vector<Known>> known(num_nodes);
+  const auto system_at = [&](std::size_t r, double speed) {
+    return scale_system(shifted(model_.rods[r].system, shift_at(speed)), speed);
+  };
+  SweepOptions options;
+  options.stability.method = settings_.stability_method;
+  options.stability.leading_only = true;
   const auto look = [&](std::size_t r, double speed) {
-    const ScaledSystem system = scale_system(shifted(model_.rods[r].system, shift_at(speed)), speed);
-    return Known{{speed, speed, leading_stability(system, settings_), parametric_coupling(system)}, mean_modes(system)};
+    const ScaledSystem system = system_at(r, speed);
+    return Known{{speed, speed, leading_stability(system, settings_)}, mean_modes(system)};
   };
   parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
     const double speed = nodes_[k]->speed;
@@ -257,8 +263,8 @@ void DesignAnalysis::find_instabilities() {
     for (std::size_t r = 0; r < num_rods; ++r) {
       if (!model_.rods[r].reported) continue;
       const Known &a = known[k][r], &b = known[k + 1][r];
-      const auto at = [&](double speed) { return std::optional<StabilitySample>(look(r, speed).sample); };
-      for (const StabilitySample& sample : look_between(at, a.sample, b.sample, a.modes, b.modes))
+      const SystemAt at = [&](double speed) { return std::optional<ScaledSystem>(system_at(r, speed)); };
+      for (const StabilitySample& sample : look_between(at, a.sample, b.sample, a.modes, b.modes, options))
         found[k].push_back(sample.x);
     }
   });

@@ -43,20 +43,19 @@ struct Sweep {
   std::vector<std::vector<ModeState>> modes;
 };
 
-SampleAt samples_of(const HillSystem& system) {
-  return [&system](double x) -> std::optional<StabilitySample> {
-    StabilityOptions options;
-    options.tolerance = 1e-11;
-    return stability_sample(scale_system(system, x), x, options);
-  };
+SystemAt along_speed(const HillSystem& system) {
+  return [&system](double x) { return scale_system(system, x); };
 }
 
 // As `hb sweep` does it: a grid, what lies between its points, boundaries.
 Sweep sweep(const HillSystem& system, double from, double to, int intervals) {
   Sweep result;
-  const SampleAt at = samples_of(system);
+  const SystemAt at = along_speed(system);
+  SweepOptions options;
+  options.stability.tolerance = 1e-11;
   std::vector<StabilitySample> grid;
-  for (int k = 0; k <= intervals; ++k) grid.push_back(*at(from + (to - from) * k / intervals));
+  for (int k = 0; k <= intervals; ++k)
+    grid.push_back(*stability_sample(at, from + (to - from) * k / intervals, options.stability));
   std::vector<TrackedPlace> places;
   for (const StabilitySample& sample : grid) places.push_back({sample.x, sample.speed, &sample.stability});
   result.modes = track_modes(places, static_cast<int>(system.num_modes()));
@@ -64,14 +63,15 @@ Sweep sweep(const HillSystem& system, double from, double to, int intervals) {
     const auto i = static_cast<std::size_t>(k);
     result.samples.push_back(grid[i]);
     if (k == intervals) break;
-    for (StabilitySample& sample : look_between(at, grid[i], grid[i + 1], result.modes[i], result.modes[i + 1]))
+    for (StabilitySample& sample :
+         look_between(at, grid[i], grid[i + 1], result.modes[i], result.modes[i + 1], options))
       result.samples.push_back(std::move(sample));
   }
   std::vector<const StabilitySample*> pointers;
   for (std::size_t k = 0; k < result.samples.size(); ++k) {
     pointers.push_back(&result.samples[k]);
     if (k > 0 && is_unstable(result.samples[k - 1]) != is_unstable(result.samples[k]))
-      result.boundaries.push_back(locate_boundary(at, result.samples[k - 1], result.samples[k]));
+      result.boundaries.push_back(locate_boundary(at, result.samples[k - 1], result.samples[k], options));
   }
   result.bands = unstable_bands(pointers, result.boundaries);
   return result;
@@ -204,7 +204,7 @@ TEST(ResponsePeak, OfADampedOscillatorIsTheClosedFormToTenDigits) {
     };
     const double reach = std::min(0.3, 20 * b);
     const std::optional<ResponsePeak> peak =
-        locate_peak(value, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
+        locate_peak(value, value, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
     ASSERT_TRUE(peak);
     EXPECT_TRUE(peak->converged) << b << " " << peak->error;
     EXPECT_NEAR(peak->x, expected, 1e-10 * expected) << b;
@@ -212,13 +212,24 @@ TEST(ResponsePeak, OfADampedOscillatorIsTheClosedFormToTenDigits) {
   }
 }
 
+TEST(ResponsePeak, IsToldFromAPole) {
+  // 1/|x - x0| with a background that leans.
+  const double x0 = 1.2345678901;
+  const auto value = [&](double x) -> std::optional<double> { return std::abs(1e-3 / (x - x0) + 0.7 * x); };
+  const std::optional<ResponsePeak> pole = locate_peak(value, value, 1.1, 1.234, 1.4);
+  ASSERT_TRUE(pole);
+  EXPECT_TRUE(std::isinf(pole->value));
+  EXPECT_NEAR(pole->x, x0, 1e-10 * x0);
+  EXPECT_LE(pole->error, 1e-10 * x0);
+}
+
 TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {
   const auto value = [](double x) -> std::optional<double> {
     if (x > 1.1) return std::nullopt;
     return -x * x;
   };
-  EXPECT_FALSE(locate_peak(value, -1, 0.5, 1.2));
-  EXPECT_TRUE(locate_peak(value, -1, 0.5, 1));
+  EXPECT_FALSE(locate_peak(value, value, -1, 0.5, 1.2));
+  EXPECT_TRUE(locate_peak(value, value, -1, 0.5, 1));
 }
 
 }  // namespace
