@@ -9,12 +9,13 @@
 #include <numbers>
 #include <numeric>
 
+#include "hb/eigenvalue_radius.hpp"
+
 namespace hb {
 
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
@@ -80,8 +81,8 @@ const Radau& radau() {
   return tableau;
 }
 
-// Basis (1, 2 cos k tau, -2 sin k tau) at all stage angles tau = (n + c_i) h, h = 2 pi/num_cells; kept per thread, since
-// neighbouring points of a sweep use the same one.
+// Basis (1, 2 cos k tau, -2 sin k tau) at all stage angles tau = (n + c_i) h, h = 2 pi/num_cells; kept per thread,
+// since neighbouring points of a sweep use the same one.
 const MatrixXd& stage_basis(Index num_cells, Index H) {
   thread_local std::map<std::pair<Index, Index>, MatrixXd> kept;
   const auto key = std::pair(num_cells, H);
@@ -111,25 +112,6 @@ MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
     coefficients.col(2 * k) = series.c.col(k).imag();
   }
   return coefficients * stage_basis(num_cells, H);
-}
-
-// Smallest distance r from `mu` such that no matrix within `change` of M has an eigenvalue at distance r on a circle
-// about mu: a perturbation of that size keeps as many eigenvalues inside as M has there.
-double eigenvalue_radius(const MatrixXd& M, cplx mu, double change) {
-  const Index n = M.rows();
-  if (n == 1) return change;
-  double r = std::max(change, 1e-300);
-  for (int attempt = 0; attempt < 200; ++attempt, r *= 2) {
-    bool separated = true;
-    for (int q = 0; q < 8 && separated; ++q) {
-      const cplx z = mu + r * std::polar(1.0, two_pi * (q + 0.5) / 8);
-      const MatrixXcd shifted = z * MatrixXcd::Identity(n, n) - M.cast<cplx>();
-      // 1/sigma_min <= |shifted^-1| (Frobenius).
-      separated = 2 * change * shifted.inverse().norm() < 1;
-    }
-    if (separated) return r;
-  }
-  return HUGE_VAL;
 }
 
 // Fixed at compile time for one mode, where allocation would cost more than the arithmetic.
@@ -254,14 +236,20 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leadi
     ends.push_back(n);
   }
   const MatrixXd turned = start.transpose() * Q;
+  double closing = 0;
+  for (const Index end : ends)
+    if (end < n) closing = std::max(closing, turned.bottomLeftCorner(n - end, end).norm());
 
   TurnExponents result;
+  const auto lose = [&](double bound) {
+    result.others_below = std::isnan(bound) ? HUGE_VAL : std::max(result.others_below, bound);
+  };
   Index begin = 0;
   for (const Index end : ends) {
     const Index p = end - begin;
-    // Block of the turn's map: product of the diagonal blocks of R, its size kept apart as a logarithm; beside it the
-    // transient growth, largest |suffix| |prefix| over |product|.
-    std::vector<double> prefix(std::size_t(N) + 1, 0), suffix(std::size_t(N) + 1, 0);
+    // Block of the turn's map: product of the diagonal blocks of R, its size kept apart as a logarithm. A cell map
+    // known to `cell_error` of its own size, block or not, changes the product by sum_i |behind_i| |Phi_i| |before_i|.
+    std::vector<double> before(std::size_t(N) + 1, 0);
     MatrixXd product = MatrixXd::Identity(p, p);
     double log_size = 0;
     for (Index i = 0; i < N; ++i) {
@@ -269,24 +257,33 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leadi
       const double size = std::max(product.norm(), 1e-300);
       product /= size;
       log_size += std::log(size);
-      prefix[std::size_t(i) + 1] = log_size;
+      before[std::size_t(i) + 1] = log_size;
     }
     MatrixXd behind = MatrixXd::Identity(p, p);
-    double log_behind = 0;
+    double log_behind = 0, amplification = 0, last_cell = 0, log_bound = 0;
     for (Index i = N - 1; i >= 0; --i) {
-      behind = (behind * R[std::size_t(i)].block(begin, begin, p, p)).eval();
+      const MatrixXd& cell = R[std::size_t(i)];
+      const auto here = cell.block(begin, begin, p, p);
+      const double term =
+          std::exp(std::min(before[std::size_t(i)] + log_behind + std::log(cell.norm()) - log_size, 600.0));
+      amplification += term;
+      if (i == N - 1) last_cell = term;
+      log_bound += std::log(here.norm() + (cell_error + (i == N - 1 ? closing : 0)) * cell.norm());
+      behind = (behind * here).eval();
       const double size = std::max(behind.norm(), 1e-300);
       behind /= size;
       log_behind += std::log(size);
-      suffix[std::size_t(i)] = log_behind;
     }
-    double transient = 0;
-    for (std::size_t i = 0; i <= std::size_t(N); ++i)
-      transient = std::max(transient, std::exp(std::min(prefix[i] + suffix[i] - log_size, 600.0)));
 
     const MatrixXd M = turned.block(begin, begin, p, p) * product;
-    const double change = cell_error * double(N) * transient;  // |M| is 1
+    // |M| is 1. A leading subspace that has not quite come back is a change of the last cell.
+    const double change = cell_error * amplification + closing * last_cell;
     if (n == 2) return discriminant(M, log_size, change, maps.damping_trace);
+    if (!(change < 0.5)) {
+      lose(log_bound / two_pi);
+      begin = end;
+      continue;
+    }
     Eigen::VectorXcd mu;
     if (p == 1)
       mu = Eigen::VectorXcd::Constant(1, M(0, 0));
@@ -295,12 +292,14 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leadi
     for (Index j = 0; j < p; ++j) {
       const double radius = eigenvalue_radius(M, mu(j), change);
       const double size = std::abs(mu(j));
-      // Lost in the product's rounding, but below the leading one for certain.
-      if (leading_only && !(radius < 0.5 * size) && size + radius < 0.5 * mu.cwiseAbs().maxCoeff()) continue;
+      if (!(radius < 0.5 * size)) {
+        lose((std::log(size + radius) + log_size) / two_pi);
+        continue;
+      }
       double argument = std::arg(mu(j));
       if (argument <= -std::numbers::pi) argument = std::numbers::pi;
-      result.s.emplace_back((std::log(std::max(size, 1e-300)) + log_size) / two_pi, argument / two_pi);
-      result.error.push_back(radius < 0.5 * size ? 1.5 * radius / size / two_pi : HUGE_VAL);
+      result.s.emplace_back((std::log(size) + log_size) / two_pi, argument / two_pi);
+      result.error.push_back(1.5 * radius / size / two_pi);
     }
     begin = end;
   }
@@ -311,6 +310,7 @@ TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leadi
     return result.s[i].imag() < result.s[j].imag();
   });
   TurnExponents sorted;
+  sorted.others_below = result.others_below;
   for (const std::size_t i : order) {
     sorted.s.push_back(result.s[i]);
     sorted.error.push_back(result.error[i]);

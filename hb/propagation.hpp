@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <complex>
 #include <vector>
 
@@ -24,11 +25,12 @@ struct TurnMaps {
 
 // Floquet exponents per radian of crank angle, real part descending; imaginary part in (-1/2, 1/2].
 struct TurnExponents {
-  std::vector<std::complex<double>> s;
+  std::vector<std::complex<double>> s;  // those above the rounding of the maps
   std::vector<double> error;  // effect on each of a relative change `cell_error` of every cell map, amplified by the
                               // turn's transient growth; defective pairs get the square root that they need
+  double others_below = -HUGE_VAL;  // upper bound on Re s of the others
 };
-// With `leading_only` the product is taken at once, without sweeps: exponents far below the leading one are left out.
+// With `leading_only` the product is taken at once, without sweeps: exponents far below the leading one are lost.
 [[nodiscard]] TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leading_only = false);
 
 }  // namespace hb

@@ -122,7 +122,9 @@ class Iteration {
     VectorXd x = VectorXd::Zero(nm * 2 * 2 * (H_ + 1));
     Anderson anderson;
     bool mixing = false;
-    double previous = HUGE_VAL, best = HUGE_VAL, first = 0;
+    double previous = HUGE_VAL, best = HUGE_VAL;
+    VectorXd last_x, last_f;
+    std::deque<double> secants;
     int stalled = 0;
     for (int iteration = 1; iteration <= 80; ++iteration) {
       ++iterations;
@@ -133,11 +135,19 @@ class Iteration {
       const double rho = change / previous;
       stalled = change < 0.9 * best ? 0 : stalled + 1;
       best = std::min(best, change);
-      if (iteration == 1) first = change;
+      // What a residual f means for x: |dx|/|df| of the last steps, as far as they stand above rounding.
+      if (last_x.size() > 0) {
+        const double df = norm(f - last_f);
+        if (kappa_ * df > 100 * eps * scale) secants.push_back(norm(x - last_x) / df);
+        if (secants.size() > 6) secants.pop_front();
+      }
+      last_x = x;
+      last_f = f;
       // Rounding reached: nothing is left to gain.
       if (change <= std::max(2 * eps, tolerance) * scale ||
           (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
-        contraction_ = iteration > 1 ? std::pow(std::max(change, eps * eps) / first, 1.0 / (iteration - 1)) : 0;
+        amplification_ = 1;
+        for (const double secant : secants) amplification_ = std::max(amplification_, secant);
         change_ = change + tail(x);
         needs_more_samples_ = !(tail(x) <= std::max(1e-13, tolerance) * scale);
         return !needs_more_samples_;
@@ -156,11 +166,11 @@ class Iteration {
     reduced.num_modes = m_;
     reduced.alpha = fourier::analyse(alpha_.transpose());
     reduced.beta = fourier::analyse(beta_.transpose());
-    // The mean contraction tells how much of the last change is still missing.
-    const double iteration = 2 * change_ / (1 - std::min(contraction_, 0.95));
+    const double iteration = 2 * change_ * amplification_;
     reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * largest_A_);
     reduced.beta_error = iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * largest_C_);
     reduced.others_below = others_below();
+    reduced.start = start();
     return reduced;
   }
 
@@ -224,6 +234,22 @@ class Iteration {
     return largest.mean() + 2 * std::abs(largest.mean() - half) + 1e-9 * largest.abs().maxCoeff();
   }
 
+  // At tau = 0: x_F = A x_S + C x_S', x_F' = P x_S + R x_S'.
+  MatrixXd start() const {
+    MatrixXd states = MatrixXd::Zero(2 * I_, 2 * m_);
+    for (Index l = 0; l < m_; ++l) {
+      states(S_[l], l) = 1;
+      states(I_ + S_[l], m_ + l) = 1;
+      for (Index j = 0; j < n_; ++j) {
+        states(F_[j], l) = A_(0, j + n_ * l);
+        states(F_[j], m_ + l) = C_(0, j + n_ * l);
+        states(I_ + F_[j], l) = P_(0, j + n_ * l);
+        states(I_ + F_[j], m_ + l) = R_(0, j + n_ * l);
+      }
+    }
+    return states;
+  }
+
   std::size_t slot(Index j, Index l, Index k) const { return std::size_t((j + n_ * l) * (H_ + 1) + k); }
 
   // The vector x holds A_k then weight * C_k for every (j, l): real and imaginary parts.
@@ -280,7 +306,8 @@ class Iteration {
     const auto A1 = [&](Index j, Index l) { return samples.col(nm + j + n_ * l).array(); };
     const auto C = [&](Index j, Index l) { return samples.col(2 * nm + j + n_ * l).array(); };
     const auto C1 = [&](Index j, Index l) { return samples.col(3 * nm + j + n_ * l).array(); };
-    largest_A_ = samples.leftCols(nm).cwiseAbs().maxCoeff();
+    A_ = samples.leftCols(nm);
+    largest_A_ = A_.cwiseAbs().maxCoeff();
     C_ = samples.middleCols(2 * nm, nm);
     largest_C_ = C_.cwiseAbs().maxCoeff();
 
@@ -363,11 +390,11 @@ class Iteration {
   Index I_;
   MatrixXd K_;  // N x I*I
   MatrixXd alpha_, beta_;  // N x m*m
-  MatrixXd P_, R_, C_;  // N x n*m
+  MatrixXd P_, R_, A_, C_;  // N x n*m
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
   bool needs_more_samples_ = false;
-  double kappa_ = 0, change_ = 0, contraction_ = 0, largest_A_ = 0, largest_C_ = 0;
+  double kappa_ = 0, change_ = 0, amplification_ = 1, largest_A_ = 0, largest_C_ = 0;
 };
 
 }  // namespace
@@ -379,6 +406,7 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
     ReducedSystem all;
     all.converged = true;
     all.others_below = -HUGE_VAL;
+    all.start = MatrixXd::Identity(2 * I, 2 * I);
     all.num_modes = I;
     all.alpha = FourierSeries(I * I, system.K.num_harmonics());
     all.beta = FourierSeries(I * I, 0);

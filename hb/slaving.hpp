@@ -20,6 +20,8 @@ struct ReducedSystem {
   // Upper bound on Re s of all the other 2(I - m) exponents (they belong to what is left when A, C are split off), by
   // the logarithmic norm in adiabatic coordinates averaged over the turn; infinite if no bound was found.
   double others_below = 0;
+  // States (x, x') at tau = 0 of the invariant subspace, 2I x 2m: column l for x_S = e_l, column m + l for x_S' = e_l.
+  Eigen::MatrixXd start;
   int iterations = 0;
 };
 

@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <optional>
 
+#include "hb/constant_coefficients.hpp"
 #include "hb/propagation.hpp"
 #include "hb/scalar_hill.hpp"
 #include "hb/slaving.hpp"
@@ -30,6 +31,7 @@ struct Exponents {
   std::vector<double> error;
   std::vector<Index> mode;  // see Exponent
   std::vector<double> frequency;
+  double others_below = -HUGE_VAL;  // upper bound on Re s of those of the group that are not listed
   bool converged = false;  // the leading one is as accurate as asked
 
   void add(cplx value, double bar) {
@@ -41,59 +43,23 @@ struct Exponents {
     error.insert(error.end(), other.error.begin(), other.error.end());
     mode.insert(mode.end(), other.mode.begin(), other.mode.end());
     frequency.insert(frequency.end(), other.frequency.begin(), other.frequency.end());
+    others_below = std::max(others_below, other.others_below);
   }
 };
 
 // Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
 double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
 
-// Constant coefficients: s^2 + G s + K = 0.
-Exponents constant_coefficients(const ScaledSystem& system) {
-  const Index I = system.num_modes();
-  const MatrixXd K = system.mean_stiffness();
-  Exponents result;
-  result.converged = true;
-  const bool diagonal = system.diagonal_damping && (K - MatrixXd(K.diagonal().asDiagonal())).isZero(0);
-  if (diagonal) {
-    for (Index i = 0; i < I; ++i) {
-      const double b = system.G(i, i), w2 = K(i, i), Q = w2 - b * b / 4;
-      const double rounding = 4 * eps * (std::abs(w2) + b * b / 2);
-      const double root = std::sqrt(std::abs(Q));
-      const double root_error = Q == 0 ? 0 : std::min(rounding / (2 * root), std::sqrt(rounding));
-      if (Q > 0) {
-        const double bar = 2 * eps * std::abs(b);
-        result.add({-b / 2, root}, bar + (rounding >= Q ? root_error : 0) + 2 * eps * root);
-        result.add({-b / 2, -root}, bar + (rounding >= Q ? root_error : 0) + 2 * eps * root);
-      } else {
-        // The root that nearly cancels from the product of both.
-        const double far = b >= 0 ? -b / 2 - root : -b / 2 + root;
-        const double near = far == 0 ? 0 : w2 / far;
-        const double relative = far == 0 ? 0 : (root_error / std::abs(far) + 4 * eps);
-        result.add(near, relative * std::abs(near) + (rounding >= -Q ? root_error : 0));
-        result.add(far, relative * std::abs(far) + (rounding >= -Q ? root_error : 0));
-      }
-    }
-    return result;
+// Harmonics of alpha and beta that the cells of a propagation have to resolve: the others together, each averaged over
+// its own short period, move no exponent by more than `negligible`.
+Index resolved_harmonics(const ReducedSystem& reduced, double negligible) {
+  Index k = std::max(reduced.alpha.num_harmonics(), reduced.beta.num_harmonics());
+  for (double sum = 0; k > 0; --k) {
+    if (k < reduced.alpha.c.cols()) sum += 2 * reduced.alpha.c.col(k).cwiseAbs().maxCoeff() / double(k);
+    if (k < reduced.beta.c.cols()) sum += 2 * reduced.beta.c.col(k).cwiseAbs().maxCoeff();
+    if (!(sum <= negligible)) break;
   }
-  // First-order form in (W x, x'), W = diag(w), whose norm is that of the largest frequency, not of its square.
-  VectorXd W(I);
-  for (Index i = 0; i < I; ++i) W(i) = std::max(std::sqrt(std::abs(K(i, i))), 1e-3);
-  MatrixXd A = MatrixXd::Zero(2 * I, 2 * I);
-  A.topRightCorner(I, I) = W.asDiagonal();
-  A.bottomLeftCorner(I, I) = -K * W.cwiseInverse().asDiagonal();
-  A.bottomRightCorner(I, I) = -system.G;
-  const Eigen::EigenSolver<MatrixXd> solver(A);
-  const Eigen::MatrixXcd V = solver.eigenvectors();
-  const Eigen::MatrixXcd left = V.inverse();
-  const double change = 8 * eps * double(2 * I) * A.norm();
-  for (Index i = 0; i < 2 * I; ++i) {
-    // Condition number of the eigenvalue; a defective pair moves by the square root at most (n = 2).
-    const double condition = left.row(i).norm() * V.col(i).norm();
-    const double linear = change * condition;
-    const double root = std::isfinite(condition) ? 2 * std::sqrt(change * A.norm()) : HUGE_VAL;
-    result.add(solver.eigenvalues()(i), linear <= root && std::isfinite(linear) ? linear : root);
-  }
-  return result;
+  return k;
 }
 
 // Exponents of a reduced system by propagation with growing numbers of cells.
@@ -111,15 +77,18 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
   const double fastest = std::sqrt(fastest2);
   const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
 
-  Index cells = std::max<Index>(12, Index(std::ceil(1.2 * fastest)));
+  Index cells = std::max({Index(12), Index(std::ceil(1.2 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance)});
   const Index most = std::max<Index>(512, 12 * cells);
   Exponents result;
   std::optional<TurnExponents> coarse;
+  // Effect on the real part of the mean damping, which the discriminant takes as given.
+  const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
   while (cells <= most && cells * m * m * m < Index(2e8)) {
     const double per_cell = 8 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
     TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only);
     if (coarse) {
       result.s = fine.s;
+      result.others_below = fine.others_below;
       result.error.assign(fine.s.size(), HUGE_VAL);
       for (std::size_t i = 0; i < fine.s.size(); ++i) {
         // The nearest coarse exponent; angles modulo 1.
@@ -129,9 +98,10 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
           turn = std::min(turn, std::abs(1 - turn));
           nearest = std::min(nearest, std::hypot(fine.s[i].real() - other.real(), turn));
         }
-        // Order 15: the finer one is 1.5^15 = 437 times nearer; a tenth is claimed.
-        result.error[i] = 0.1 * nearest + fine.error[i];
+        // Order 15 would make the finer one 1.5^15 = 437 times nearer; nothing of that is claimed.
+        result.error[i] = nearest + fine.error[i] + damping_error;
       }
+      if (result.s.empty()) break;
       const double integration = result.error[0] - fine.error[0];
       result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
       if (result.converged || integration <= fine.error[0]) break;
@@ -142,6 +112,7 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
   if (result.s.empty() && coarse) {
     result.s = coarse->s;
     result.error.assign(coarse->s.size(), HUGE_VAL);
+    result.others_below = coarse->others_below;
   }
   return result;
 }
@@ -189,9 +160,10 @@ Exponents of_reduction(const ReducedSystem& reduced, double tolerance, bool lead
   if (reduced.num_modes == 1) {
     const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
     if (frequency > 3) {
-      const double wanted = std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01),
-                                     1e-12 * frequency);
-      if (const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted)) {
+      const double wanted =
+          std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
+      if (const auto pair =
+              phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted)) {
         Exponents result;
         for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
         result.converged = true;
@@ -223,15 +195,15 @@ Search propagate_all(const ScaledSystem& system, double tolerance, bool leading_
   return search;
 }
 
-// Sum of all exponents is -tr G (Liouville): holds exactly for a complete set, and for no other.
-bool liouville_holds(const ScaledSystem& system, const Exponents& exponents) {
-  double sum = 0, bars = 0, size = 0;
-  for (std::size_t i = 0; i < exponents.s.size(); ++i) {
-    sum += exponents.s[i].real();
-    bars += exponents.error[i];
-    size += std::abs(exponents.s[i]);
-  }
-  return std::abs(sum + system.G.trace()) <= bars + 16 * eps * size;
+// True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.
+bool spans(const ScaledSystem& system, MatrixXd states) {
+  const Index I = system.num_modes();
+  if (!states.allFinite()) return false;
+  const VectorXd w2 = system.mean_diagonal();
+  for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
+  states.colwise().normalize();
+  // Far above the errors of the subspaces.
+  return Eigen::PartialPivLU<MatrixXd>(states).rcond() > 1e-8;
 }
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
@@ -241,12 +213,17 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
   Search search;
   std::vector<Index> together;
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
+  std::vector<MatrixXd> starts(std::size_t(I), MatrixXd{});  // of the subspaces, per mode alone
+  MatrixXd start_together;
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
     const ReducedSystem reduced = slave_to(system, one);
     if (reduced.converged) alone[std::size_t(g)] = of_reduction(reduced, tolerance);
     name_modes(alone[std::size_t(g)], system, {g});
-    if (!reduced.converged || alone[std::size_t(g)].s.empty()) together.push_back(g);
+    if (reduced.converged && !alone[std::size_t(g)].s.empty())
+      starts[std::size_t(g)] = reduced.start;
+    else
+      together.push_back(g);
   }
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
@@ -255,6 +232,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
       if (reduced.converged) {
         search.exponents = of_reduction(reduced, tolerance);
         name_modes(search.exponents, system, together);
+        start_together = reduced.start;
         break;
       }
       const VectorXd strength = resonance_strength(system, together);
@@ -263,20 +241,26 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
       together.push_back(next);
     }
     if (Index(together.size()) == I) return propagate_all(system, tolerance);
-    search.evidence = fmt::format("{} modes propagated over a turn by Radau IIA, the others slaved to them; {} modes "
-                                  "each with the others slaved to it",
-                                  together.size(), I - Index(together.size()));
+    search.evidence = fmt::format(
+        "{} modes propagated over a turn by Radau IIA, the others slaved to them; {} modes "
+        "each with the others slaved to it",
+        together.size(), I - Index(together.size()));
   } else {
     search.evidence = fmt::format("{} modes, each with the others slaved to it, their exponents from {}", I,
                                   "the phase function or one turn's propagation");
     search.exponents.converged = true;
   }
+  MatrixXd states(2 * I, 2 * I);
+  states.leftCols(start_together.cols()) = start_together;
+  Index filled = start_together.cols();
   for (Index g = 0; g < I; ++g)
     if (std::find(together.begin(), together.end(), g) == together.end()) {
+      states.middleCols(filled, 2) = starts[std::size_t(g)];
+      filled += 2;
       search.exponents.append(alone[std::size_t(g)]);
       search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
     }
-  search.complete = Index(search.exponents.s.size()) == 2 * I && liouville_holds(system, search.exponents);
+  search.complete = spans(system, std::move(states));
   return search;
 }
 
@@ -318,7 +302,7 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
       double growth = -HUGE_VAL;
       for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
         growth = std::max(growth, search.exponents.s[i].real() - search.exponents.error[i]);
-      if (!(reduced.others_below < growth)) return std::nullopt;
+      if (!(std::max(reduced.others_below, search.exponents.others_below) < growth)) return std::nullopt;
       search.method = StabilityMethod::slaving;
       search.evidence = fmt::format("{} modes kept, the others slaved to them and bounded below the leading exponent",
                                     together.size());
@@ -346,7 +330,7 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
   result.method = search.method;
   result.evidence = search.evidence;
   result.kept.assign(search.kept.begin(), search.kept.end());
-  double upper = -HUGE_VAL, lower = -HUGE_VAL, growth = -HUGE_VAL;
+  double upper = search.exponents.others_below, lower = -HUGE_VAL, growth = -HUGE_VAL;
   for (std::size_t i = 0; i < search.exponents.s.size(); ++i) {
     const cplx s = search.exponents.s[i];
     const double error = search.exponents.error[i];
@@ -354,8 +338,10 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
     upper = std::max(upper, s.real() + error);
     lower = std::max(lower, s.real() - error);
     if (error <= 1e-6 * std::max(std::abs(s), 1.0))
-      result.exponents.push_back({{Omega * s.real(), Omega * folded(s.imag())}, Omega * error,
-                                  int(search.exponents.mode[i]), Omega * search.exponents.frequency[i]});
+      result.exponents.push_back({{Omega * s.real(), Omega * folded(s.imag())},
+                                  Omega * error,
+                                  int(search.exponents.mode[i]),
+                                  Omega * search.exponents.frequency[i]});
   }
   std::stable_sort(result.exponents.begin(), result.exponents.end(), [](const Exponent& a, const Exponent& b) {
     if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
@@ -376,7 +362,10 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
 Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options) {
   Search search;
   if (system.K.num_harmonics() == 0) {
-    search.exponents = constant_coefficients(system);
+    const TurnExponents roots = constant_exponents(system);
+    search.exponents.s = roots.s;
+    search.exponents.error = roots.error;
+    search.exponents.converged = true;
     std::vector<Index> all(std::size_t(system.num_modes()));
     std::iota(all.begin(), all.end(), Index(0));
     name_modes(search.exponents, system, all);
@@ -385,7 +374,8 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
     search.complete = true;
     return finished(system, search, options.tolerance);
   }
-  if (options.method == StabilityMethod::propagation) return finished(system, propagate_all(system, options.tolerance), options.tolerance);
+  if (options.method == StabilityMethod::propagation)
+    return finished(system, propagate_all(system, options.tolerance), options.tolerance);
   if (options.leading_only && system.num_modes() > 1)
     if (const auto lead = leading(system, options.tolerance, options.keep)) {
       const Stability result = finished(system, *lead, options.tolerance);
@@ -397,8 +387,9 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
   if (!search.complete || result.verdict == Verdict::undecided || !result.converged) {
     Stability second = finished(system, propagate_all(system, std::min(options.tolerance, 1e-11)), options.tolerance);
     if (!(second.growth_error >= result.growth_error)) {
-      second.evidence += search.complete ? " (second method after a first that was undecided or less accurate than asked)"
-                                         : " (the reduction did not account for all exponents)";
+      second.evidence += search.complete
+                             ? " (second method after a first that was undecided or less accurate than asked)"
+                             : " (the reduction did not account for all exponents)";
       return second;
     }
   }
@@ -411,19 +402,26 @@ Stability analyse_stability(const HillSystem& system, double speed, const Stabil
 
 const char* to_string(Verdict verdict) {
   switch (verdict) {
-    case Verdict::stable: return "stable";
-    case Verdict::unstable: return "unstable";
-    case Verdict::undecided: return "undecided";
+    case Verdict::stable:
+      return "stable";
+    case Verdict::unstable:
+      return "unstable";
+    case Verdict::undecided:
+      return "undecided";
   }
   return "";
 }
 
 const char* to_string(StabilityMethod method) {
   switch (method) {
-    case StabilityMethod::automatic: return "automatic";
-    case StabilityMethod::hill: return "hill";
-    case StabilityMethod::slaving: return "slaving";
-    case StabilityMethod::propagation: return "propagation";
+    case StabilityMethod::automatic:
+      return "automatic";
+    case StabilityMethod::hill:
+      return "hill";
+    case StabilityMethod::slaving:
+      return "slaving";
+    case StabilityMethod::propagation:
+      return "propagation";
   }
   return "";
 }

@@ -1,6 +1,7 @@
-// From a residual to a bound on the error: |A^-1 r| <= (response of A) * |r / size of D| inside the window, the
-// residual of the rows outside divided by D there. All sizes are those of q: max over its components of the sum over
-// all harmonics, which is at least the maximum over the turn.
+// From a residual to a bound on the error. What the residual says is solved for, window and tail in turn,
+//     e <- e + (A_window^-1 r_window, D^-1 r_tail),   r = r_0 - A e,
+// until the corrections shrink; what rounding hides is (response of A) * |rounding / size of D|. All sizes are those of
+// q: max over its components of the sum over all harmonics, which is at least the maximum over the turn.
 #pragma once
 
 #include "hb/steady_operator.hpp"
@@ -19,10 +20,20 @@ namespace hb::steady {
 // The same for sums over harmonics of |r|/|D|, per component.
 [[nodiscard]] double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::MatrixXd& T);
 
+// e with A e = r, up to `rest`; for rows of r up to last_row(), the others are counted in `outside` as they are.
+struct Correction {
+  Spectrum window;
+  double outside = 0;  // size in q of the rows beyond the window, which no solution on the window has
+  double rest = 0;  // size in q of what may be missing; infinite if the corrections do not shrink
+};
+[[nodiscard]] Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response,
+                                    const Eigen::MatrixXd& T);
+
 // Row k > H of the residual, divided by |D(k)|, in q.
 [[nodiscard]] double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T);
 
-// What rows outside can do beyond r/D: feed back into the window, and couple among themselves.
+// Guess of what rows outside do beyond r/D: feed back into the window, and couple among themselves. For choosing the
+// number of harmonics only.
 [[nodiscard]] double tail_slack(const Operator& A, double response);
 
 // True if an undamped mode whose coupling cannot shift it is in resonance with a harmonic beyond H, to rounding.

@@ -128,7 +128,7 @@ bool IterativeInverse::fixed_point(const Spectrum& b, double relative, Spectrum&
   return false;
 }
 
-bool IterativeInverse::gmres(const Spectrum& b, double aim, Spectrum& z) {
+bool IterativeInverse::gmres(const Spectrum& b, double relative, Spectrum& z) {
   const Index H = A_.num_harmonics(), I = A_.num_modes(), n = 2 * (H + 1) * I;
   const int most = most_iterations;
   Spectrum start = b, w;
@@ -151,10 +151,7 @@ bool IterativeInverse::gmres(const Spectrum& b, double aim, Spectrum& z) {
   V.col(0) = to_vector(start);
   const double size = V.col(0).norm();
   if (!(size > 0) || !std::isfinite(size)) return size == 0;
-  if (size <= aim) {
-    z = start;
-    return true;
-  }
+  const double aim = relative * size;
   V.col(0) /= size;
   g(0) = size;
   int used = 0;
@@ -198,28 +195,37 @@ bool IterativeInverse::gmres(const Spectrum& b, double aim, Spectrum& z) {
 bool IterativeInverse::solve(const Spectrum& rhs, double relative, Spectrum& z) {
   const Index H = A_.num_harmonics();
   Spectrum r = rhs.topRows(H + 1);
-  const double aim = relative * turn_norm(r.cwiseProduct(D_inverse_));
-  if (!(aim > 0)) {
-    z.setZero(H + 1, A_.num_modes());
-    return aim == 0;
-  }
-  Spectrum z0 = Spectrum::Zero(H + 1, A_.num_modes());
+  z.setZero(H + 1, A_.num_modes());
+  const double load = A_.scaled_norm(r);
+  if (!(load > 0)) return load == 0;
   if (try_fixed_point_) {
     Spectrum change;
     double size = 0;
     if (fixed_point(r.cwiseProduct(D_inverse_), relative, z, change, size)) return true;
     try_fixed_point_ = false;
     // What is left for GMRES: the residual of z is D * change. A diverging start is thrown away.
-    if (size <= turn_norm(r.cwiseProduct(D_inverse_)) && z.allFinite() && change.allFinite()) {
-      z0 = z;
+    if (size <= turn_norm(r.cwiseProduct(D_inverse_)) && z.allFinite() && change.allFinite())
       r = change.cwiseQuotient(D_inverse_);
-    }
+    else
+      z.setZero();
   }
   if (!core_known_) make_core();
+  // GMRES sees preconditioned residuals only: where |D| nearly vanishes they say little about the residual itself.
+  constexpr int most_restarts = 4;
   Spectrum correction;
-  const bool reached = gmres(r, aim, correction);
-  z = z0 + correction;
-  return reached;
+  double last = HUGE_VAL;
+  for (int restart = 0; restart <= most_restarts; ++restart) {
+    const double now = A_.scaled_norm(r);
+    if (now <= relative * load) return true;
+    if (restart == most_restarts || !(now < 0.5 * last)) return false;
+    last = now;
+    gmres(r, 0.3 * relative * load / now, correction);
+    if (!correction.allFinite()) return false;
+    z += correction;
+    A_.couple(z, H, r);
+    r = rhs.topRows(H + 1) - A_.D().cwiseProduct(z) - r;
+  }
+  return false;
 }
 
 }  // namespace hb::steady

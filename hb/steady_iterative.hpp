@@ -27,7 +27,8 @@ class IterativeInverse : public Inverse {
   void precondition(Spectrum& r) const;  // M^-1 r
   void apply(const Spectrum& x, Spectrum& y);  // M^-1 A x
   bool fixed_point(const Spectrum& rhs, double relative, Spectrum& z, Spectrum& change, double& size);
-  bool gmres(const Spectrum& b, double aim, Spectrum& z);
+  // From zero; stops when the preconditioned residual has fallen by `relative`.
+  bool gmres(const Spectrum& b, double relative, Spectrum& z);
 
   Operator& A_;
   Spectrum D_inverse_;

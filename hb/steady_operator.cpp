@@ -81,17 +81,19 @@ void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result
   const Eigen::Index I = system_->I, P = system_->P;
   ++num_products_;
   result.setZero(num_rows + 1, I);
-  // Harmonics reach H+P; what is folded back lands above num_rows when N > H + P + num_rows.
-  const Eigen::Index N = fourier::fast_length(std::max(H_ + P + num_rows + 1, 2 * P + 2));
+  // Harmonics reach X+P; what is folded back lands above num_rows when N > X + P + num_rows. One length for all
+  // products with rows beyond the window.
+  const Eigen::Index X = x.rows() - 1, widest = num_rows > H_ ? std::max(X, last_row()) : X;
+  const Eigen::Index N = fourier::fast_length(std::max(widest + P + num_rows + 1, 2 * P + 2));
   const Nodes& at = nodes(N);
   fourier::RealTransform& fft = fourier::thread_transform(N, I);
   auto spectrum = fft.spectrum();
-  spectrum.topRows(H_ + 1) = x;
-  spectrum.bottomRows(N / 2 - H_).setZero();
+  spectrum.topRows(X + 1) = x;
+  spectrum.bottomRows(N / 2 - X).setZero();
   fft.backward();
   const auto samples = fft.samples();
   product_.resize(N, I);
-  const bool full = num_rows > H_;  // sizes are wanted with the exact residual only
+  const bool full = num_rows > H_ && X == H_;  // sizes are wanted with the exact residual only
   for (Eigen::Index i = 0; i < I; ++i) {
     product_.col(i) = at.E.col(i).cwiseProduct(samples.col(0));
     for (Eigen::Index j = 1; j < I; ++j) product_.col(i) += at.E.col(i + I * j).cwiseProduct(samples.col(j));
@@ -107,7 +109,7 @@ void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result
   result = fft.spectrum().topRows(num_rows + 1);
   result.row(0) = result.row(0).real().cast<std::complex<double>>();
   if (!system_->diagonal_damping) {
-    const Eigen::Index top = std::min(H_, num_rows);
+    const Eigen::Index top = std::min(X, num_rows);
     for (Eigen::Index k = 1; k <= top; ++k)
       result.row(k) += std::complex<double>(0, static_cast<double>(k)) *
                        (x.row(k) * system_->G_off.transpose().cast<std::complex<double>>());
@@ -127,12 +129,6 @@ Spectrum Operator::residual(const Spectrum& x) {
   r = -r;
   r.topRows(F + 1) += system_->f;
   return r;
-}
-
-Spectrum Operator::window_residual(const Spectrum& rhs, const Spectrum& z) {
-  Spectrum product;
-  couple(z, H_, product);
-  return rhs.topRows(H_ + 1) - D_.cwiseProduct(z) - product;
 }
 
 double Operator::scaled_norm(const Spectrum& r) const {

@@ -57,12 +57,10 @@ class Operator {
   const Spectrum& D() const { return D_; }  // (H+1) x I
   const Eigen::MatrixXd& magnitude() const { return magnitude_; }  // (H+1) x I, |D| without cancellation
 
-  // E x, rows 0..num_rows (at most last_row()); free of aliasing.
+  // E x, rows 0..num_rows (at most last_row()) of any x with rows up to last_row(); free of aliasing.
   void couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result);
   // f - A x, rows 0..max(last_row(), harmonics of f).
   [[nodiscard]] Spectrum residual(const Spectrum& x);
-  // rhs - A z on the window.
-  [[nodiscard]] Spectrum window_residual(const Spectrum& rhs, const Spectrum& z);
   // 2-norm over the turn of the window's rows of r, divided by |D| without cancellation.
   [[nodiscard]] double scaled_norm(const Spectrum& r) const;
   // Bound on the rounding error of `residual(x)`, divided by |D| and summed over harmonics, per component: of the
@@ -96,8 +94,8 @@ class Operator {
 class Inverse {
  public:
   virtual ~Inverse() = default;
-  // z with |D^-1 (rhs - A z)| <= relative |D^-1 rhs| (2-norm over the turn); false if that was not reached, with the
-  // best z found. Rows of rhs beyond H are ignored.
+  // z with |rhs - A z| <= relative |rhs|, each divided by |D| without cancellation (2-norm over the turn); false if
+  // that was not reached, with the best z found. Rows of rhs beyond H are ignored.
   virtual bool solve(const Spectrum& rhs, double relative, Spectrum& z) = 0;
 };
 

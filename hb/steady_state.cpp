@@ -176,7 +176,7 @@ class Solver {
     return k > H ? std::max(k + 1, H + 2) : H;
   }
 
-  void assess(steady::Operator& A, steady::Inverse& inverse, const Spectrum& x, const Spectrum& r, double response,
+  void assess(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, const Spectrum& r, double response,
               SteadyState& state, Index& wanted) {
     const Index H = A.num_harmonics();
     state.resonance_distance = std::min(1.0, 1 / response);
@@ -186,18 +186,20 @@ class Solver {
     }
     const double largest = steady::largest_over_turn(x * T_.transpose());
     const double load = steady::wiener_norms(system_.f).sum();
-    double tail = 0;
-    for (Index k = H + 1; k < r.rows(); ++k)
-      tail += 2 * steady::tail_slack(A, response) * steady::tail_row(A, r, k, T_);
-    const double inner = steady::amplified(A, r.topRows(H + 1).cwiseAbs(), response, T_) +
-                         steady::amplified(A.rounding(x), response, T_);
+    const double rounding = steady::amplified(A.rounding(x), response, T_);
+    const steady::Correction correction = steady::correction(A, inverse, r, response, T_);
+    if (correction.window.allFinite() && std::isfinite(correction.rest)) x += correction.window;
+    const double error = correction.outside + correction.rest + rounding;
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
     state.residual = steady::wiener_norms(r).sum() / load;
-    state.error_bound = (tail + inner + conversion) / largest;
+    state.error_bound = (error + conversion) / largest;
     state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
     Eigen::MatrixXcd u = (given_.T * system_.weight.cwiseInverse().asDiagonal() * x.transpose());
     u *= given_.scale;
-    if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound))
+    // More harmonics where those left out are what is missing.
+    if (state.status != SteadyStatus::converged && correction.outside > 0.1 * options_.tolerance * largest)
+      wanted = H + std::max<Index>({2, system_.P / 2, H / 4});
+    else if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound))
       refine(A, inverse, response, u, state, wanted);
     state.q = result(u);
   }
@@ -205,12 +207,10 @@ class Solver {
   // Residuals in extended precision, of u as it is stored: its own rounding is then part of the residual.
   void refine(steady::Operator& A, steady::Inverse& inverse, double response, Eigen::MatrixXcd& u, SteadyState& state,
               Index& wanted) {
-    constexpr double solve_accuracy = 1e-4;
     const Index H = A.num_harmonics();
     const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
     const Eigen::MatrixXd rows = system_.weight.asDiagonal() * given_.rows;
     const double load = steady::wiener_norms(system_.f).sum();
-    const double slack = steady::tail_slack(A, response);
     const Eigen::MatrixXd to_x = to_u.inverse();
     Eigen::MatrixXcd best = u;
     double last = HUGE_VAL;
@@ -220,22 +220,17 @@ class Solver {
       const Spectrum r = accurate.r * (rows / (given_.speed * given_.speed)).transpose();
       const Eigen::MatrixXd rounding = accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) +
                                        8 * eps * static_cast<double>(system_.I) * r.cwiseAbs();
-      Spectrum change;
-      inverse.solve(r.topRows(H + 1), solve_accuracy, change);
-      if (!change.allFinite()) break;
       const Spectrum x = (u * (1 / given_.scale)).transpose() * to_x.transpose();
       const double largest = steady::largest_over_turn(x * T_.transpose());
-      double tail = 0;
-      for (Index k = H + 1; k < r.rows(); ++k) tail += 2 * slack * steady::tail_row(A, r, k, T_);
       if (pass == 0 && (wanted = harmonics_for(A, x, r, Eigen::VectorXd::Zero(system_.I), response)) > H) return;
-      // |A^-1 r| <= |change| + |A^-1 (r - A change)|
-      const Spectrum rest = A.window_residual(r, change);
-      const double inner =
-          steady::size_in_q(change, T_) + steady::amplified(A, rest.cwiseAbs() + rounding.topRows(H + 1), response, T_);
+      const steady::Correction correction = steady::correction(A, inverse, r, response, T_);
+      if (!std::isfinite(correction.rest)) break;
+      const double inner = steady::size_in_q(correction.window, T_) + correction.rest +
+                           steady::amplified(A, rounding.topRows(H + 1), response, T_);
       // What the last multiplication by T adds when u is not q itself.
       const double conversion =
           given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
-      const double bound = (tail + inner + conversion) / largest;
+      const double bound = (correction.outside + inner + conversion) / largest;
       if (bound < state.error_bound) {
         state.error_bound = bound;
         state.residual = steady::wiener_norms(r).sum() / load;
@@ -247,7 +242,7 @@ class Solver {
       }
       if (!(inner < 0.5 * last)) break;
       last = inner;
-      u += given_.scale * to_u * change.transpose();
+      u += given_.scale * to_u * correction.window.transpose();
     }
     u = best;
   }

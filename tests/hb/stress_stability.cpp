@@ -1,0 +1,89 @@
+// Verdicts and exponents of random systems against a long double reference: no wrong verdict, no uncovered bar.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "hb/stability.hpp"
+#include "long_double_floquet.hpp"
+#include "random_hill_system.hpp"
+
+namespace hb {
+namespace {
+
+using reference::FloquetExponent;
+
+double distance(std::complex<double> a, reference::Complex b, double Omega) {
+  reference::Real turn = std::fmod(std::abs(reference::Real(a.imag()) - b.imag()), reference::Real(Omega));
+  turn = std::min(turn, reference::Real(Omega) - turn);
+  return double(std::hypot(reference::Real(a.real()) - b.real(), turn));
+}
+
+struct Tally {
+  int verdicts = 0, undecided = 0, wrong = 0, uncovered = 0, unsettled = 0;
+  double clearance = 0;  // largest error/bar
+};
+
+// Compares one result with the reference; `leading_only` results list fewer exponents.
+void compare(const Stability& result, const std::vector<FloquetExponent>& exact, double Omega, const std::string& what,
+             Tally& tally) {
+  ++tally.verdicts;
+  const double growth = double(exact.front().value.real()), known = double(exact.front().error);
+  if (!(known <= 1e-7 * Omega)) {
+    ++tally.unsettled;
+    return;
+  }
+  if (result.verdict == Verdict::undecided) ++tally.undecided;
+  const bool wrong =
+      (result.verdict == Verdict::stable && growth > known) || (result.verdict == Verdict::unstable && growth < -known);
+  if (wrong) ++tally.wrong;
+  EXPECT_FALSE(wrong) << what << ": " << to_string(result.verdict) << ", growth is " << growth << " +- " << known
+                      << ", said " << result.growth_rate << " +- " << result.growth_error << "; " << result.evidence;
+  const double error = std::abs(double(reference::Real(result.growth_rate) - exact.front().value.real()));
+  if (std::isfinite(result.growth_error))
+    tally.clearance = std::max(tally.clearance, (error - known) / result.growth_error);
+  const bool covered = error <= result.growth_error + known;
+  if (!covered) ++tally.uncovered;
+  EXPECT_TRUE(covered) << what << ": growth is " << growth << " +- " << known << ", said " << result.growth_rate
+                       << " +- " << result.growth_error << ", off by " << error << "; " << result.evidence;
+  for (const Exponent& e : result.exponents) {
+    if (e.value.real() + e.error < double(exact.back().value.real()) + 0.1 * Omega) continue;  // lost in the reference
+    double nearest = HUGE_VAL;
+    for (const FloquetExponent& x : exact)
+      nearest = std::min(nearest, distance(e.value, x.value, Omega) - double(x.error));
+    if (!(nearest <= e.error)) ++tally.uncovered;
+    EXPECT_LE(nearest, e.error) << what << ": exponent " << e.value << " of mode " << e.mode << "; " << result.evidence;
+  }
+}
+
+void run(stress::Family family, int trials) {
+  Tally tally;
+  for (int trial = 0; trial < stress::multiplied(trials); ++trial) {
+    stress::Random random(stress::seed() * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family));
+    const stress::Trial t = stress::random_trial(family, random, trial % 20 == 19 ? 20 : 4);
+    const std::vector<FloquetExponent> exact = reference::floquet_exponents(t.system, t.speed);
+    for (const bool leading_only : {false, true}) {
+      const Stability result = analyse_stability(t.system, t.speed, {.leading_only = leading_only});
+      compare(result, exact, t.speed,
+              "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " I " +
+                  std::to_string(t.system.num_modes()) + (leading_only ? " leading" : ""),
+              tally);
+    }
+  }
+  std::printf(
+      "family %2d: %d verdicts, %d undecided, %d wrong, %d bars uncovered, %d beyond the reference, "
+      "largest error/bar %.2g\n",
+      int(family), tally.verdicts, tally.undecided, tally.wrong, tally.uncovered, tally.unsettled, tally.clearance);
+}
+
+class StabilityStress : public testing::TestWithParam<int> {};
+
+TEST_P(StabilityStress, NoVerdictIsWrongAndEveryBarCovers) {
+  const auto family = static_cast<stress::Family>(GetParam());
+  run(family, family == stress::Family::fast ? 1 : 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, StabilityStress, testing::Range(0, stress::num_families));
+
+}  // namespace
+}  // namespace hb
