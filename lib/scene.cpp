@@ -64,16 +64,17 @@ Units read_units(const TableView& scene) {
 namespace {
 
 constexpr double max_speeds = 1e7;
+constexpr Limits speed_limits{slowest, fastest, true, "a number > 0 (1e-12 to 1e12)"};
 
 std::optional<Speeds> read_rpm(const TableView& analysis) {
   const toml::node* node = analysis.node("rpm");
   if (!node) return std::nullopt;
   if (!node->is_array()) {
-    static constexpr Limits limits{1e-40, largest_number, true, "a number > 0, or [from, to, step]"};
+    static constexpr Limits limits{slowest, fastest, true, "a number > 0 (1e-12 to 1e12), or [from, to, step]"};
     const auto rpm = analysis.number("rpm", limits);
     return rpm ? std::optional<Speeds>({*rpm, *rpm, 0}) : std::nullopt;
   }
-  const auto values = analysis.numbers("rpm", positive);
+  const auto values = analysis.numbers("rpm", speed_limits);
   if (!values) return std::nullopt;
   constexpr const char* words = "[from, to, step] with 0 < from <= to and step > 0";
   if (values->size() != 3 || !((*values)[0] <= (*values)[1])) {
@@ -115,7 +116,7 @@ AnalysisDefaults read_analysis(const TableView& analysis, int num_modes) {
   AnalysisDefaults defaults;
   defaults.modes = read_modes(analysis, num_modes);
   defaults.rpm = read_rpm(analysis);
-  defaults.omega = analysis.number("omega", positive);
+  defaults.omega = analysis.number("omega", speed_limits);
   defaults.tolerance = analysis.number("tolerance", tolerances).value_or(defaults.tolerance);
   if (analysis.has("rpm") && analysis.has("omega")) {
     analysis.problem("omega", "found both rpm and omega, allowed one of the two");

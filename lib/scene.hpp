@@ -99,6 +99,9 @@ class SceneSource {
 [[nodiscard]] Scene parse_scene(const std::string& text, const std::string& name,
                                 const std::vector<Override>& overrides = {}, const std::filesystem::path& folder = ".");
 
+// What may be asked for, in rpm or rad per unit of time: powers of a speed far beyond these under- or overflow.
+inline constexpr double slowest = 1e-12, fastest = 1e12;
+
 // Speed in rad per the scene's unit of time.
 [[nodiscard]] double speed_from_rpm(double rpm, const Units& units);
 [[nodiscard]] double rpm_from_speed(double speed, const Units& units);

@@ -76,6 +76,11 @@ class LinkageReader {
             name, fmt::format("found the name {}, allowed {}", describe(toml::value<std::string>(name)), name_words));
         continue;
       }
+      if (name == "0" || name == "1" || name == "pivot" || name == "guide") {
+        table->problem(
+            name, fmt::format("found the name {}, which every link has for a joint of its own, allowed another", name));
+        continue;
+      }
       if (const auto point = read_polar(*table, name)) points[name] = *point;
     }
     return points;
@@ -309,16 +314,20 @@ class LinkageReader {
                             table.values(j - 1, 0)));
       }
     }
+    // Angles are often rounded to a few decimals: they are compared to a small part of the spacing.
+    constexpr double closing = 0.01, even = 0.005;
     const double turn = 2 * pi, span = angles(n - 1) - angles(0);
-    if (std::abs(span - turn) <= 1e-6 * turn / double(n)) {  // the first row once more
+    if (std::abs(span - turn) <= closing * turn / double(n)) {  // the first row once more
       const double largest = values.cwiseAbs().maxCoeff();
       if (!(std::abs(values(n - 1) - values(0)) <= 1e-6 * largest)) {
         fail(n - 1, fmt::format("found {} one turn after {}, allowed the same force", values(n - 1), values(0)));
       }
       --n;
     } else if (!(span < turn)) {
-      fail(n - 1, fmt::format("found crank angle {}, allowed angles within one turn of the first, {}",
-                              table.values(n - 1, 0), table.values(0, 0)));
+      fail(n - 1,
+           fmt::format("found crank angle {}, allowed angles less than one turn after the first, {}, or one last "
+                       "row a turn after it that repeats its force",
+                       table.values(n - 1, 0), table.values(0, 0)));
     }
     if (n < 3) fail(n - 1, fmt::format("found {} different angles, allowed at least 3", n));
     double widest = angles(0) + turn - angles(n - 1);
@@ -328,7 +337,7 @@ class LinkageReader {
     const double step = turn / double(n);
     double uneven = 0;
     for (Eigen::Index j = 0; j < n; ++j) uneven = std::max(uneven, std::abs(angles(j) - angles(0) - double(j) * step));
-    return uneven <= 1e-6 * step ? interpolate(values.head(n).transpose(), angles(0))
+    return uneven <= even * step ? interpolate(values.head(n).transpose(), angles(0))
                                  : spline_series(angles.head(n), values.head(n));
   }
 

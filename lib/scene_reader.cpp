@@ -46,7 +46,11 @@ std::string printable(std::string_view text, std::size_t most) {
 std::string describe(const toml::node& node) {
   if (const auto* value = node.as_string()) return fmt::format("\"{}\"", printable(value->get(), 60));
   if (const auto* value = node.as_integer()) return fmt::format("{}", value->get());
-  if (const auto* value = node.as_floating_point()) return fmt::format("{}", value->get());
+  if (const auto* value = node.as_floating_point()) {
+    const std::string text = fmt::format("{}", value->get());
+    // "1.0" is not the integer 1.
+    return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+  }
   if (const auto* value = node.as_boolean()) return value->get() ? "true" : "false";
   if (const auto* value = node.as_array()) return fmt::format("a list of {}", value->size());
   if (node.is_table()) return "a table";

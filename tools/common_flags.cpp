@@ -6,15 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
-#include <limits>
 
 #include "tools/command.hpp"
 
 namespace hb::tools {
 namespace {
 
-constexpr double smallest = std::numeric_limits<double>::min();
-constexpr double largest = std::numeric_limits<double>::max();
 constexpr int max_modes = 60;  // what the Ritz matrices are made for
 constexpr int max_threads = 1024;
 
@@ -68,7 +65,8 @@ Only only_flag(const std::string& text) {
 
 // "A:B:STEP" or "N", positive.
 Speeds speeds_flag(const std::string& flag, const std::string& text) {
-  const std::string allowed = "a positive number, or FROM:TO:STEP with 0 < FROM <= TO and STEP > 0";
+  const std::string allowed =
+      fmt::format("a positive number, {:g} to {:g}, or FROM:TO:STEP with FROM <= TO and STEP > 0", slowest, fastest);
   std::vector<std::string> parts(1);
   for (const char c : text) {
     if (c == ':') {
@@ -81,7 +79,7 @@ Speeds speeds_flag(const std::string& flag, const std::string& text) {
   std::vector<double> numbers;
   for (const std::string& part : parts) {
     const std::optional<double> value = parse<double>(part);
-    if (!value || !(*value >= smallest && *value <= largest)) refuse(flag, text, allowed);
+    if (!value || !(*value >= slowest && *value <= fastest)) refuse(flag, text, allowed);
     numbers.push_back(*value);
   }
   if (numbers.size() == 1) return {numbers[0], numbers[0], 0};
@@ -133,16 +131,21 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
 }
 
 void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
-  app.add_option("--modes", flags.modes, "Ritz terms per elastic link, 1 to 60, or auto")->type_name("I");
-  app.add_option("--tol", flags.tolerance, "relative error wanted, 1e-14 to 0.1")->type_name("T");
-  app.add_option("--rods", flags.rods, "elastic links to look at, as in AB,CD; default all")->type_name("NAMES");
-  app.add_option("--only", flags.only, "compute only these: steady,stability,reactions,shape")->type_name("LIST");
-  app.add_option("--rpm", flags.rpm, "speed of the crank in revolutions per minute")->type_name("N");
-  app.add_option("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm")->type_name("W");
-  app.add_option("--threads", flags.threads, "number of threads, 1 or more")->type_name("N");
-  app.add_option("--steady-method", flags.steady_method, "automatic, direct or iterative")->type_name("METHOD");
-  app.add_option("--stability-method", flags.stability_method, "automatic, hill, slaving or propagation")
-      ->type_name("METHOD");
+  // An empty text stands for a flag that was not given: one that is given has something to say.
+  const auto add = [&](const char* name, std::string& text, const char* meaning, const char* type) {
+    app.add_option(name, text, meaning)->type_name(type)->check([](const std::string& value) {
+      return value.empty() ? std::string("found \"\", allowed: a value") : std::string();
+    });
+  };
+  add("--modes", flags.modes, "Ritz terms per elastic link, 1 to 60, or auto", "I");
+  add("--tol", flags.tolerance, "relative error wanted, 1e-14 to 0.1", "T");
+  add("--rods", flags.rods, "elastic links to look at, as in AB,CD; default all", "NAMES");
+  add("--only", flags.only, "compute only these: steady,stability,reactions,shape", "LIST");
+  add("--rpm", flags.rpm, "speed of the crank in revolutions per minute", "N");
+  add("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm", "W");
+  add("--threads", flags.threads, "number of threads, 1 or more", "N");
+  add("--steady-method", flags.steady_method, "automatic, direct or iterative", "METHOD");
+  add("--stability-method", flags.stability_method, "automatic, hill, slaving or propagation", "METHOD");
 }
 
 std::vector<Override> overrides(const CommonFlags& flags) {
@@ -160,11 +163,21 @@ std::vector<Override> overrides(const CommonFlags& flags) {
 Settings settings(const CommonFlags& flags, const Scene& scene) {
   Settings result;
   result.modes = flags.modes.empty() ? scene.analysis.modes : modes_flag(flags.modes);
+  const auto* hill = std::get_if<HillSystem>(&scene.model);
+  if (hill) {
+    const int size = static_cast<int>(hill->num_modes());
+    const int* asked = std::get_if<int>(&result.modes);
+    if (asked && *asked != size) refuse("--modes", flags.modes, fmt::format("{}, the size of [hill] mass", size));
+    result.modes = size;
+  }
   result.tolerance = flags.tolerance.empty()
                          ? scene.analysis.tolerance
                          : number_flag("--tol", flags.tolerance, 1e-14, 0.1, "a number from 1e-14 to 0.1");
   if (!flags.rods.empty()) result.rods = list_flag("--rods", flags.rods);
   if (!flags.only.empty()) result.only = only_flag(flags.only);
+  if (hill && !result.only.steady && !result.only.stability) {
+    refuse("--only", flags.only, "steady, stability: a [hill] scene has no joints and no shape");
+  }
   if (!flags.threads.empty()) {
     result.threads =
         integer_flag("--threads", flags.threads, 1, max_threads, fmt::format("an integer 1 to {}", max_threads));
@@ -214,12 +227,7 @@ double single_speed(const CommonFlags& flags, const Scene& scene) {
                                  in_rpm ? "--rpm" : "--omega", speeds.from, speeds.to, speeds.step,
                                  from_flag ? "" : " in the scene's [analysis]"));
   }
-  const double speed = in_rpm ? speed_from_rpm(speeds.from, scene.units) : speeds.from;
-  if (!(speed >= smallest && speed <= largest)) {
-    throw UsageError(fmt::format("--rpm: found {}, allowed: a speed that is a normal number in rad per {}", speeds.from,
-                                 scene.units.time));
-  }
-  return speed;
+  return in_rpm ? speed_from_rpm(speeds.from, scene.units) : speeds.from;
 }
 
 }  // namespace hb::tools

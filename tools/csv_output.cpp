@@ -167,8 +167,9 @@ CsvFile forces_csv(const SceneModel& model, const SpeedResult& result) {
   CsvFile file;
   file.name = "joint_forces.csv";
   file.comment = {about(model, result, "joint forces over one turn, elastic beside rigid"),
-                  "x along, y across the coupler of the joint's dyad; LINK.1 acts on the link, LINK.0 is passed on to "
-                  "the link before it, pivots and guides act on their link"};
+                  force_frames(elastic_rockers(*model.linkage())) +
+                      "; LINK.1 acts on the link, LINK.0 is passed on to "
+                      "the link before it, pivots and guides act on their link"};
   file.columns.push_back("crank angle [deg]");
   file.rows.resize(N + 1, num_columns);
   file.rows.col(0) = angles_in_degrees(N);

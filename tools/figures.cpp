@@ -45,10 +45,15 @@ std::string short_name(const Scene& scene) {
 
 std::string verdicts_text(const SpeedResult& result) {
   std::string text;
+  bool same = true;
+  const RodResult* first = nullptr;
   for (const RodResult& rod : result.rods) {
-    if (rod.stability) text += ", " + rod.name + " " + to_string(rod.stability->verdict);
+    if (!rod.stability) continue;
+    if (!first) first = &rod;
+    same = same && rod.stability->verdict == first->stability->verdict;
+    text += ", " + rod.name + " " + to_string(rod.stability->verdict);
   }
-  return text;
+  return first && same ? std::string(", ") + to_string(first->stability->verdict) : text;
 }
 
 // First line in bold: scene, rod, speed, verdict; second: what is shown (enhanced markup).
@@ -99,14 +104,14 @@ Figure response_figure(const SceneModel& model, const SpeedResult& result, const
   figure.name = figure_name("response", rod.name);
   figure.height = static_cast<int>(140 + (panels == 1 ? 300 : 130 * panels));
   figure.commands = fmt::format(
-      "set multiplot layout {},1 title {} margins char 14, char 3, char 4, char 4.5 spacing char 0, char 1.4\n"
+      "set multiplot layout {},1 title {} margins char 17, char 3, char 4, char 4.5 spacing char 0, char 1.4\n"
       "unset key\n{}set format y '%g'\nset ytics autofreq\nset format x ''\n",
       panels, broken(title(model, result, rod, amplitude_meaning(model) + ", periodic response" + truncated_note(I))),
       turn_axis);
   for (Eigen::Index i = 1; i <= panels; ++i) {
     if (i == panels) figure.commands += std::string("set format x '%g'\n") + turn_label(model);
     figure.commands += fmt::format(
-        "set label 1 'q_{{{0}}}{1}' at graph -0.115,0.5 center rotate\n"
+        "set label 1 'q_{{{0}}}{1}' at screen 0.06, graph 0.5 center rotate\n"
         "stats '{2}' using {3} nooutput\n"
         "set ytics autofreq; r = STATS_max - STATS_min; if (r > 0) {{ set ytics nice(r/3) }}\n"
         "plot '{2}' using 1:{3} with lines lt 1\n",
@@ -135,7 +140,7 @@ Figure phase_figure(const SceneModel& model, const SpeedResult& result, const Ro
     figure.commands += fmt::format(
         "set xlabel 'q_{{{0}}}{1}'\nset ylabel 'dq_{{{0}}}/dt{2}'\n"
         "stats '{3}' using {4} nooutput\n"
-        "r = STATS_max - STATS_min; if (r > 0) {{ set xtics nice(r/3) }}\n"
+        "r = STATS_max - STATS_min; if (r > 0) {{ set xtics nice(r/2) }}\n"
         "plot '{3}' using {4}:{5} with lines lt 1, '' using {4}:{5} every ::0::0 with points lt 2 pt 7 ps 0.9\n",
         i, bracketed(units.response), rate, csv, 1 + i, 1 + I + i);
   }
@@ -219,9 +224,11 @@ std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& re
         for (int c = 0; c < components; ++c) {
           const char* component = components == 1 ? "n" : c == 0 ? "x" : "y";
           panels += fmt::format(
-              "set ylabel '{} {} [N]'\nplot '{}' using 1:{} with lines lt 1 title 'elastic', '' using 1:{} with lines "
-              "lt 2 "
-              "dashtype 2 title 'rigid'\nunset key\n",
+              "stats '{2}' using {3} nooutput\nlow = STATS_min; high = STATS_max\nstats '{2}' using {4} nooutput\n"
+              "r = (high > STATS_max ? high : STATS_max) - (low < STATS_min ? low : STATS_min); if (r > 0) {{ set "
+              "ytics nice(r/3) }}\n"
+              "set ylabel '{0} {1} [N]'\nplot '{2}' using 1:{3} with lines lt 1 title 'elastic', "
+              "'' using 1:{4} with lines lt 2 dashtype 2 title 'rigid'\nunset key\n",
               literal(joint.name), component, csv, column + 2 * c, column + 2 * c + 1);
         }
         if (components == 1) panels += "set multiplot next\n";
@@ -229,20 +236,22 @@ std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& re
       column += 2 * components;
     }
     if (num_rows == 0) continue;
+    std::vector<std::string> own_frames = elastic_rockers(linkage);
+    std::erase_if(own_frames, [&](const std::string& rocker) { return rocker != bodies.back(); });
     Figure figure;
     figure.name = figure_name("forces", name);
     figure.width = 1000;
     figure.height = 130 + 230 * num_rows;
     figure.commands = fmt::format(
-        "set multiplot layout {},2 title {}\nset tmargin 1.5\nset key at screen 0.99, screen 0.995 right top vertical "
+        "set multiplot layout {},2 title {}\nset tmargin 2.2\nset key at graph 1, graph 1.02 right bottom horizontal "
         "samplen 3\n{}{}"
         "set ytics autofreq\n{}unset multiplot\nset tmargin -1\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset "
         "xtics autofreq\n"
         "set key default\n",
         num_rows,
-        broken("'{/:Bold " + literal(short_name(model.scene) + ", " + speed_text(result.speed, model.scene)) +
-               "}\\njoint forces of " + literal(name) + ", x along, y across the coupler of the joint’s dyad" +
-               literal(verdicts_text(result)) + "'"),
+        broken("'{/:Bold " +
+               literal(short_name(model.scene) + ", " + speed_text(result.speed, model.scene) + verdicts_text(result)) +
+               "}\\njoint forces of " + literal(name) + ": " + literal(force_frames(own_frames)) + "'"),
         turn_axis, turn_label(model), panels);
     figures.push_back(std::move(figure));
   }

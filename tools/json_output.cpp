@@ -12,7 +12,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json pair(std::complex<double> value) { return Json::array({value.real(), value.imag()}); }
+// No "-0.0".
+Json pair(std::complex<double> value) { return Json::array({value.real() + 0.0, value.imag() + 0.0}); }
 
 Json range_json(const FourierSeries& series, Eigen::Index component) {
   const Range range = fourier::range(series, component);
@@ -57,7 +58,7 @@ void add_stability(Json& json, const Stability& stability) {
   }
   json["exponents"] = std::move(exponents);
   json["exponent_errors"] = std::move(errors);
-  json["growth_rate"] = stability.growth_rate;
+  json["growth_rate"] = stability.growth_rate + 0.0;
   json["exponent_error"] = stability.growth_error;
   json["verdict"] = to_string(stability.verdict);
   json["stability_method"] = to_string(stability.method);
@@ -117,6 +118,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
   json["tolerance"] = settings.tolerance;
+  if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
   json["units"] = units_json(units);
   Json& rods = json["rods"] = Json::object();
   for (const RodResult& rod : result.rods) {
@@ -124,7 +126,10 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     Json& entry = rods[rod.name];
     entry["modes"] = rod.num_modes;
     if (result.computed.steady) add_steady(entry, rod, units);
-    if (rod.modes_error) entry["modes_error"] = *rod.modes_error;
+    if (rod.modes_error) {
+      entry["modes_error"] = *rod.modes_error;
+      entry["more_modes_needed"] = needs_more_modes(rod);
+    }
     if (rod.shape) {
       entry["deflection"] = peak_json(rod.shape->deflection, units);
       entry["bending_moment"] = peak_json(rod.shape->bending_moment, units);

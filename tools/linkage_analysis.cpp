@@ -53,6 +53,14 @@ SteadyOptions steady_options(const Settings& settings) {
   return options;
 }
 
+// Exponents need fewer digits than q: the asked tolerance loosens them, it does not tighten them.
+StabilityOptions stability_options(const Settings& settings) {
+  StabilityOptions options;
+  options.method = settings.stability_method;
+  options.tolerance = std::max(options.tolerance, 10 * settings.tolerance);
+  return options;
+}
+
 std::string steady_note(const SteadyState& state, Eigen::Index num_modes) {
   return fmt::format("{} modes, {} harmonics, {}, {} iterations", num_modes, state.num_harmonics,
                      method_text(state.method), state.iterations);
@@ -112,8 +120,11 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
                                     rod.name, rod.num_modes, *rod.modes_error, settings.tolerance));
   }
   if (computed.stability && rod.stability && !rod.stability->converged) {
-    sentences.push_back(fmt::format("{}: the growth rate's error {:.1e} exceeds what was asked", rod.name,
-                                    rod.stability->growth_error));
+    const double relative = stability_options(settings).tolerance;
+    sentences.push_back(
+        fmt::format("{}: the growth rate's error {:.1e} exceeds {:.0e} of the larger of itself and the "
+                    "speed, which was asked",
+                    rod.name, rod.stability->growth_error, relative));
   }
   return sentences;
 }
@@ -238,8 +249,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     if (!only.stability || !rod.reported) {
       stages.push_back({"stability of " + rod.name, 0, "not asked for", true});
     } else {
-      StabilityOptions options;
-      options.method = settings.stability_method;
+      const StabilityOptions options = stability_options(settings);
       Stopwatch watch;
       const bool same = entry.num_modes == rod.system.num_modes();
       entry.stability =

@@ -68,6 +68,11 @@ struct SpeedResult {
 
 [[nodiscard]] SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings);
 
+// The cut of the Ritz series leaves a visible part of the deflection out.
+[[nodiscard]] inline bool needs_more_modes(const RodResult& rod) {
+  return rod.modes_error && !(*rod.modes_error <= 0.01);
+}
+
 // Number of modes that I modes are compared with to see the error of the cut: I + max(3, I/2).
 [[nodiscard]] Eigen::Index comparison_modes(Eigen::Index num_modes);
 

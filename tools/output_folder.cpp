@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -64,9 +65,9 @@ void remove_when_interrupted(const std::string& path) {
 std::string file_name(const std::string& text) {
   std::string name;
   for (const char c : text) {
-    const bool plain =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_' || c == '.';
-    name += plain ? c : '_';
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = std::isalnum(byte) != 0 || c == '-' || c == '_' || c == '.' || byte >= 0x80;
+    name += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
   }
   return name;
 }

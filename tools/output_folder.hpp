@@ -8,7 +8,8 @@
 
 namespace hb::tools {
 
-// A file name of letters, digits, '-', '_' and '.' made from a name of the scene.
+// A name of the scene as part of a file name: ASCII other than letters, digits, '-', '_' and '.' as %XX, so that
+// different names stay different.
 [[nodiscard]] std::string file_name(const std::string& text);
 
 class OutputFolder {

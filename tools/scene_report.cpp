@@ -75,14 +75,14 @@ void add_body(Text& text, const Body& body, const char* kind, const Units& units
   add(text, "           elastic: E {:.6g} {}, area {:.6g} {}^2, J {:.6g} {}^4, density {:.6g} {}/{}^3\n",
       elastic.youngs_modulus, pressure, elastic.area, units.length, elastic.second_moment, units.length,
       elastic.density, units.mass, units.length);
-  add(text, "           damping: internal {:.6g} {}, external {:.6g} along and {:.6g} across, per length\n",
-      elastic.internal_damping, units.time, elastic.damping_x, elastic.damping_y);
+  add(text, "           damping: internal {:.6g} {}, external {:.6g} along and {:.6g} across {}/({} {})\n",
+      elastic.internal_damping, units.time, elastic.damping_x, elastic.damping_y, units.mass, units.length, units.time);
   std::vector<std::string> frequencies, speeds;
   for (const double omega : natural_frequencies(body, num_frequencies)) {
     frequencies.push_back(fmt::format("{:.6g}", omega));
     speeds.push_back(fmt::format("{:.6g}", rpm_from_speed(omega, units)));
   }
-  add(text, "           natural frequencies at rest: {} rad/{} (as crank speeds: {} rpm)\n",
+  add(text, "           natural frequencies at rest, slender: {} rad/{} (as crank speeds: {} rpm)\n",
       fmt::join(frequencies, ", "), units.time, fmt::join(speeds, ", "));
 }
 

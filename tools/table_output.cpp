@@ -15,7 +15,6 @@ namespace {
 
 constexpr std::size_t max_exponents_shown = 4;
 constexpr std::size_t max_modes_shown = 10;
-constexpr double visible_error = 0.01;  // of a deflection
 
 using Text = fmt::memory_buffer;
 
@@ -75,10 +74,11 @@ std::string range_text(const FourierSeries& series, Eigen::Index component, doub
   return fmt::format("{:>12.6g} .. {:<12.6g}", range.min.value * factor, range.max.value * factor);
 }
 
-void add_forces(Text& text, const JointForces& forces, const OutputUnits& units) {
+void add_forces(Text& text, const Linkage& linkage, const JointForces& forces, const OutputUnits& units) {
   add(text,
-      "Joint forces, smallest .. largest over the turn. x along, y across the coupler of the joint's dyad;\n"
-      "LINK.1 acts on the link, LINK.0 is passed on to the link before it, pivots and guides act on their link.\n");
+      "Joint forces, smallest .. largest over the turn. {};\n"
+      "LINK.1 acts on the link, LINK.0 is passed on to the link before it, pivots and guides act on their link.\n",
+      force_frames(elastic_rockers(linkage)));
   add(text, "  {:<22}  {:^28}  {:^28}\n", "[N]", "rigid", "elastic");
   for (const JointForce& joint : forces.joints) {
     for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
@@ -110,7 +110,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     if (rod.steady && result.computed.steady) add_steady(text, rod, units, is_linkage, settings.tolerance);
     if (rod.modes_error) {
       add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
-          *rod.modes_error <= visible_error ? "" : "; MORE MODES ARE NEEDED (--modes)");
+          !needs_more_modes(rod) ? "" : "; MORE MODES ARE NEEDED (--modes)");
     }
     if (rod.shape) {
       add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units);
@@ -121,13 +121,14 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   }
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");
   if (result.forces) {
-    add_forces(text, *result.forces, units);
+    add_forces(text, *model.linkage(), *result.forces, units);
     const bool unstable = std::any_of(result.rods.begin(), result.rods.end(), [](const RodResult& rod) {
       return rod.stability && rod.stability->verdict == Verdict::unstable;
     });
     if (unstable) add(text, "  The elastic values belong to an unstable periodic state.\n");
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }
 

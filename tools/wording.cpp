@@ -86,6 +86,21 @@ std::string verdict_sentence(const Stability& stability, double speed, const Uni
                      stability.growth_error, units.time);
 }
 
+std::vector<std::string> elastic_rockers(const Linkage& linkage) {
+  std::vector<std::string> names;
+  for (const Dyad& dyad : linkage.dyads) {
+    const auto* rocker = std::get_if<Rocker>(&dyad.closing);
+    if (rocker && rocker->body.elastic) names.push_back(rocker->body.name);
+  }
+  return names;
+}
+
+std::string force_frames(const std::vector<std::string>& elastic_rockers) {
+  std::string text = "x along, y across the coupler of the joint's dyad";
+  for (const std::string& name : elastic_rockers) text += fmt::format("; {0}.0 and {0}.1 along and across {0}", name);
+  return text;
+}
+
 const char* status_text(SteadyStatus status) {
   switch (status) {
     case SteadyStatus::converged:

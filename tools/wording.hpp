@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hb/stability.hpp"
 #include "hb/steady_state.hpp"
@@ -21,6 +22,9 @@ namespace hb::tools {
 [[nodiscard]] std::string with_error(double value, double error);
 // "-16.05 + 0.335 i"; "-16.05 +/- 0.335 i" for a conjugate pair.
 [[nodiscard]] std::string exponent_text(const Exponent& exponent, bool conjugate_pair = false);
+// Along and across what the components x and y of joint forces are; elastic rockers have joints in frames of their own.
+[[nodiscard]] std::string force_frames(const std::vector<std::string>& elastic_rockers);
+[[nodiscard]] std::vector<std::string> elastic_rockers(const Linkage& linkage);
 [[nodiscard]] const char* status_text(SteadyStatus status);
 [[nodiscard]] const char* method_text(SteadyMethod method);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 #include <map>
 #include <numbers>
 
@@ -214,6 +215,31 @@ TEST(Scene, SliderForceFromAFilePassesThroughItsRows) {
     const double tau = degrees * pi / 180, force = -2e6 * std::exp(3 * (std::cos(tau - 0.2) - 1));
     EXPECT_NEAR(fourier::evaluate(piston.force, tau)(0), force, 0.01) << degrees;  // the file has 9 digits
   }
+}
+
+// F = 100 cos t + 20 sin t + 30 sin 2t on 36 rows, written with few decimals; the first row may stand at the end again.
+TEST(Scene, SliderForceFromARoundedTableIsTheFunction) {
+  const std::filesystem::path folder = testing::TempDir();
+  const auto force = [](double t) { return 100 * std::cos(t) + 20 * std::sin(t) + 30 * std::sin(2 * t); };
+  for (const int decimals : {3, 4, 5, 6, 8})
+    for (const int rows : {36, 37}) {
+      std::ofstream table(folder / "rounded.csv");
+      table << std::fixed << std::setprecision(decimals);
+      for (int j = 0; j < rows; ++j) table << 2 * pi * j / 36 << ',' << force(2 * pi * j / 36) << '\n';
+      table.close();
+      std::ofstream(folder / "rounded.toml")
+          << "[crank]\npivot = [0, 0]\nlength = 1\n[[dyad]]\non = \"crank\"\ncoupler = { name = \"rod\", length = 3 }\n"
+             "slider = { name = \"piston\", mass = 1, guide = [0, 0], direction = 0, force = { file = \"rounded.csv\" "
+             "} }\n"
+             "branch = 1\n";
+      const Linkage linkage = linkage_of(read_scene(folder / "rounded.toml"));
+      const FourierSeries& found = std::get<Slider>(linkage.dyads[0].closing).force;
+      for (int j = 0; j < 100; ++j) {
+        const double tau = 2 * pi * j / 100;
+        // Half a unit of the last decimal in every force; 1.3 bounds the interpolation's growth of random errors here.
+        EXPECT_NEAR(fourier::evaluate(found, tau)(0), force(tau), 1.3 * std::pow(10, -decimals)) << decimals << rows;
+      }
+    }
 }
 
 TEST(Scene, ConstantSliderForceIsHarmonicZero) {

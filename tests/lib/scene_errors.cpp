@@ -135,7 +135,11 @@ TEST(SceneErrors, WrongTypesAreNamed) {
           {"pivot = [0, 0]", "pivot = 0", "7: crank.pivot: found 0", {}},
           {"pivot = [0, 0]", "pivot = [0, \"x\"]", "7: crank.pivot.1: found \"x\"", {}},
           {"on = \"crank\"", "on = 1", "10: dyad.0.on: found 1", {}},
-          {"branch = -1", "branch = -1.0", "13: dyad.0.branch: found -1", {"1 or -1"}},
+          {"branch = -1", "branch = -1.0", "13: dyad.0.branch: found -1.0", {"1 or -1"}},
+          {"points = { C = [200, 0] }",
+           "points = { pivot = [200, 0], C = [200, 0] }",
+           "12: OB.points.pivot",
+           {"another"}},
           {"branch = -1", "branch = 2", "13: dyad.0.branch: found 2", {}},
           {"branch = -1", "branch = 0", "13: dyad.0.branch: found 0", {}},
           {"modes = 5", "modes = 5.0", "20: analysis.modes: found 5", {"integer", "auto"}},
@@ -210,6 +214,7 @@ TEST(SceneErrors, NumbersThatCannotBeAreNamed) {
                              {"cos = [1, 0] }", "cos = [1, nan] }", "6: hill.load.0.cos.1", {}},
                              {"harmonic = 1, sin", "harmonic = 0, sin", "5: hill.stiffness.1.sin", {"harmonic 0"}},
                              {"omega = 1.5", "omega = 0", "8: analysis.omega", {"> 0"}},
+                             {"omega = 1.5", "omega = 1e13", "8: analysis.omega", {"1e12"}},
                              {"omega = 1.5", "modes = 5", "8: analysis.modes", {"2"}}});
 }
 

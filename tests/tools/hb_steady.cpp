@@ -337,29 +337,30 @@ TEST_P(WrongFlags, ExitWith2NamingFlagAndWhatIsAllowed) {
 
 INSTANTIATE_TEST_SUITE_P(
     Each, WrongFlags,
-    testing::Values(WrongFlag{"--rpm 0", "--rpm: found \"0\"", "positive"}, WrongFlag{"--rpm -5", "\"-5\"", "positive"},
-                    WrongFlag{"--rpm nan", "\"nan\"", "positive"}, WrongFlag{"--rpm inf", "\"inf\"", "positive"},
-                    WrongFlag{"--rpm 3e2x", "\"3e2x\"", "positive"}, WrongFlag{"--rpm 1e999", "\"1e999\"", "positive"},
-                    WrongFlag{"--rpm 1:2", "\"1:2\"", "FROM:TO:STEP"}, WrongFlag{"--omega 0", "--omega", "positive"},
-                    WrongFlag{"--rpm 300 --omega 2", "--omega", "one of the two"},
-                    WrongFlag{"--rpm 300 --modes 0", "--modes: found \"0\"", "1 to 60"},
-                    WrongFlag{"--rpm 300 --modes 61", "\"61\"", "1 to 60"},
-                    WrongFlag{"--rpm 300 --modes 2.5", "\"2.5\"", "1 to 60"},
-                    WrongFlag{"--rpm 300 --modes many", "\"many\"", "auto"},
-                    WrongFlag{"--rpm 300 --tol 0", "--tol: found \"0\"", "1e-14"},
-                    WrongFlag{"--rpm 300 --tol -1e-3", "\"-1e-3\"", "1e-14"},
-                    WrongFlag{"--rpm 300 --tol nan", "\"nan\"", "1e-14"},
-                    WrongFlag{"--rpm 300 --only all", "--only: found \"all\"", "steady, stability, reactions, shape"},
-                    WrongFlag{"--rpm 300 --only steady,", "--only", "commas"},
-                    WrongFlag{"--rpm 300 --rods AB,,CD", "--rods", "commas"},
-                    WrongFlag{"--rpm 300 --threads 0", "--threads: found \"0\"", "1 to"},
-                    WrongFlag{"--rpm 300 --set AB.J", "--set: found \"AB.J\"", "PATH=VALUE"},
-                    WrongFlag{"--rpm 300 --set AB.J=", "--set", "PATH=VALUE"},
-                    WrongFlag{"--rpm 300 --set AB.J=-1", "AB.J", "> 0"},
-                    WrongFlag{"--rpm 300 --steady-method magic", "--steady-method", "iterative"},
-                    WrongFlag{"--rpm 300 --stability-method magic", "--stability-method", "propagation"},
-                    WrongFlag{"--rpm 300 --rpm 400", "--rpm", "--help"}, WrongFlag{"--rpm", "--rpm", "--help"},
-                    WrongFlag{"--frequency 3", "--frequency", "--help"}));
+    testing::Values(
+        WrongFlag{"--rpm 0", "--rpm: found \"0\"", "positive"}, WrongFlag{"--rpm -5", "\"-5\"", "positive"},
+        WrongFlag{"--rpm nan", "\"nan\"", "positive"}, WrongFlag{"--rpm inf", "\"inf\"", "positive"},
+        WrongFlag{"--rpm 3e2x", "\"3e2x\"", "positive"}, WrongFlag{"--rpm 1e999", "\"1e999\"", "positive"},
+        WrongFlag{"--rpm 1:2", "\"1:2\"", "FROM:TO:STEP"}, WrongFlag{"--omega 0", "--omega", "positive"},
+        WrongFlag{"--rpm 300 --omega 2", "--omega", "one of the two"},
+        WrongFlag{"--rpm 1e13", "--rpm: found \"1e13\"", "1e+12"}, WrongFlag{"--rpm 1e-13", "1e-13", "1e-12"},
+        WrongFlag{"--rpm \"\"", "--rpm", "value"}, WrongFlag{"--rpm 300 --modes \"\"", "--modes", "value"},
+        WrongFlag{"--rpm 300 --modes 0", "--modes: found \"0\"", "1 to 60"},
+        WrongFlag{"--rpm 300 --modes 61", "\"61\"", "1 to 60"},
+        WrongFlag{"--rpm 300 --modes 2.5", "\"2.5\"", "1 to 60"},
+        WrongFlag{"--rpm 300 --modes many", "\"many\"", "auto"},
+        WrongFlag{"--rpm 300 --tol 0", "--tol: found \"0\"", "1e-14"},
+        WrongFlag{"--rpm 300 --tol -1e-3", "\"-1e-3\"", "1e-14"}, WrongFlag{"--rpm 300 --tol nan", "\"nan\"", "1e-14"},
+        WrongFlag{"--rpm 300 --only all", "--only: found \"all\"", "steady, stability, reactions, shape"},
+        WrongFlag{"--rpm 300 --only steady,", "--only", "commas"},
+        WrongFlag{"--rpm 300 --rods AB,,CD", "--rods", "commas"},
+        WrongFlag{"--rpm 300 --threads 0", "--threads: found \"0\"", "1 to"},
+        WrongFlag{"--rpm 300 --set AB.J", "--set: found \"AB.J\"", "PATH=VALUE"},
+        WrongFlag{"--rpm 300 --set AB.J=", "--set", "PATH=VALUE"}, WrongFlag{"--rpm 300 --set AB.J=-1", "AB.J", "> 0"},
+        WrongFlag{"--rpm 300 --steady-method magic", "--steady-method", "iterative"},
+        WrongFlag{"--rpm 300 --stability-method magic", "--stability-method", "propagation"},
+        WrongFlag{"--rpm 300 --rpm 400", "--rpm", "--help"}, WrongFlag{"--rpm", "--rpm", "--help"},
+        WrongFlag{"--frequency 3", "--frequency", "--help"}));
 
 using Command = CommandTest;
 
@@ -380,6 +381,39 @@ TEST_F(Command, WrongCommandsExitWith2) {
     EXPECT_TRUE(result.out.empty()) << arguments;
     EXPECT_FALSE(result.err.empty()) << arguments;
   }
+}
+
+TEST_F(Command, HillScenesHaveNoModesToChooseAndNoJoints) {
+  for (const char* flags : {"--modes 3", "--only reactions", "--only shape,reactions"}) {
+    const CommandResult result = hb("steady " + scene("mathieu") + " --omega 1 " + flags);
+    EXPECT_EQ(result.status, 2) << flags;
+    EXPECT_TRUE(result.out.empty()) << flags;
+  }
+  EXPECT_EQ(hb("steady " + scene("mathieu") + " --omega 1 --modes 1 --only steady").status, 0);
+}
+
+TEST_F(Steady, LooseToleranceLoosensTheExponents) {
+  const Json strict =
+      document("steady " + scene("six_link") + " --rpm 1500 --only stability --stability-method propagation");
+  const Json loose = document("steady " + scene("six_link") +
+                              " --rpm 1500 --only stability --tol 1e-4 "
+                              "--stability-method propagation");
+  for (const char* rod : {"AB", "CD"}) {
+    EXPECT_NEAR(loose["rods"][rod]["growth_rate"].get<double>(), strict["rods"][rod]["growth_rate"].get<double>(),
+                loose["rods"][rod]["exponent_error"].get<double>());
+    EXPECT_LE(loose["rods"][rod]["exponent_error"].get<double>(), 1e-3 * 157.08);
+  }
+}
+
+TEST_F(Command, RodsOfSimilarNamesKeepTheirFiles) {
+  std::string text = read(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  for (const auto& [from, to] : {std::pair("\"AB\"", "\"Ä+b\""), std::pair("\"CD\"", "\"Ö+b\"")})
+    text.replace(text.find(from), 4, to);
+  std::ofstream(folder_ / "names.toml") << text;
+  const CommandResult result = hb("steady names.toml --rpm 300 --modes 1 --no-plots --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out/response_Ä%2Bb.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/response_Ö%2Bb.csv"));
 }
 
 TEST_F(Command, SceneSaysWhatItUnderstood) {
