@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "hb/constant_coefficients.hpp"
+#include "hb/hill_exponents.hpp"
 #include "hb/propagation.hpp"
 #include "hb/scalar_hill.hpp"
 #include "hb/slaving.hpp"
@@ -84,7 +85,9 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
   while (cells <= most && cells * m * m * m < Index(2e8)) {
-    const double per_cell = 8 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
+    // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
+    // tested on strongly damped systems.
+    const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
     TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only);
     if (coarse) {
       result.s = fine.s;
@@ -196,14 +199,15 @@ Search propagate_all(const ScaledSystem& system, double tolerance, bool leading_
 }
 
 // True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.
-bool spans(const ScaledSystem& system, MatrixXd states) {
+template <class Matrix>
+bool spans(const ScaledSystem& system, Matrix states) {
   const Index I = system.num_modes();
   if (!states.allFinite()) return false;
   const VectorXd w2 = system.mean_diagonal();
   for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
   states.colwise().normalize();
   // Far above the errors of the subspaces.
-  return Eigen::PartialPivLU<MatrixXd>(states).rcond() > 1e-8;
+  return Eigen::PartialPivLU<Matrix>(states).rcond() > 1e-8;
 }
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
@@ -261,6 +265,19 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
       search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
     }
   search.complete = spans(system, std::move(states));
+  return search;
+}
+
+Search by_hill(const ScaledSystem& system) {
+  const HillExponents hill = hill_exponents(system);
+  Search search;
+  search.exponents.s = hill.s;
+  search.exponents.error = hill.error;
+  search.exponents.mode = hill.mode;
+  for (const cplx s : hill.s) search.exponents.frequency.push_back(std::abs(s.imag()));
+  search.method = StabilityMethod::hill;
+  search.evidence = "each exponent by Newton's method on the Hill equations, in a window centred on its mode";
+  search.complete = hill.start.cols() == 2 * system.num_modes() && spans(system, hill.start);
   return search;
 }
 
@@ -374,6 +391,7 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
     search.complete = true;
     return finished(system, search, options.tolerance);
   }
+  if (options.method == StabilityMethod::hill) return finished(system, by_hill(system), options.tolerance);
   if (options.method == StabilityMethod::propagation)
     return finished(system, propagate_all(system, options.tolerance), options.tolerance);
   if (options.leading_only && system.num_modes() > 1)

@@ -41,8 +41,9 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
   for (int step = 0; step < 2; ++step) {
     const Spectrum u = rhs.cwiseQuotient(A.magnitude().cast<std::complex<double>>());
     const double size = size_in_q(u, T);
-    // A random load holds the direction nearest to resonance by about 1/sqrt(unknowns): solved well below that.
-    inverse.solve(rhs, 1e-3, z);
+    // A random load holds the direction nearest to resonance by about 1/sqrt(unknowns): solved well below that. The
+    // second holds it fully.
+    inverse.solve(rhs, step == 0 ? 1e-3 : 1e-2, z);
     const double gained = size_in_q(z, T) / size;
     if (!std::isfinite(gained)) return std::nan("");
     largest = std::max(largest, gained);
@@ -59,7 +60,8 @@ double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::Mat
   return safety * response * weigh(sizes, T);
 }
 
-Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response, const Eigen::MatrixXd& T) {
+Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response, const Eigen::MatrixXd& T,
+                      double enough) {
   // What a solve leaves, near resonance in the very direction that matters, grows by the response; the next residual
   // sees what it missed.
   const double accuracy = std::max(0.05 / response, 1e-12);
@@ -91,17 +93,27 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
     tail.bottomRows(R - H) += e.bottomRows(R - H);
     // The first time window and tail at once, then one after the other: the tail's answer may be at resonance.
     if (step > 0 && R > H) take(false, true);
-    if (!inverse.solve(rho.topRows(H + 1), accuracy, z)) return result;
+    if (!inverse.solve(rho.topRows(H + 1), accuracy, z)) break;
     e.topRows(H + 1) = z;
     result.window += z;
     const double size = size_in_q(e, T);
-    if (!std::isfinite(size)) return result;
+    if (!std::isfinite(size)) {
+      result.rest = HUGE_VAL;
+      break;
+    }
     // Nothing to shrink against at first.
     const double ratio = step > 0 ? size / previous : HUGE_VAL, last_ratio = step > 1 ? previous / before : HUGE_VAL;
     const bool shrinking = ratio <= 0.3 && (round <= 0.3 || last_ratio <= 0.3);
-    if (size == 0 || shrinking || (step + 1 == most_steps && ratio <= 0.9 && last_ratio <= 0.9)) {
-      const double rate = std::max(ratio, round <= 0.3 ? 0 : last_ratio);
-      result.rest = size == 0 ? 0 : size * std::max(1.0, 2 * rate / (1 - rate));
+    const double rate = std::max(ratio, round <= 0.3 ? 0 : last_ratio);
+    if (size == 0) {
+      result.rest = 0;
+      break;
+    }
+    if (shrinking || (step + 1 == most_steps && rate <= 0.9)) {
+      result.rest = size * std::max(1.0, 2 * rate / (1 - rate));
+      if (size <= enough) break;
+    } else if (std::isfinite(result.rest)) {  // rounding reached
+      result.rest += size;
       break;
     }
     before = previous;

@@ -4,6 +4,8 @@
 // q: max over its components of the sum over all harmonics, which is at least the maximum over the turn.
 #pragma once
 
+#include <cmath>
+
 #include "hb/steady_operator.hpp"
 
 namespace hb::steady {
@@ -26,8 +28,9 @@ struct Correction {
   double outside = 0;  // size in q of the rows beyond the window, which no solution on the window has
   double rest = 0;  // size in q of what may be missing; infinite if the corrections do not shrink
 };
+// Steps go on until the last is below `enough`, in q.
 [[nodiscard]] Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response,
-                                    const Eigen::MatrixXd& T);
+                                    const Eigen::MatrixXd& T, double enough = HUGE_VAL);
 
 // Row k > H of the residual, divided by |D(k)|, in q.
 [[nodiscard]] double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T);

@@ -11,6 +11,7 @@
 #include "hb/steady_direct.hpp"
 #include "hb/steady_iterative.hpp"
 #include "hb/steady_operator.hpp"
+#include "hb/steady_proof.hpp"
 #include "hb/steady_residual.hpp"
 #include "hb/truncation.hpp"
 
@@ -105,13 +106,13 @@ class Solver {
       const bool solved = solve(A, *inverse, x, r);
       // The last harmonics that the exact residual shows: more of them first, whatever else is wrong.
       if (solved && !last) {
-        wanted = harmonics_for(A, x, r, A.noise(), 1);
+        wanted = harmonics_for(A, steady::largest_over_turn(x * T_.transpose()), r, A.noise(), 1);
         if (wanted > H) return state;
       }
       const double response = solved ? steady::response(A, *inverse, T_) : HUGE_VAL;
       if (std::isfinite(response)) {
         if (!last) {
-          wanted = harmonics_for(A, x, r, A.noise(), response);
+          wanted = harmonics_for(A, steady::largest_over_turn(x * T_.transpose()), r, A.noise(), response);
           if (wanted > H) return state;
         }
         assess(A, *inverse, x, r, response, state, wanted);
@@ -133,10 +134,10 @@ class Solver {
     }
   }
 
-  // Repeats inverse and exact residual until rounding or the tolerance stops it.
+  // Repeats inverse and exact residual until rounding or the tolerance stops it; `correction` adds the last digits.
   bool solve(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, Spectrum& r) {
     const Index H = A.num_harmonics();
-    const double relative = std::clamp(1e-3 * options_.tolerance, 1e-15, 1e-3);
+    const double relative = std::clamp(0.03 * options_.tolerance, 1e-14, 1e-3);
     double last = HUGE_VAL;
     Spectrum change;
     r = A.residual(x);
@@ -158,10 +159,10 @@ class Solver {
 
   // Smallest window whose omitted residual rows, divided by |D|, stay within the share of the tolerance.
   // Entries of r at or below `noise` are not counted.
-  Index harmonics_for(const steady::Operator& A, const Spectrum& x, Spectrum r, const Eigen::VectorXd& noise,
+  Index harmonics_for(const steady::Operator& A, double largest, Spectrum r, const Eigen::VectorXd& noise,
                       double response) const {
     const Index H = A.num_harmonics();
-    const double allowed = truncation_share * options_.tolerance * steady::largest_over_turn(x * T_.transpose());
+    const double allowed = truncation_share * options_.tolerance * largest;
     const Index above = system_.f.rows();  // the load's own rows have no noise
     for (Index k = H + 1; k < r.rows(); ++k)
       for (Index i = 0; i < r.cols(); ++i)
@@ -187,7 +188,8 @@ class Solver {
     const double largest = steady::largest_over_turn(x * T_.transpose());
     const double load = steady::wiener_norms(system_.f).sum();
     const double rounding = steady::amplified(A.rounding(x), response, T_);
-    const steady::Correction correction = steady::correction(A, inverse, r, response, T_);
+    const steady::Correction correction =
+        steady::correction(A, inverse, r, response, T_, 0.1 * options_.tolerance * largest);
     if (correction.window.allFinite() && std::isfinite(correction.rest)) x += correction.window;
     const double error = correction.outside + correction.rest + rounding;
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
@@ -202,6 +204,43 @@ class Solver {
     else if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound))
       refine(A, inverse, response, u, state, wanted);
     state.q = result(u);
+    if (options_.bound == SteadyBound::proved) prove(A, u, state);
+  }
+
+  struct Residual {
+    Spectrum r;  // weighted rows, of u as it is stored
+    Eigen::MatrixXd rounding;
+    double largest;  // of q / load_scale over the turn, at sample points
+    double conversion;  // what the last multiplication by T adds when u is not q itself
+  };
+  Residual extended_residual(const Eigen::MatrixXcd& u) const {
+    const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd rows = system_.weight.asDiagonal() * given_.rows;
+    const steady::AccurateResidual accurate =
+        steady::accurate_residual(*given_.system, given_.speed, FourierSeries(u), given_.scale);
+    Residual residual;
+    residual.r = accurate.r * (rows / (given_.speed * given_.speed)).transpose();
+    residual.rounding = accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) +
+                        8 * eps * static_cast<double>(system_.I) * residual.r.cwiseAbs();
+    const Spectrum x = (u * (1 / given_.scale)).transpose() * to_u.inverse().transpose();
+    residual.largest = steady::largest_over_turn(x * T_.transpose());
+    residual.conversion =
+        given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
+    return residual;
+  }
+
+  // The estimate gives way to a proof if there is one; it stays otherwise.
+  void prove(const steady::Operator& A, const Eigen::MatrixXcd& u, SteadyState& state) const {
+    constexpr Index most_unknowns = 1000;  // a second or so
+    const Residual residual = extended_residual(u);
+    for (Index N = A.num_harmonics(); steady::proof_size(system_, N) <= most_unknowns; N *= 2) {
+      const steady::Proof proof = steady::prove_error(system_, T_, N, residual.r, residual.rounding);
+      if (!std::isfinite(proof.error)) continue;
+      state.error_bound = (proof.error + residual.conversion) / (residual.largest * (1 - 1e-10));
+      state.bound = SteadyBound::proved;
+      state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
+      return;
+    }
   }
 
   // Residuals in extended precision, of u as it is stored: its own rounding is then part of the residual.
@@ -209,31 +248,23 @@ class Solver {
               Index& wanted) {
     const Index H = A.num_harmonics();
     const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
-    const Eigen::MatrixXd rows = system_.weight.asDiagonal() * given_.rows;
     const double load = steady::wiener_norms(system_.f).sum();
-    const Eigen::MatrixXd to_x = to_u.inverse();
     Eigen::MatrixXcd best = u;
     double last = HUGE_VAL;
     for (int pass = 0; pass < 8; ++pass) {
-      const steady::AccurateResidual accurate =
-          steady::accurate_residual(*given_.system, given_.speed, FourierSeries(u), given_.scale);
-      const Spectrum r = accurate.r * (rows / (given_.speed * given_.speed)).transpose();
-      const Eigen::MatrixXd rounding = accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) +
-                                       8 * eps * static_cast<double>(system_.I) * r.cwiseAbs();
-      const Spectrum x = (u * (1 / given_.scale)).transpose() * to_x.transpose();
-      const double largest = steady::largest_over_turn(x * T_.transpose());
-      if (pass == 0 && (wanted = harmonics_for(A, x, r, Eigen::VectorXd::Zero(system_.I), response)) > H) return;
-      const steady::Correction correction = steady::correction(A, inverse, r, response, T_);
+      const Residual residual = extended_residual(u);
+      if (pass == 0) {
+        wanted = harmonics_for(A, residual.largest, residual.r, Eigen::VectorXd::Zero(system_.I), response);
+        if (wanted > H) return;
+      }
+      const steady::Correction correction = steady::correction(A, inverse, residual.r, response, T_);
       if (!std::isfinite(correction.rest)) break;
       const double inner = steady::size_in_q(correction.window, T_) + correction.rest +
-                           steady::amplified(A, rounding.topRows(H + 1), response, T_);
-      // What the last multiplication by T adds when u is not q itself.
-      const double conversion =
-          given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
-      const double bound = (correction.outside + inner + conversion) / largest;
+                           steady::amplified(A, residual.rounding.topRows(H + 1), response, T_);
+      const double bound = (correction.outside + inner + residual.conversion) / residual.largest;
       if (bound < state.error_bound) {
         state.error_bound = bound;
-        state.residual = steady::wiener_norms(r).sum() / load;
+        state.residual = steady::wiener_norms(residual.r).sum() / load;
         best = u;
       }
       if (state.error_bound <= options_.tolerance) {

@@ -32,7 +32,8 @@ HillSystem mathieu(double b, double a, double c) {
 // Modes omega_i = w1 i or w1 i^2 with modal and internal damping, random symmetric coupling decaying as 2^-k.
 HillSystem random_system(std::mt19937& generator, Eigen::Index most_modes) {
   std::uniform_real_distribution<double> sign(-1, 1), part(0, 1);
-  const Eigen::Index I = 1 + Eigen::Index(part(generator) * double(most_modes)), P = 1 + Eigen::Index(part(generator) * 6);
+  const Eigen::Index I = 1 + Eigen::Index(part(generator) * double(most_modes)),
+                     P = 1 + Eigen::Index(part(generator) * 6);
   const double modulation = 0.8 * std::pow(10, -2 * part(generator));
   const double zeta = part(generator) < 0.3 ? 0 : 0.5 * std::pow(10, -4 * part(generator));
   const double internal = part(generator) < 0.4 ? 0 : std::pow(10, -3 * part(generator));
@@ -69,7 +70,8 @@ double distance(cplx a, cplx b, double Omega) {
 
 TEST(Stability, PrincipalMathieuTongueIsUnstableAtEverySpeedInsideIt) {
   for (const double Omega : {2.05, 2.10, 2.15, 2.20, 2.25, 2.30})
-    for (const auto method : {StabilityMethod::automatic, StabilityMethod::slaving, StabilityMethod::propagation}) {
+    for (const auto method :
+         {StabilityMethod::automatic, StabilityMethod::hill, StabilityMethod::slaving, StabilityMethod::propagation}) {
       const Stability result = analyse_stability(mathieu(0.1, 1.2, 0.4), Omega, {.method = method});
       EXPECT_EQ(result.verdict, Verdict::unstable) << Omega;
       EXPECT_NEAR(result.exponents.front().value.imag(), Omega / 2, 1e-12) << "period doubling";
@@ -226,7 +228,8 @@ TEST(Stability, LeadingExponentsAloneAreThoseOfTheFullSet) {
     const HillSystem system = random_system(generator, 5);
     const Stability all = analyse_stability(system, 1.0);
     const Stability leading = analyse_stability(system, 1.0, {.leading_only = true});
-    EXPECT_LE(std::abs(all.growth_rate - leading.growth_rate), all.growth_error + leading.growth_error) << "system " << i;
+    EXPECT_LE(std::abs(all.growth_rate - leading.growth_rate), all.growth_error + leading.growth_error)
+        << "system " << i;
     if (all.verdict != Verdict::undecided && leading.verdict != Verdict::undecided) {
       EXPECT_EQ(all.verdict, leading.verdict) << "system " << i;
     }

@@ -225,6 +225,40 @@ TEST(SteadyState, MethodsAgree) {
   }
 }
 
+TEST(SteadyState, ProvedBoundCoversTheErrorAndIsNotFarFromTheEstimate) {
+  Random random(13);
+  int proved = 0;
+  for (int trial = 0; trial < 24; ++trial) {
+    Family family{.modes = 1 + trial % 3, .stiffness_harmonics = 2, .load_harmonics = 3, .coupling = 0.05};
+    family.damping_ratio = trial % 4 == 0 ? 0 : std::pow(10, random(-4, -1));
+    family.full_damping = trial % 5 == 1;
+    family.full_mass = trial % 5 == 2;
+    const HillSystem system = random_system(family, random);
+    SteadyOptions options{.tolerance = std::pow(10, -random(3, 13)), .bound = SteadyBound::proved};
+    const SteadyState state = solve_steady_state(system, 1, options);
+    const double error = error_of(state, system, 1);
+    EXPECT_LE(error, state.error_bound) << trial;
+    if (state.bound != SteadyBound::proved) continue;
+    ++proved;
+    options.bound = SteadyBound::estimated;
+    EXPECT_LE(state.error_bound, 10 * solve_steady_state(system, 1, options).error_bound + 1e-14) << trial;
+  }
+  EXPECT_GE(proved, 18);
+}
+
+TEST(SteadyState, NoProofIsClaimedWhereTheContractionFails) {
+  // A stiff undamped mode beyond the harmonics that fit: its resonance is not excluded.
+  const SteadyState state =
+      solve_steady_state(oscillator(5000.25, 0, 1), 1, {.tolerance = 1e-9, .bound = SteadyBound::proved});
+  EXPECT_EQ(state.status, SteadyStatus::converged);
+  EXPECT_EQ(state.bound, SteadyBound::proved);  // without coupling nothing can feed it
+  HillSystem coupled = oscillator(5000.000001, 0, 1);
+  coupled.stiffness[0] = fourier::resized(coupled.stiffness[0], 1);
+  coupled.stiffness[0].c(0, 1) = 1e6;
+  EXPECT_EQ(solve_steady_state(coupled, 1, {.tolerance = 1e-9, .bound = SteadyBound::proved}).bound,
+            SteadyBound::estimated);
+}
+
 TEST(SteadyState, AmplitudeScaleChangesNoDigit) {
   const HillSystem system = mathieu(0.1);
   const SteadyState plain = solve_steady_state(system, 1);

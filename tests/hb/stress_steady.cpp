@@ -16,7 +16,7 @@ using Eigen::Index;
 constexpr Index most_unknowns = 420;
 
 struct Tally {
-  int solved = 0, reached = 0, singular = 0, uncovered = 0, unsettled = 0;
+  int solved = 0, reached = 0, singular = 0, uncovered = 0, unsettled = 0, proved = 0;
   double closest = 0;  // largest true error / bound
 };
 
@@ -71,6 +71,7 @@ void compare(const SteadyState& state, const HillSystem& system, double speed, c
   }
   const double error = reference::true_error(state.q, exact);
   if (state.status == SteadyStatus::converged) ++tally.reached;
+  if (state.bound == SteadyBound::proved) ++tally.proved;
   tally.closest = std::max(tally.closest, (error - doubt) / state.error_bound);
   if (!(error <= state.error_bound + doubt)) ++tally.uncovered;
   EXPECT_LE(error, state.error_bound + doubt)
@@ -99,12 +100,20 @@ void run(stress::Family family, int trials, bool resonant) {
                   std::to_string(t.system.num_modes()) + " method " + std::to_string(int(method)),
               resonant || family == stress::Family::undamped, tally);
     }
+    if (trial % 3 == 0 && t.system.num_modes() <= 3) {
+      options.method = SteadyMethod::automatic;
+      options.bound = SteadyBound::proved;
+      compare(solve_steady_state(t.system, t.speed, options), t.system, t.speed, options,
+              "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " with a proof",
+              resonant || family == stress::Family::undamped, tally);
+    }
   }
   std::printf(
-      "family %2d%s: %d solved, %d reached the tolerance, %d singular, %d bounds below the error, %d beyond the "
+      "family %2d%s: %d solved, %d reached the tolerance, %d with a proved bound, %d singular, %d bounds below the "
+      "error, %d beyond the "
       "reference, largest error/bound %.2g\n",
-      int(family), resonant ? " at resonance" : "", tally.solved, tally.reached, tally.singular, tally.uncovered,
-      tally.unsettled, tally.closest);
+      int(family), resonant ? " at resonance" : "", tally.solved, tally.reached, tally.proved, tally.singular,
+      tally.uncovered, tally.unsettled, tally.closest);
 }
 
 class SteadyStress : public testing::TestWithParam<int> {};
