@@ -5,242 +5,77 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <limits>
-#include <map>
 #include <nlopt.hpp>
 #include <stdexcept>
+
+#include "hb/design_search.hpp"
 
 namespace hb {
 
 namespace {
 
 using Eigen::Index;
-using Eigen::VectorXd;
+using Search = DesignSearch;
 
-// Penalty per unit of violation, in units of the goal's scale: large enough for conditions scaled to order 1
-// (a choice; the local methods that follow do not depend on it).
-constexpr double penalty_weight = 30;
-// Conditions are held this far on the safe side while searching, so that rounding does not decide feasibility.
-constexpr double safety = 1e-7;
-// Half the distance of central differences, relative to the variable's scale: their error, step^2, beside the
-// functions' own noise over the step.
-constexpr double difference_step = 1e-4;
-
-struct OutOfEvaluations {};
-
-// A variable on [0, 1]: logarithmic where its bounds are positive and a decade or more apart.
-struct Scale {
-  double lower, upper;
-  bool logarithmic;
-
-  double value(double u) const {
-    if (u <= 0) return lower;
-    if (u >= 1) return upper;
-    const double x = logarithmic ? lower * std::pow(upper / lower, u) : lower + u * (upper - lower);
-    return std::clamp(x, lower, upper);
-  }
-  double place(double x) const {
-    const double u = logarithmic ? std::log(x / lower) / std::log(upper / lower) : (x - lower) / (upper - lower);
-    return std::clamp(u, 0.0, 1.0);
-  }
-};
-
-double violation(const DesignValues& values) {
-  return values.conditions.size() == 0 ? 0 : std::max(0.0, values.conditions.maxCoeff());
-}
-
-bool usable(const std::optional<DesignValues>& values) {
-  return values && std::isfinite(values->goal) && values->conditions.allFinite();
-}
-
-class Search {
- public:
-  Search(const DesignProblem& problem, const DesignOptions& options) : problem_(problem), options_(options) {
-    for (Index i = 0; i < problem.lower.size(); ++i) {
-      const double a = problem.lower(i), b = problem.upper(i);
-      scales_.push_back({a, b, a > 0 && b / a >= 10});
-    }
-  }
-
-  std::size_t size() const { return scales_.size(); }
-  std::size_t num_conditions() const { return static_cast<std::size_t>(problem_.num_conditions); }
-  int left() const { return options_.max_evaluations - static_cast<int>(result_.trials.size()); }
-  bool feasible() const { return best_ && violation(best_->values) <= 0; }
-  bool any() const { return best_.has_value(); }
-
-  std::vector<double> start() const { return place(problem_.start); }
-  std::vector<double> best_place() const { return place(best_ ? best_->x : problem_.start); }
-
-  // Each design is analysed once.
-  const std::optional<DesignValues>& at(const std::vector<double>& u) {
-    const auto known = seen_.find(u);
-    if (known != seen_.end()) return known->second;
-    if (left() <= 0) throw OutOfEvaluations();
-    Eigen::VectorXd x(static_cast<Index>(u.size()));
-    for (std::size_t i = 0; i < u.size(); ++i) x(static_cast<Index>(i)) = scales_[i].value(u[i]);
-    const std::optional<DesignValues> found = problem_.evaluate(x);
-    if (found && found->conditions.size() != problem_.num_conditions)
-      throw std::invalid_argument(
-          fmt::format("evaluate: found {} conditions, allowed {}", found->conditions.size(), problem_.num_conditions));
-    const bool known_values = usable(found);
-    if (known_values)
-      note(x, *found);
-    else
-      ++result_.num_missing;
-    result_.trials.push_back({x, known_values ? found : std::nullopt});
-    if (options_.progress && best_)
-      options_.progress(static_cast<int>(result_.trials.size()), feasible(), best_->values.goal);
-    return seen_.emplace(u, known_values ? found : std::nullopt).first->second;
-  }
-
-  // Goal over its scale at the first design; where there is no design, worse than all that were seen.
-  double goal(const std::vector<double>& u) {
-    const std::optional<DesignValues>& values = at(u);
-    return values ? values->goal / scale() : worst_goal_ / scale() + 1;
-  }
-  double condition(const std::vector<double>& u, std::size_t j) {
-    const std::optional<DesignValues>& values = at(u);
-    return (values ? values->conditions(static_cast<Index>(j)) : worst_violation_ + 1) + safety;
-  }
-  double largest_condition(const std::vector<double>& u) {
-    double largest = -HUGE_VAL;
-    for (std::size_t j = 0; j < num_conditions(); ++j) largest = std::max(largest, condition(u, j));
-    return largest;
-  }
-  double penalised(const std::vector<double>& u) {
-    double sum = goal(u);
-    for (std::size_t j = 0; j < num_conditions(); ++j) sum += penalty_weight * std::max(0.0, condition(u, j));
-    return sum;
-  }
-
-  // Central differences, one-sided (second order) at a bound.
-  template <class Function>
-  void gradient(const std::vector<double>& u, Function&& function, std::vector<double>& slope) {
-    slope.resize(u.size());
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      const auto moved = [&](double step) {
-        std::vector<double> v = u;
-        v[i] += step;
-        return function(v);
-      };
-      constexpr double h = difference_step;
-      if (u[i] - h < 0) {
-        slope[i] = (-3 * function(u) + 4 * moved(h) - moved(2 * h)) / (2 * h);
-      } else if (u[i] + h > 1) {
-        slope[i] = (3 * function(u) - 4 * moved(-h) + moved(-2 * h)) / (2 * h);
-      } else {
-        slope[i] = (moved(h) - moved(-h)) / (2 * h);
-      }
-    }
-  }
-
-  DesignResult finish(bool converged) {
-    if (!best_)
-      throw std::invalid_argument(fmt::format("evaluate: none of the {} designs tried exists", result_.trials.size()));
-    result_.x = best_->x;
-    result_.values = best_->values;
-    result_.status = !feasible() ? DesignStatus::infeasible : converged ? DesignStatus::optimal : DesignStatus::stopped;
-    for (const auto& [what, analyses] : said_)
-      result_.evidence += fmt::format("{}{} ({} analyses)", result_.evidence.empty() ? "" : ", then ", what, analyses);
-    if (left() <= 0) result_.evidence += ", stopped by the number of analyses";
-    return std::move(result_);
-  }
-  // What was run; the same again only adds its analyses.
-  void say(const std::string& what, int analyses) {
-    if (said_.empty() || said_.back().first != what) said_.emplace_back(what, 0);
-    said_.back().second += analyses;
-  }
-  int evaluations() const { return static_cast<int>(result_.trials.size()); }
-  const DesignOptions& options() const { return options_; }
-
-  std::exception_ptr waiting;  // thrown inside a callback, to be thrown on behind NLopt
-
- private:
-  struct Best {
-    VectorXd x;
-    DesignValues values;
-  };
-
-  // Feasible before infeasible, then the lower goal; among infeasible the smaller violation.
-  static bool better(const DesignValues& a, const DesignValues& b) {
-    const double va = violation(a), vb = violation(b);
-    if (va <= 0 && vb <= 0) return a.goal < b.goal;
-    return va < vb;
-  }
-  void note(const VectorXd& x, const DesignValues& values) {
-    if (!scale_) scale_ = std::max(std::abs(values.goal), std::numeric_limits<double>::min());
-    worst_goal_ = std::max(worst_goal_, values.goal);
-    worst_violation_ = std::max(worst_violation_, violation(values));
-    if (!best_ || better(values, best_->values)) best_ = Best{x, values};
-  }
-  std::vector<double> place(const VectorXd& x) const {
-    std::vector<double> u;
-    for (std::size_t i = 0; i < scales_.size(); ++i) u.push_back(scales_[i].place(x(static_cast<Index>(i))));
-    return u;
-  }
-  double scale() const { return scale_.value_or(1); }
-
-  const DesignProblem& problem_;
-  const DesignOptions& options_;
-  std::vector<Scale> scales_;
-  std::map<std::vector<double>, std::optional<DesignValues>> seen_;
-  std::optional<double> scale_;
-  double worst_goal_ = -std::numeric_limits<double>::max() / 4, worst_violation_ = 0;
-  std::optional<Best> best_;
-  std::vector<std::pair<std::string, int>> said_;
-  DesignResult result_;
+// An exception thrown inside a callback, to be thrown on behind NLopt's C code.
+struct Waiting {
+  std::exception_ptr exception;
 };
 
 struct Objective {
   Search* search;
-  double (Search::*value)(const std::vector<double>&);
+  Waiting* waiting;
+  bool penalised;
 };
 
-// NLopt's C code is between us and the callback: an exception waits in `search` until it is left.
-template <class Function>
-double guarded(Search& search, const std::vector<double>& u, std::vector<double>& slope, Function&& function) {
+struct Condition {
+  Search* search;
+  Waiting* waiting;
+  std::size_t number;
+};
+
+template <class Data, class Function>
+double guarded(const Data& data, Function&& function) {
   try {
-    if (!slope.empty()) search.gradient(u, function, slope);
-    return function(u);
+    return function();
   } catch (...) {
-    search.waiting = std::current_exception();
+    data.waiting->exception = std::current_exception();
     throw nlopt::forced_stop();
   }
 }
 
-double objective(const std::vector<double>& u, std::vector<double>& slope, void* data) {
-  const auto& [search, value] = *static_cast<Objective*>(data);
-  return guarded(*search, u, slope, [&](const std::vector<double>& v) { return (search->*value)(v); });
-}
-
-struct Condition {
-  Search* search;
-  std::size_t number;
-};
-
-double condition(const std::vector<double>& u, std::vector<double>& slope, void* data) {
-  const auto& [search, number] = *static_cast<Condition*>(data);
-  return guarded(*search, u, slope, [&](const std::vector<double>& v) { return search->condition(v, number); });
-}
-
-// Restoration: minimise s over (u, s) subject to g_j(u) <= s.
-double slack(const std::vector<double>& us, std::vector<double>& slope, void*) {
-  if (!slope.empty()) {
-    std::fill(slope.begin(), slope.end(), 0.0);
-    slope.back() = 1;
-  }
-  return us.back();
-}
-
-double condition_with_slack(const std::vector<double>& us, std::vector<double>& slope, void* data) {
-  const auto& [search, number] = *static_cast<Condition*>(data);
-  return guarded(*search, us, slope, [&](const std::vector<double>& v) {
-    return search->condition({v.begin(), v.end() - 1}, number) - v.back();
+double objective(const std::vector<double>& u, std::vector<double>& slope, void* pointer) {
+  const auto& data = *static_cast<Objective*>(pointer);
+  return guarded(data, [&] {
+    if (!slope.empty()) data.search->goal_slope(u, slope);
+    return data.penalised ? data.search->penalised(u) : data.search->goal(u);
   });
 }
 
+double condition(const std::vector<double>& u, std::vector<double>& slope, void* pointer) {
+  const auto& data = *static_cast<Condition*>(pointer);
+  return guarded(data, [&] {
+    if (!slope.empty()) data.search->condition_slope(u, data.number, slope);
+    return data.search->condition(u, data.number);
+  });
+}
+
+// Restoration: minimise s over (u, s) subject to g_j(u) <= s; without derivatives.
+double slack(const std::vector<double>& us, std::vector<double>&, void*) { return us.back(); }
+
+double condition_with_slack(const std::vector<double>& us, std::vector<double>&, void* pointer) {
+  const auto& data = *static_cast<Condition*>(pointer);
+  return guarded(data, [&] { return data.search->condition({us.begin(), us.end() - 1}, data.number) - us.back(); });
+}
+
+std::vector<Condition> conditions_of(Search& search, Waiting& waiting) {
+  std::vector<Condition> conditions;
+  for (std::size_t j = 0; j < search.num_conditions(); ++j) conditions.push_back({&search, &waiting, j});
+  return conditions;
+}
+
 // NLopt's failures that leave a result: rounding limits progress. Everything else is ours.
-bool run(Search& search, nlopt::opt& opt, std::vector<double>& u) {
+bool run(const Waiting& waiting, nlopt::opt& opt, std::vector<double>& u) {
   double value = 0;
   try {
     const nlopt::result code = opt.optimize(u, value);
@@ -249,7 +84,7 @@ bool run(Search& search, nlopt::opt& opt, std::vector<double>& u) {
   } catch (const nlopt::roundoff_limited&) {
     return true;
   } catch (const nlopt::forced_stop&) {
-    if (search.waiting) std::rethrow_exception(search.waiting);
+    if (waiting.exception) std::rethrow_exception(waiting.exception);
     throw;
   } catch (const std::runtime_error&) {  // NLopt's generic failure: singular model; the trials stand
     return false;
@@ -265,16 +100,16 @@ bool local(Search& search, nlopt::algorithm algorithm, const char* name, double 
   const std::size_t n = search.size();
   nlopt::opt opt(algorithm, static_cast<unsigned>(n));
   bound(opt, n);
-  Objective goal{&search, &Search::goal};
+  Waiting waiting;
+  Objective goal{&search, &waiting, false};
   opt.set_min_objective(objective, &goal);
-  std::vector<Condition> conditions;
-  for (std::size_t j = 0; j < search.num_conditions(); ++j) conditions.push_back({&search, j});
+  std::vector<Condition> conditions = conditions_of(search, waiting);
   for (Condition& c : conditions) opt.add_inequality_constraint(condition, &c, 0.0);
   opt.set_xtol_abs(search.options().tolerance);
   opt.set_initial_step(first_step);
   std::vector<double> u = search.best_place();
   const int before = search.evaluations();
-  const bool converged = run(search, opt, u);
+  const bool converged = run(waiting, opt, u);
   search.say(name, search.evaluations() - before);
   return converged;
 }
@@ -283,7 +118,8 @@ bool penalised_search(Search& search, nlopt::algorithm algorithm, const char* na
   const std::size_t n = search.size();
   nlopt::opt opt(algorithm, static_cast<unsigned>(n));
   bound(opt, n);
-  Objective goal{&search, &Search::penalised};
+  Waiting waiting;
+  Objective goal{&search, &waiting, true};
   opt.set_min_objective(objective, &goal);
   if (budget > 0) opt.set_maxeval(budget);
   opt.set_xtol_abs(search.options().tolerance);
@@ -298,7 +134,7 @@ bool penalised_search(Search& search, nlopt::algorithm algorithm, const char* na
   }
   std::vector<double> u = search.best_place();
   const int before = search.evaluations();
-  const bool converged = run(search, opt, u);
+  const bool converged = run(waiting, opt, u);
   search.say(name, search.evaluations() - before);
   return converged;
 }
@@ -316,13 +152,13 @@ void restore(Search& search) {
   opt.set_upper_bounds(high);
   opt.set_initial_step(step);
   opt.set_min_objective(slack, nullptr);
-  std::vector<Condition> conditions;
-  for (std::size_t j = 0; j < search.num_conditions(); ++j) conditions.push_back({&search, j});
+  Waiting waiting;
+  std::vector<Condition> conditions = conditions_of(search, waiting);
   for (Condition& c : conditions) opt.add_inequality_constraint(condition_with_slack, &c, 0.0);
   opt.set_xtol_abs(search.options().tolerance);
   opt.set_stopval(-1e-3);
   const int before = search.evaluations();
-  run(search, opt, us);
+  run(waiting, opt, us);
   search.say("COBYLA on the largest violation", search.evaluations() - before);
 }
 
@@ -386,8 +222,11 @@ bool search_all(Search& search, DesignAlgorithm algorithm) {
     case DesignAlgorithm::mma:
       return settle(search, nlopt::LD_MMA, "MMA");
     case DesignAlgorithm::automatic:
-      // Differences see the smooth part around, COBYLA the kinks.
-      if (search.feasible()) local(search, nlopt::LD_SLSQP, "SLSQP", 0.05);
+      // Derivatives see the smooth part around, COBYLA the kinks.
+      if (search.feasible()) {
+        local(search, nlopt::LD_SLSQP, "SLSQP", 0.05);
+        if (search.stationary()) return true;
+      }
       break;
     default:
       break;

@@ -18,27 +18,34 @@ struct DesignValues {
   Eigen::VectorXd conditions;  // g, of order 1 where far from being met
 };
 
+struct DesignGradient {
+  Eigen::VectorXd goal;  // df/dx_i
+  Eigen::MatrixXd conditions;  // dg_j/dx_i
+};
+
 struct DesignProblem {
   Eigen::VectorXd lower, upper, start;  // finite, lower < upper, start inside
   int num_conditions = 0;
   // Empty where there is no such design.
   std::function<std::optional<DesignValues>(const Eigen::VectorXd& x)> evaluate;
+  // At a design that was evaluated. No function, or empty: differences of `evaluate` are taken instead.
+  std::function<std::optional<DesignGradient>(const Eigen::VectorXd& x)> gradient;
 };
 
 enum class DesignAlgorithm {
-  automatic,  // global search by DIRECT, then COBYLA, then SLSQP
+  automatic,  // global search by DIRECT, then SLSQP, then COBYLA unless SLSQP ended at a minimum
   direct,  // global, deterministic: DIRECT-L on an exact penalty, then COBYLA
   mlsl,  // global, low-discrepancy starts, BOBYQA from each on an exact penalty, then COBYLA
   cobyla,  // local, linear models, no derivatives
   bobyqa,  // local, quadratic models of an exact penalty, no derivatives
-  slsqp,  // local, central differences
-  mma,  // local, central differences
+  slsqp,  // local, with derivatives
+  mma,  // local, with derivatives
 };
 
 struct DesignOptions {
   DesignAlgorithm algorithm = DesignAlgorithm::automatic;
   double tolerance = 1e-5;  // of each variable, relative to its bounds' distance (on its scale)
-  int max_evaluations = 600;  // analyses, those of differences included
+  int max_evaluations = 600;  // analyses, those of differences included, gradients not
   std::uint64_t seed = 1;  // of mlsl
   std::function<void(int evaluations, bool feasible, double goal)> progress;  // best so far, after each analysis
 };
@@ -61,19 +68,19 @@ struct DesignResult {
   DesignValues values;
   std::vector<DesignTrial> trials;  // in their order
   int num_missing = 0;  // trials where there was no design
+  int num_gradients = 0;  // that the problem gave
   std::string evidence;  // one sentence: what was done
 };
 
 // Throws std::invalid_argument naming a wrong field, and when no trial at all has values.
 [[nodiscard]] DesignResult optimise(const DesignProblem& problem, const DesignOptions& options = {});
 
-// What holds a design where it is: with every gradient by central differences (one-sided at bounds),
+// What holds a design where it is: with the problem's gradient, else by central differences (one-sided at bounds),
 //     df + sum_j lambda_j dg_j - sum_i below_i e_i + sum_i above_i e_i ~ 0,   all multipliers >= 0,
 // in the least-squares sense, zero for what is not active. lambda_j is what the goal gains per unit by which condition
 // j is relaxed.
 struct DesignSensitivity {
-  Eigen::VectorXd goal_gradient;  // df/dx_i
-  Eigen::MatrixXd conditions_gradient;  // dg_j/dx_i
+  DesignGradient gradient;
   Eigen::VectorXd multipliers;  // lambda_j
   Eigen::VectorXd below, above;  // of the bounds
   double residual = 0;  // of the equation above relative to |df|, x scaled by the bounds' distance

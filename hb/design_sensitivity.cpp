@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hb/design.hpp"
+#include "hb/differences.hpp"
 
 namespace hb {
 
@@ -57,33 +58,29 @@ VectorXd nonnegative_least_squares(const MatrixXd& A, const VectorXd& b) {
 std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem, const VectorXd& x, double active,
                                                     double step) {
   const Index n = x.size(), m = problem.num_conditions;
-  const auto at = [&](const VectorXd& y) -> std::optional<VectorXd> {
+  const auto at = [&](const VectorXd& y) -> OptionalVector {
     const std::optional<DesignValues> values = problem.evaluate(y);
-    if (!values || !std::isfinite(values->goal) || !values->conditions.allFinite()) return std::nullopt;
+    if (!values) return std::nullopt;
     VectorXd all(m + 1);
     all << values->goal, values->conditions;
     return all;
   };
-  const std::optional<VectorXd> here = at(x);
-  if (!here) return std::nullopt;
+  const OptionalVector here = at(x);
+  if (!here || !here->allFinite()) return std::nullopt;
   const VectorXd width = problem.upper - problem.lower;
-  MatrixXd slopes(m + 1, n);  // rows f, g; columns x_i over their widths
-  for (Index i = 0; i < n; ++i) {
-    const double h = step * width(i);
-    const auto moved = [&](double by) {
-      VectorXd y = x;
-      y(i) += by;
-      return at(y);
-    };
-    const bool low = x(i) - h<problem.lower(i), high = x(i) + h> problem.upper(i);
-    const double sign = low ? 1 : -1;
-    const std::optional<VectorXd> a = low || high ? moved(sign * h) : moved(h);
-    const std::optional<VectorXd> b = low || high ? moved(2 * sign * h) : moved(-h);
-    if (!a || !b) return std::nullopt;
-    slopes.col(i) =
-        low || high ? VectorXd(sign * (4 * *a - *b - 3 * *here) / (2 * step)) : VectorXd((*a - *b) / (2 * step));
+  MatrixXd slopes(m + 1, n);  // rows f, g; columns x_i
+  std::optional<DesignGradient> gradient;
+  if (problem.gradient) gradient = problem.gradient(x);
+  if (gradient) {
+    slopes << gradient->goal.transpose(), gradient->conditions;
+  } else {
+    const std::optional<MatrixXd> differences = difference_jacobian(at, x, problem.lower, problem.upper, step * width);
+    if (!differences) return std::nullopt;
+    slopes = *differences;
   }
   DesignSensitivity result;
+  result.gradient = {slopes.row(0).transpose(), slopes.bottomRows(m)};
+  slopes *= width.asDiagonal();  // x over the bounds' distance
   result.multipliers = VectorXd::Zero(m);
   result.below = result.above = VectorXd::Zero(n);
   // Columns of the least-squares problem: active conditions, then active bounds.
@@ -119,8 +116,6 @@ std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem
     rest += A * lambda;
   }
   result.residual = df.norm() > 0 ? rest.norm() / df.norm() : 0;
-  result.goal_gradient = df.cwiseQuotient(width);
-  result.conditions_gradient = slopes.bottomRows(m) * width.cwiseInverse().asDiagonal();
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "lib/rod.hpp"
+#include "lib/rod_functional.hpp"
 
 namespace hb {
 
@@ -295,6 +296,37 @@ RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, c
   const FourierSeries T = time_functions(link, rod, speed, q);
   RodShape result{peak(shapes, T, link.length, 0), peak(shapes, T, link.length, 2)};
   result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
+  return result;
+}
+
+// With F_n = 1/(1 + in Omega alpha_c), (f q)^(tau) = sum_n F_n e^{in tau} sum_m f_{n-m} q_m: the mean over the turn of
+// q with f W, W_n = conj(F_n e^{in tau}).
+RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, double speed, Eigen::Index num_modes,
+                             Eigen::Index num_harmonics, RodQuantity quantity, double x, double crank_angle) {
+  const Eigen::Index I = num_modes;
+  const bool moment = quantity == RodQuantity::bending_moment;
+  const Eigen::RowVectorXd s = (moment ? link.elastic->youngs_modulus * link.elastic->second_moment : 1.0) *
+                               RodShapes(link.length, I).values(x, moment ? 2 : 0);
+  const FourierSeries f = coefficients_at(rod, speed);
+  const Eigen::Index H = num_harmonics + f.num_harmonics(), N = power_of_two_from(2 * H + 2);
+  FourierSeries W(1, H), delta(1, num_harmonics);
+  for (Eigen::Index n = 0; n <= H; ++n) {
+    const Complex wave = std::polar(1.0, -static_cast<double>(n) * crank_angle);
+    if (n <= num_harmonics) delta.c(0, n) = wave;
+    W.c(0, n) = wave / Complex(1, -static_cast<double>(n) * speed * link.elastic->internal_damping);
+  }
+  RodFunctional result;
+  for (Eigen::Index n = 0; n <= f.num_harmonics(); ++n)
+    result.offset += (n > 0 ? 2 : 1) * (std::conj(W.c(0, n)) * (s(I) * f.c(0, n) + s(I + 1) * f.c(1, n))).real();
+  const Eigen::MatrixXd samples = fourier::synthesise(f, N);
+  const Eigen::RowVectorXd w = fourier::synthesise(W, N).row(0);
+  Eigen::MatrixXd products(2, N);
+  products.row(0) = samples.row(3).cwiseProduct(w);
+  products.row(1) = samples.row(2).cwiseProduct(w);
+  const Eigen::MatrixXcd fW = fourier::resized(fourier::analyse(products), num_harmonics).c;
+  result.g = FourierSeries(I, num_harmonics);
+  for (Eigen::Index k = 0; k < I; ++k)
+    result.g.c.row(k) = s(k) * delta.c.row(0) + s(I + 2 + k) * fW.row(0) + s(2 * I + 2 + k) * fW.row(1);
   return result;
 }
 

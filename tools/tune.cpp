@@ -16,14 +16,16 @@
 #include "tools/json_output.hpp"
 #include "tools/output_folder.hpp"
 #include "tools/parameter_range.hpp"
+#include "tools/table_output.hpp"
 #include "tools/tune_output.hpp"
+#include "tools/tune_pictures.hpp"
 #include "tools/tune_problem.hpp"
 
 namespace hb::tools {
 namespace {
 
 struct TuneFlags : CommonFlags {
-  std::string minimise, over, algorithm, seed, analyses, speeds;
+  std::string minimise, maximise, over, algorithm, seed, analyses, speeds;
   std::vector<std::string> vary, keep, tie, height;
 };
 
@@ -52,7 +54,15 @@ void require_scene(const SceneSource& source, const std::string& path, double va
   }
 }
 
-std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& source) {
+// A scene number, or an end of the speed range as --over gives it.
+double start_value(const std::string& path, const TuneTask& task) {
+  if (path == range_from) return task.span.from / task.speed_unit;
+  if (path == range_to) return task.span.to / task.speed_unit;
+  return task.source.value(path);
+}
+
+std::vector<TuneVariable> variables(const TuneFlags& flags, const TuneTask& task) {
+  const SceneSource& source = task.source;
   std::vector<TuneVariable> result;
   for (const std::string& text : flags.vary) {
     const NamedRange range = named_range("--vary", text);
@@ -62,7 +72,7 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
       if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
     if (range.path.starts_with("analysis.") || range.path.starts_with("units."))
       throw UsageError(fmt::format("--vary: found {}, allowed: numbers of the mechanism", range.path));
-    const double value = source.value(range.path);
+    const double value = start_value(range.path, task);
     variable.start = std::clamp(value, a, b);
     if (variable.start != value) {
       variable.moved_from = value;
@@ -93,7 +103,15 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
   }
   // Conditions between numbers (a wall within its tube) are the search's business; each alone must be possible at one
   // end at least.
+  double lowest_to = task.span.to / task.speed_unit, highest_from = task.span.from / task.speed_unit;
   for (const TuneVariable& variable : result) {
+    if (variable.path == range_from) highest_from = variable.upper;
+    if (variable.path == range_to) lowest_to = variable.lower;
+    if (variable.path == range_from || variable.path == range_to) {
+      if (!(variable.lower > 0))
+        throw UsageError(fmt::format("--vary: found {} from {:g}, allowed: speeds > 0", variable.path, variable.lower));
+      continue;
+    }
     try {
       require_scene(source, variable.path, variable.lower);
     } catch (const SceneError&) {
@@ -101,6 +119,10 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
       if (variable.lower <= 0) throw;
     }
   }
+  if (std::ranges::any_of(result, [](const auto& v) { return v.path == range_from || v.path == range_to; }) &&
+      !(highest_from < lowest_to))
+    throw UsageError(
+        fmt::format("--vary: found speed ranges from {:g} to {:g}, allowed: from below to", highest_from, lowest_to));
   return result;
 }
 
@@ -153,9 +175,10 @@ DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) 
     if (!known) throw UsageError(fmt::format("--algorithm: found \"{}\", allowed: {}", flags.algorithm, names));
   }
   if (isatty(STDERR_FILENO) != 0) {
-    options.progress = [](int evaluations, bool feasible, double goal) {
+    const double sign = flags.maximise.empty() ? 1 : -1;
+    options.progress = [sign](int evaluations, bool feasible, double goal) {
       fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations,
-                 feasible ? "" : "(conditions not met) ", goal);
+                 feasible ? "" : "(conditions not met) ", sign * goal);
     };
   }
   return options;
@@ -174,8 +197,9 @@ int num_modes(const TuneTask& task, const Scene& scene) {
 }
 
 int run_tune(const TuneFlags& flags) {
-  if (flags.minimise.empty())
-    throw UsageError("--minimise: found nothing, allowed: a goal, as in --minimise deflection");
+  if (flags.minimise.empty() == flags.maximise.empty())
+    throw UsageError(fmt::format("--minimise, --maximise: found {}, allowed: one goal, as in --minimise deflection",
+                                 flags.minimise.empty() ? "neither" : "both"));
   if (flags.vary.empty()) throw UsageError("--vary: found nothing, allowed: PATH=FROM:TO, as in --vary AB.J=20:200");
   // Numbers of --set become part of the scene that is tuned.
   const SceneSource as_written(flags.scene_file);
@@ -185,7 +209,7 @@ int run_tune(const TuneFlags& flags) {
   TuneTask task{
       .source = set.empty() ? as_written : SceneSource(as_written.text_with(set), file.string(), file.parent_path()),
       .variables = {},
-      .goal = parse_goal(flags.minimise),
+      .goal = flags.maximise.empty() ? parse_goal(flags.minimise) : parse_largest_goal(flags.maximise),
       .keeps = {},
       .span = {},
       .in_rpm = true,
@@ -198,8 +222,9 @@ int run_tune(const TuneFlags& flags) {
     task.heights[height.path] =
         number_flag("--height", height.range, std::numeric_limits<double>::min(), largest, "ROD=H with H > 0");
   }
-  task.variables = variables(flags, task.source);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
+  task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;
+  task.variables = variables(flags, task);
   if (std::holds_alternative<AutoModes>(task.settings.modes)) task.settings.modes = num_modes(task, scene);
 
   std::optional<OutputFolder> folder;
@@ -220,16 +245,17 @@ int run_tune(const TuneFlags& flags) {
   if (folder) {
     folder->write("tuned.toml", tuned_scene(task, result, file, *task.settings.out));
     folder->write("tune.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    for (const CsvFile& csv : {history_csv(task, result), curves_csv(task, *result.curves_before, scene, false),
-                               curves_csv(task, *result.curves_after, scene, true)})
-      folder->write(csv.name, csv_text(csv));
-    draw_figures(curves_figures(task, result, scene), *folder, task.settings.plots);
+    const CsvFile history = history_csv(task, result);
+    folder->write(history.name, csv_text(history));
+    write_curves(task, result, scene, *folder);
+    if (task.settings.plots) draw_figures(tune_figures(task, result, scene, *folder), *folder, true);
     folder->commit();
   }
   if (task.settings.json) {
     print_json(document);
   } else {
     fmt::print("{}", tune_table(task, result, scene));
+    if (task.settings.stats) fmt::print(stderr, "\n{}", stages_table(result.stages));
   }
   return shortfall(result).empty() ? exit_ok : exit_not_reached;
 }
@@ -253,7 +279,13 @@ void add_tune_command(CLI::App& app, int& status) {
                    "deflection, stress, force (each :NAME for one rod or joint), torque-ripple, mass, or a sum such as "
                    "0.7*deflection+0.3*mass of parts over their start values")
       ->type_name("GOAL");
-  repeatable("--vary", flags->vary, "a scene number to choose within bounds, as in AB.J=20:200; repeatable",
+  command
+      ->add_option("--maximise,--maximize", flags->maximise,
+                   "instead: stable (the margin), frequency, clearance:N or speed-range")
+      ->type_name("GOAL");
+  repeatable("--vary", flags->vary,
+             "a scene number to choose within bounds, as in AB.J=20:200, or an end of the speed range, over.from or "
+             "over.to; repeatable",
              "PATH=A:B");
   repeatable("--tie", flags->tie, "a scene number that follows a varied one, as in CD.J=AB.J or CD.J=0.5*AB.J",
              "PATH=PATH");

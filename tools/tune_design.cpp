@@ -25,19 +25,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t resonant_modes = 2;
 constexpr double highest_order = 24;
 
-// The leading exponents alone where that gives a bound, else all of them.
-Stability leading_stability(const ScaledSystem& system, const Settings& settings) {
-  StabilityOptions options;
-  options.method = settings.stability_method;
-  options.leading_only = true;
-  Stability stability = analyse_stability(system, options);
-  if (std::isfinite(stability.growth_rate + stability.growth_error)) return stability;
-  options.leading_only = false;
-  return analyse_stability(system, options);
-}
-
-double growth_of(const Stability& stability) { return stability.growth_rate + stability.growth_error; }
-
 // The system of p in q = e^{-mt} p: its exponents are those of q plus m, so it is stable where q decays faster than
 // e^{-mt}.   M p'' + (B - 2 m M) p' + (C - m B + m^2 M) p
 HillSystem shifted(const HillSystem& system, double m) {
@@ -66,27 +53,6 @@ std::vector<ModeState> mean_modes(const ScaledSystem& system) {
   return modes;
 }
 
-// Largest length of a force given by its components.
-double largest_length(const FourierSeries& force) {
-  if (force.num_harmonics() < 0) return 0;
-  if (force.num_components() == 1) return fourier::max_abs(force, 0).value;
-  // Its square has twice the harmonics.
-  const Eigen::Index N = 4 * force.num_harmonics() + 4;
-  const Eigen::MatrixXd samples = fourier::synthesise(force, N);
-  const Eigen::MatrixXd square = samples.colwise().squaredNorm();
-  return std::sqrt(std::max(0.0, fourier::range(fourier::analyse(square), 0).max.value));
-}
-
-double lowest_frequency(const HillSystem& system) {
-  // At rest only the part without speed is left: M^-1 mean(C_0), nearly diagonal; its lowest w^2 by its diagonal in
-  // scaled coordinates.
-  HillSystem at_rest = system;
-  at_rest.stiffness[1] = at_rest.stiffness[2] = FourierSeries();
-  at_rest.load = {};
-  const double w2 = scale_system(at_rest, 1).mean_diagonal().minCoeff();
-  return w2 > 0 ? std::sqrt(w2) : 0;
-}
-
 }  // namespace
 
 struct DesignAnalysis::Sample {
@@ -104,50 +70,6 @@ struct DesignAnalysis::Curve {
   double factor = 1;
   std::string where;
 };
-
-namespace {
-
-std::optional<FourierSeries> response(const RodModel& rod, double speed, const Settings& settings) {
-  SteadyOptions options;
-  options.tolerance = settings.tolerance;
-  options.method = settings.steady_method;
-  SteadyState state = solve_steady_state(rod.system, speed, options);
-  if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
-  return std::move(state.q);
-}
-
-RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q) {
-  if (rod.link >= 0) {
-    return rod_shape(*body_at(*model.linkage(), rod.link),
-                     model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], speed, q);
-  }
-  RodShape shape;
-  for (Eigen::Index i = 0; i < q.num_components(); ++i)
-    shape.deflection.max_abs = std::max(shape.deflection.max_abs, fourier::max_abs(q, i).value);
-  return shape;
-}
-
-struct Forces {
-  std::vector<double> joints;
-  std::vector<std::string> names;
-  double ripple = 0;
-};
-
-Forces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q) {
-  std::vector<LinkResponse> responses;
-  for (std::size_t r = 0; r < q.size(); ++r) responses.push_back({model.rods[r].link, q[r]});
-  const JointForces forces = joint_forces(*model.linkage(), speed, responses, 1e-10);
-  Forces result;
-  for (const JointForce& joint : forces.joints) {
-    result.joints.push_back(largest_length(joint.elastic));
-    result.names.push_back(joint.name);
-  }
-  const Range range = fourier::range(forces.torque, 0);
-  result.ripple = range.max.value - range.min.value;
-  return result;
-}
-
-}  // namespace
 
 DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
                                SectionHeights heights, double margin, bool per_turn)
@@ -168,9 +90,9 @@ DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings
 
 DesignAnalysis::~DesignAnalysis() = default;
 
-void DesignAnalysis::respond() {
-  if (responded_) return;
-  responded_ = true;
+void DesignAnalysis::place_nodes() {
+  if (placed_) return;
+  placed_ = true;
   // Resonances omega_i = n Omega narrower than the distance of two nodes get a node of their own.
   std::vector<double> more;
   if (nodes_.size() > 1) {
@@ -198,12 +120,17 @@ void DesignAnalysis::respond() {
     nodes_.push_back(std::move(sample));
   }
   std::ranges::sort(nodes_, {}, [](const auto& node) { return node->speed; });
+}
+
+void DesignAnalysis::respond() {
+  place_nodes();
   parallel_for(nodes_.size(), settings_.threads, [&](std::size_t k) {
     Sample& node = *nodes_[k];
+    if (!node.deflection.empty()) return;
     node.deflection.assign(model_.rods.size(), nan);
     node.moment.assign(model_.rods.size(), nan);
     for (std::size_t r = 0; r < model_.rods.size(); ++r) {
-      std::optional<FourierSeries> q = response(model_.rods[r], node.speed, settings_);
+      std::optional<FourierSeries> q = rod_response(model_.rods[r], node.speed, settings_);
       if (!q) {
         node.q.clear();
         return;
@@ -218,21 +145,21 @@ void DesignAnalysis::respond() {
 
 void DesignAnalysis::need_forces() {
   respond();
-  if (!nodes_.front()->forces.empty()) return;
   const std::size_t joints = forces_of(model_, nodes_.front()->speed, {}).joints.size();
   parallel_for(nodes_.size(), settings_.threads, [&](std::size_t k) {
     Sample& node = *nodes_[k];
+    if (!node.forces.empty()) return;
     node.forces.assign(joints, nan);
     if (node.q.size() != model_.rods.size()) return;
-    Forces forces = forces_of(model_, node.speed, node.q);
-    node.forces = std::move(forces.joints);
-    node.ripple = forces.ripple;
+    JointQuantities quantities = joint_quantities(forces_of(model_, node.speed, node.q));
+    node.forces = std::move(quantities.force);
+    node.ripple = quantities.torque.max.value - quantities.torque.min.value;
   });
 }
 
 void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
-  respond();  // its nodes first
+  place_nodes();
   const auto shift_at = [&](double speed) { return per_turn_ ? margin_ * speed / (2 * pi) : margin_; };
   const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
   struct Known {
@@ -273,25 +200,8 @@ void DesignAnalysis::find_instabilities() {
     for (const double speed : speeds) {
       auto sample = std::make_unique<Sample>();
       sample->speed = speed;
-      sample->deflection.assign(num_rods, nan);
-      sample->moment.assign(num_rods, nan);
-      for (std::size_t r = 0; r < num_rods; ++r) {
+      for (std::size_t r = 0; r < num_rods; ++r)
         sample->growth.push_back(growth_of(look(r, speed).sample.stability) - shift_at(speed));
-        if (std::optional<FourierSeries> q = response(model_.rods[r], speed, settings_)) {
-          const RodShape shape = shape_of(model_, model_.rods[r], speed, *q);
-          sample->deflection[r] = shape.deflection.max_abs;
-          sample->moment[r] = shape.bending_moment.max_abs;
-          sample->q.push_back(std::move(*q));
-        }
-      }
-      if (!nodes_.front()->forces.empty()) {
-        sample->forces.assign(nodes_.front()->forces.size(), nan);
-        if (sample->q.size() == num_rods) {
-          Forces forces = forces_of(model_, speed, sample->q);
-          sample->forces = std::move(forces.joints);
-          sample->ripple = forces.ripple;
-        }
-      }
       more.push_back(std::move(sample));
     }
   }
@@ -316,8 +226,8 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
                     metric.text));
   switch (metric.kind) {
     case MetricKind::force: {
-      const Forces forces = forces_of(model_, nodes_.front()->speed, {});
-      for (std::size_t j = 0; j < forces.names.size(); ++j) choose(j, forces.names[j], units.force_in_newton());
+      const JointForces forces = forces_of(model_, nodes_.front()->speed, {});
+      for (std::size_t j = 0; j < forces.joints.size(); ++j) choose(j, forces.joints[j].name, units.force_in_newton());
       break;
     }
     case MetricKind::torque_ripple:
@@ -328,19 +238,8 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
         const RodModel& rod = model_.rods[r];
         if (!rod.reported) continue;
         double factor = 1;
-        if (metric.kind == MetricKind::stress && (metric.name.empty() || metric.name == rod.name)) {
-          const auto named = heights_.find(rod.name), all = heights_.find("*");
-          const auto height = named != heights_.end() ? named : all;
-          if (height == heights_.end())
-            throw UsageError(
-                fmt::format("{}: found no section height of {}, allowed: --height {}=H, or a section in "
-                            "the scene",
-                            metric.text, rod.name, rod.name));
-          const Elastic& elastic = *body_at(*model_.linkage(), rod.link)->elastic;
-          // sigma = |EJ w''| h/(2 J), in MPa.
-          const double pascal = units.force_in_newton() / (units.length_in_m * units.length_in_m);
-          factor = height->second / (2 * elastic.second_moment) * pascal * 1e-6;
-        }
+        if (metric.kind == MetricKind::stress && (metric.name.empty() || metric.name == rod.name))
+          factor = stress_factor(model_, rod, heights_, metric);
         choose(r, rod.name, factor);
       }
   }
@@ -374,7 +273,7 @@ double DesignAnalysis::at(const Curve& curve, double speed) {
     case MetricKind::deflection:
     case MetricKind::stress: {
       const RodModel& rod = model_.rods[curve.index];
-      const std::optional<FourierSeries> q = response(rod, speed, settings_);
+      const std::optional<FourierSeries> q = rod_response(rod, speed, settings_);
       if (!q) return nan;
       const RodShape shape = shape_of(model_, rod, speed, *q);
       return curve.factor *
@@ -384,12 +283,14 @@ double DesignAnalysis::at(const Curve& curve, double speed) {
     case MetricKind::torque_ripple: {
       std::vector<FourierSeries> all;
       for (const RodModel& rod : model_.rods) {
-        std::optional<FourierSeries> q = response(rod, speed, settings_);
+        std::optional<FourierSeries> q = rod_response(rod, speed, settings_);
         if (!q) return nan;
         all.push_back(std::move(*q));
       }
-      const Forces forces = forces_of(model_, speed, all);
-      return curve.factor * (curve.kind == MetricKind::force ? forces.joints[curve.index] : forces.ripple);
+      const JointForces forces = forces_of(model_, speed, all);
+      if (curve.kind == MetricKind::force) return curve.factor * joint_quantities(forces).force[curve.index];
+      const Range torque = fourier::range(forces.torque, 0);
+      return curve.factor * (torque.max.value - torque.min.value);
     }
     case MetricKind::margin:
     case MetricKind::margin_per_turn: {
@@ -410,7 +311,7 @@ MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>
   for (std::size_t c = 0; c < curves.size(); ++c) {
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       values[c].push_back(at_node(curves[c], k));
-      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where};
+      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where, curves[c].index, 1};
       highest = std::max(highest, values[c].back());
       lowest = std::min(lowest, values[c].back());
     }
@@ -422,8 +323,8 @@ MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>
     const double own = *std::ranges::max_element(values[c]);
     if (own < highest - 0.5 * (highest - lowest)) continue;
     const WorstCase found = worst_case([&](double speed) { return at(curves[c], speed); }, speeds, values[c]);
-    if (std::isnan(found.value)) return {nan, found.x, curves[c].where};
-    if (found.value > result.value) result = {found.value, found.x, curves[c].where};
+    if (std::isnan(found.value)) return {nan, found.x, curves[c].where, curves[c].index, 1};
+    if (found.value > result.value) result = {found.value, found.x, curves[c].where, curves[c].index, curves[c].factor};
   }
   if (metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn) result.value = -result.value;
   return result;
@@ -432,13 +333,11 @@ MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>
 // For order n the range of r = omega_1/Omega over all speeds must lie on one side of n:
 //     c_n = max(min r/n - 1, 1 - max r/n),   clearance = min over rods and n.
 MetricValue DesignAnalysis::clearance(const Metric& metric) {
-  MetricValue result{HUGE_VAL, std::nullopt, ""};
-  for (const RodModel& rod : model_.rods) {
+  MetricValue result{HUGE_VAL, std::nullopt, "", 0, 1};
+  for (std::size_t r = 0; r < model_.rods.size(); ++r) {
+    const RodModel& rod = model_.rods[r];
     if (!rod.reported) continue;
-    const auto ratio = [&](double speed) {
-      const double w2 = scale_system(rod.system, speed).mean_diagonal().minCoeff();
-      return w2 > 0 ? std::sqrt(w2) : 0.0;
-    };
+    const auto ratio = [&](double speed) { return frequency_ratio(rod.system, speed); };
     std::vector<double> speeds, values, negative;
     for (const auto& node : nodes_) {
       speeds.push_back(node->speed);
@@ -450,7 +349,7 @@ MetricValue DesignAnalysis::clearance(const Metric& metric) {
     for (int n = 1; n <= metric.orders; ++n) {
       const double above = -least.value / n - 1, below = 1 - most.value / n;
       const double c = std::max(above, below);
-      if (c < result.value) result = {c, above > below ? least.x : most.x, rod.name};
+      if (c < result.value) result = {c, above > below ? least.x : most.x, rod.name, r, 1};
     }
   }
   return result;
@@ -458,29 +357,33 @@ MetricValue DesignAnalysis::clearance(const Metric& metric) {
 
 MetricValue DesignAnalysis::value(const Metric& metric) {
   if (metric.kind == MetricKind::clearance) return clearance(metric);
+  if (metric.kind == MetricKind::speed_range)
+    return {rpm_from_speed(span_.to, model_.scene.units) - rpm_from_speed(span_.from, model_.scene.units), std::nullopt,
+            "", 0, 1};
   const std::vector<Curve> curves = curves_of(metric);
-  if (metric.kind == MetricKind::mass) {
-    MetricValue result{0, std::nullopt, metric.name};
-    for (const Curve& curve : curves) result.value += body_at(*model_.linkage(), model_.rods[curve.index].link)->mass;
-    return result;
-  }
+  if (metric.kind == MetricKind::mass) return {mass_of(model_, metric.name), std::nullopt, metric.name, 0, 1};
   if (metric.kind == MetricKind::frequency) {
-    MetricValue result{HUGE_VAL, std::nullopt, ""};
+    MetricValue result{HUGE_VAL, std::nullopt, "", 0, 1};
+    const double hertz = 1 / (2 * pi * model_.scene.units.time_in_s);
     for (const Curve& curve : curves) {
-      const double hertz = lowest_frequency(model_.rods[curve.index].system) / (2 * pi) / model_.scene.units.time_in_s;
-      if (hertz < result.value) result = {hertz, std::nullopt, curve.where};
+      const double value = hertz * lowest_frequency(model_.rods[curve.index].system);
+      if (value < result.value) result = {value, std::nullopt, curve.where, curve.index, hertz};
     }
     return result;
   }
-  respond();
-  if (metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple) need_forces();
-  if (metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn) find_instabilities();
+  if (metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn) {
+    find_instabilities();
+  } else if (metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple) {
+    need_forces();
+  } else {
+    respond();
+  }
   return worst(metric, curves);
 }
 
 DesignCurves DesignAnalysis::curves() {
-  respond();
   find_instabilities();
+  respond();
   DesignCurves result;
   std::vector<std::size_t> rods;
   for (std::size_t r = 0; r < model_.rods.size(); ++r) {

@@ -1,7 +1,6 @@
 // One design of a scene over a speed range: the worst case of every metric, found between the speeds sampled.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "tools/linkage_analysis.hpp"
 #include "tools/tune_metric.hpp"
+#include "tools/tune_quantities.hpp"
 
 namespace hb::tools {
 
@@ -16,15 +16,14 @@ struct MetricValue {
   double value = 0;  // in unit_of(kind); NaN where there is no periodic solution
   std::optional<double> speed;  // where it is worst, rad per unit time
   std::string where;  // rod or joint
+  std::size_t index = 0;  // of that rod in SceneModel::rods, of that joint in JointForces::joints
+  double factor = 1;  // from the scene's units
 };
 
 struct SpeedSpan {
   double from = 0, to = 0;  // rad per unit time; equal: one speed
   int num_nodes = 24;  // sampled before refinement
 };
-
-// Section height across the rod, by name; "*" for all that are not named.
-using SectionHeights = std::map<std::string, double>;
 
 // Response and margin over the speeds sampled, for pictures.
 struct DesignCurves {
@@ -54,9 +53,11 @@ class DesignAnalysis {
   double at_node(const Curve& curve, std::size_t node);
   MetricValue worst(const Metric& metric, const std::vector<Curve>& curves);
   MetricValue clearance(const Metric& metric);
-  void respond();  // response at all nodes, new nodes on resonances
-  void find_instabilities();
+  void place_nodes();  // new ones on resonances
+  // At all nodes that do not have it yet.
+  void respond();
   void need_forces();
+  void find_instabilities();  // adds nodes in narrow bands
 
   const SceneModel& model_;
   const Settings& settings_;
@@ -65,7 +66,7 @@ class DesignAnalysis {
   double margin_;
   bool per_turn_;
   std::vector<std::unique_ptr<Sample>> nodes_;  // ascending speed
-  bool responded_ = false;
+  bool placed_ = false;
 };
 
 }  // namespace hb::tools

@@ -11,7 +11,8 @@ namespace hb::tools {
 namespace {
 
 constexpr const char* metric_words =
-    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], frequency[:ROD], stable, clearance[:N]";
+    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], frequency[:ROD], stable, clearance[:N], "
+    "speed-range";
 
 [[noreturn]] void refuse(const char* flag, const std::string& text, const std::string& why,
                          const std::string& allowed) {
@@ -58,6 +59,9 @@ Metric parse_metric(const char* flag, const std::string& whole, const std::strin
   } else if (word == "stable") {
     metric.kind = MetricKind::margin;
     named = false;
+  } else if (word == "speed-range") {
+    metric.kind = MetricKind::speed_range;
+    named = false;
   } else if (word == "clearance") {
     metric.kind = MetricKind::clearance;
     if (!metric.name.empty()) {
@@ -101,16 +105,25 @@ Goal parse_goal(const std::string& text) {
     }
     if (part.empty()) refuse("--minimise", text, "with an empty term", metric_words);
     term.metric = parse_metric("--minimise", text, part.substr(star == std::string::npos ? 0 : star + 1));
-    if (term.metric.kind == MetricKind::frequency || term.metric.kind == MetricKind::margin ||
-        term.metric.kind == MetricKind::clearance) {
+    if (better_large(term.metric.kind))
       refuse("--minimise", text, fmt::format("where {} is better large", term.metric.text),
-             "deflection, stress, force, torque-ripple, mass; the others behind --keep");
-    }
+             "deflection, stress, force, torque-ripple, mass; the others behind --maximise or --keep");
     goal.terms.push_back(std::move(term));
     if (end == std::string::npos) break;
     begin = end + 1;
   }
   if (goal.terms.size() > 1) goal.weighted = true;
+  return goal;
+}
+
+Goal parse_largest_goal(const std::string& text) {
+  Goal goal;
+  goal.text = text;
+  goal.maximise = true;
+  goal.terms.push_back({1, parse_metric("--maximise", text, without_blanks(text))});
+  if (!better_large(goal.terms[0].metric.kind))
+    refuse("--maximise", text, "which is better small",
+           "stable (the margin), frequency, clearance, speed-range; the others behind --minimise");
   return goal;
 }
 
@@ -122,8 +135,6 @@ Keep parse_keep(const std::string& text) {
   const std::size_t sign = std::min(less, more);
   keep.metric = parse_metric("--keep", text, dense.substr(0, sign));
   keep.at_least = more < less;
-  const bool better_large = keep.metric.kind == MetricKind::frequency || keep.metric.kind == MetricKind::margin ||
-                            keep.metric.kind == MetricKind::clearance;
   if (sign == std::string::npos) {
     if (keep.metric.kind != MetricKind::margin)
       refuse("--keep", text, "without a bound", "stable, or QUANTITY<=NUMBER, QUANTITY>=NUMBER");
@@ -141,11 +152,16 @@ Keep parse_keep(const std::string& text) {
                            keep.metric.kind == MetricKind::clearance;
   if (!value || !(may_be_zero ? *value >= 0 : *value > 0))
     refuse("--keep", text, fmt::format("where \"{}\" is no number {} 0", bound, may_be_zero ? ">=" : ">"), "a bound");
-  if (better_large != keep.at_least)
+  if (better_large(keep.metric.kind) != keep.at_least)
     refuse("--keep", text, "which keeps nothing good",
-           better_large ? ">= with this quantity" : "<= with this quantity");
+           better_large(keep.metric.kind) ? ">= with this quantity" : "<= with this quantity");
   keep.bound = *value;
   return keep;
+}
+
+bool better_large(MetricKind kind) {
+  return kind == MetricKind::frequency || kind == MetricKind::margin || kind == MetricKind::margin_per_turn ||
+         kind == MetricKind::clearance || kind == MetricKind::speed_range;
 }
 
 bool depends_on_speed(MetricKind kind) { return kind != MetricKind::mass && kind != MetricKind::frequency; }
@@ -170,6 +186,8 @@ std::string unit_of(MetricKind kind, const Units& units) {
       return "per turn";
     case MetricKind::clearance:
       return "";
+    case MetricKind::speed_range:
+      return "rpm";
   }
   return "";
 }

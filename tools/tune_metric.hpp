@@ -20,6 +20,7 @@ enum class MetricKind {
   margin,  // decay rate of the slowest disturbance: minus the largest growth rate
   margin_per_turn,
   clearance,  // distance of omega_1/(n Omega) from 1 over all speeds, n = 1..orders; negative inside
+  speed_range,  // last minus first speed
 };
 
 struct Metric {
@@ -39,6 +40,7 @@ struct GoalTerm {
 struct Goal {
   std::vector<GoalTerm> terms;
   bool weighted = false;
+  bool maximise = false;
   std::string text;
 };
 
@@ -51,10 +53,12 @@ struct Keep {
 
 // Throw UsageError naming flag, text and what is allowed.
 [[nodiscard]] Goal parse_goal(const std::string& text);  // "deflection", "0.7*deflection+0.3*mass"
+[[nodiscard]] Goal parse_largest_goal(const std::string& text);  // "stable", "speed-range"
 [[nodiscard]] Keep parse_keep(const std::string& text);  // "stable", "stable>=5", "stable>=0.1/turn", "force:B<=200"
 
 [[nodiscard]] bool depends_on_speed(MetricKind kind);
-// Scene's length and mass; N, N m, MPa, Hz.
+[[nodiscard]] bool better_large(MetricKind kind);
+// Scene's length and mass; N, N m, MPa, Hz, rpm.
 [[nodiscard]] std::string unit_of(MetricKind kind, const Units& units);
 
 }  // namespace hb::tools

@@ -17,14 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-double shown_speed(const TuneTask& task, double speed, const Units& units) {
-  return task.in_rpm ? rpm_from_speed(speed, units) : speed;
-}
-
-std::string speed_unit(const TuneTask& task, const Units& units) {
-  return task.in_rpm ? "rpm" : fmt::format("rad/{}", units.time);
-}
-
 std::string label(MetricKind kind) {
   switch (kind) {
     case MetricKind::deflection:
@@ -45,6 +37,8 @@ std::string label(MetricKind kind) {
       return "margin per turn";
     case MetricKind::clearance:
       return "clearance";
+    case MetricKind::speed_range:
+      return "speed range";
   }
   return "";
 }
@@ -57,8 +51,8 @@ std::string label(const Metric& metric) {
 std::string place(const TuneTask& task, const MetricValue& value, const Units& units) {
   std::string text = value.where;
   if (value.speed)
-    text += fmt::format("{}{:.6g} {}", text.empty() ? "" : ", ", shown_speed(task, *value.speed, units),
-                        speed_unit(task, units));
+    text +=
+        fmt::format("{}{:.6g} {}", text.empty() ? "" : ", ", *value.speed / task.speed_unit, speed_unit(task, units));
   return text;
 }
 
@@ -91,10 +85,10 @@ std::string bound_text(const Keep& keep, const Units& units) {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-Json metric_json(const TuneTask& task, const MetricValue& value, const Units& units) {
+Json metric_json(const TuneTask& task, const MetricValue& value) {
   Json json = {{"value", number(value.value)}};
   if (!value.where.empty()) json["at"] = value.where;
-  if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = shown_speed(task, *value.speed, units);
+  if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = *value.speed / task.speed_unit;
   return json;
 }
 
@@ -115,12 +109,13 @@ std::string shortfall(const TuneResult& result) {
 
 std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const Units& units = scene.units;
-  std::string text = fmt::format("{}\nminimise {}", scene_name(scene), task.goal.text);
+  std::string text =
+      fmt::format("{}\n{} {}", scene_name(scene), task.goal.maximise ? "maximise" : "minimise", task.goal.text);
   if (task.span.from == task.span.to) {
-    text += fmt::format(" at {:g} {}\n", shown_speed(task, task.span.from, units), speed_unit(task, units));
+    text += fmt::format(" at {:g} {}\n", task.span.from / task.speed_unit, speed_unit(task, units));
   } else {
-    text += fmt::format(" over {:g} to {:g} {}\n", shown_speed(task, task.span.from, units),
-                        shown_speed(task, task.span.to, units), speed_unit(task, units));
+    text += fmt::format(" over {:g} to {:g} {}\n", task.span.from / task.speed_unit, task.span.to / task.speed_unit,
+                        speed_unit(task, units));
   }
   const std::string problem = shortfall(result);
   text += problem.empty() ? "a design was found that meets every condition\n" : "NOT REACHED: " + problem + "\n";
@@ -159,19 +154,25 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
     text += "\n";
   }
 
-  if (result.sensitivity && result.goal_after != 0) {
+  if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
     text += "\n1 % more of      changes the goal by\n";
     for (std::size_t i = 0; i < task.variables.size(); ++i) {
-      const double change = result.sensitivity->goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
+      const double change = result.goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
       text += fmt::format("{:<28}{:>+10.3g} %\n", task.variables[i].path, change / result.goal_after);
     }
     if (result.damping_sensitivity)
       text += fmt::format("{:<28}{:>+10.3g} %\n", "internal damping, all links", *result.damping_sensitivity);
+    if (result.damping_sensitivity_of_best)
+      text +=
+          fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
   }
 
   text += fmt::format("\n{} designs analysed: {}\n", result.design.trials.size(), result.design.evidence);
-  if (result.not_closing > 0) text += fmt::format("{} designs tried do not close over the turn\n", result.not_closing);
-  if (result.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.refused);
+  if (result.counts.gradients > 0)
+    text += fmt::format("{} gradients from adjoint solutions and Floquet vectors\n", result.counts.gradients);
+  if (result.counts.not_closing > 0)
+    text += fmt::format("{} designs tried do not close over the turn\n", result.counts.not_closing);
+  if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
   if (result.without_response > 0)
     text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
   if (result.verified) text += "worst cases confirmed on four times the speeds\n";
@@ -180,9 +181,8 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
 
 Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const Units& units = scene.units;
-  Json json = {{"title", scene_name(scene)}, {"minimise", task.goal.text}};
-  json["over"] = {{task.in_rpm ? "rpm" : "omega",
-                   {shown_speed(task, task.span.from, units), shown_speed(task, task.span.to, units)}}};
+  Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
+  json["over"] = {{task.in_rpm ? "rpm" : "omega", {task.span.from / task.speed_unit, task.span.to / task.speed_unit}}};
   json["status"] = status_word(result.design.status);
   json["verified"] = result.verified;
   const std::string problem = shortfall(result);
@@ -200,7 +200,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
     if (variable.moved_from) entry["moved_from"] = *variable.moved_from;
     if (result.sensitivity) {
       const auto k = static_cast<Eigen::Index>(i);
-      entry["goal_gradient"] = result.sensitivity->goal_gradient(k);
+      entry["goal_gradient"] = result.goal_gradient(k);
       entry["multiplier_lower"] = result.sensitivity->below(k);
       entry["multiplier_upper"] = result.sensitivity->above(k);
     }
@@ -213,8 +213,8 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   for (const TuneRow& row : result.rows) {
     metrics.push_back({{"metric", row.metric.text},
                        {"unit", unit_of(row.metric.kind, units)},
-                       {"before", metric_json(task, row.before, units)},
-                       {"after", metric_json(task, row.after, units)}});
+                       {"before", metric_json(task, row.before)},
+                       {"after", metric_json(task, row.after)}});
   }
   Json& conditions = json["conditions"] = Json::array();
   for (const TuneCondition& condition : result.conditions) {
@@ -227,12 +227,15 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                           {"gain_of_1_percent", gain(condition)}});
   }
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
+  if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
   json["analyses"] = result.design.trials.size();
-  json["not_closing"] = result.not_closing;
-  json["refused"] = result.refused;
+  json["gradients"] = result.counts.gradients;
+  json["not_closing"] = result.counts.not_closing;
+  json["refused"] = result.counts.refused;
   json["without_response"] = result.without_response;
   json["evidence"] = result.design.evidence;
   json["units"] = units_json(units);
+  if (task.settings.stats) json["stats"] = stages_json(result.stages);
   return json;
 }
 
@@ -251,65 +254,13 @@ CsvFile history_csv(const TuneTask& task, const TuneResult& result) {
     auto row = file.rows.row(static_cast<Eigen::Index>(k));
     row.head(n) = trial.x.transpose();
     if (!trial.values) continue;
-    row(n) = trial.values->goal;
-    row.tail(m) = trial.values->conditions.transpose();
-  }
-  return file;
-}
-
-CsvFile curves_csv(const TuneTask& task, const DesignCurves& curves, const Scene& scene, bool after) {
-  const OutputUnits units = output_units(scene);
-  CsvFile file;
-  file.name = after ? "curves_after.csv" : "curves_before.csv";
-  file.comment = {fmt::format("{}, {} tuning: largest deflection over rod and turn, largest growth rate",
-                              scene_name(scene), after ? "after" : "before")};
-  file.columns.push_back("speed [" + speed_unit(task, scene.units) + "]");
-  for (const std::string& rod : curves.rods) file.columns.push_back("deflection " + rod + bracketed(units.response));
-  file.columns.push_back("growth rate [" + units.rate + "]");
-  const auto rods = static_cast<Eigen::Index>(curves.rods.size());
-  file.rows.resize(static_cast<Eigen::Index>(curves.speed.size()), rods + 2);
-  for (std::size_t k = 0; k < curves.speed.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    file.rows(i, 0) = shown_speed(task, curves.speed[k], scene.units);
-    file.rows.row(i).segment(1, rods) = curves.deflection.row(i);
-    file.rows(i, rods + 1) = curves.growth(i);
-  }
-  return file;
-}
-
-std::vector<Figure> curves_figures(const TuneTask& task, const TuneResult& result, const Scene& scene) {
-  if (!result.curves_before || !result.curves_after || task.span.from == task.span.to) return {};
-  const OutputUnits units = output_units(scene);
-  const std::vector<std::string>& rods = result.curves_after->rods;
-  Figure figure;
-  figure.name = "before_after";
-  figure.height = 720;
-  const double from = shown_speed(task, task.span.from, scene.units), to = shown_speed(task, task.span.to, scene.units);
-  figure.commands = fmt::format(
-      "set multiplot layout 2,1 title {} margins char 14, char 22, char 4, char 3 spacing char 0, char 2\n"
-      "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nunset xlabel\nset format y '%g'\nset "
-      "format x ''\n"
-      "set ylabel 'largest deflection{}'\n",
-      quoted(scene_name(scene) + ": before (dashed) and after tuning"), from, to, bracketed(units.response));
-  std::string above, below;
-  for (std::size_t r = 0; r < rods.size(); ++r) {
-    for (const bool after : {false, true}) {
-      above += fmt::format("{}'{}' using 1:{} with lines lw 2 lc {} {} title {}", above.empty() ? "plot " : ", \\\n  ",
-                           after ? "curves_after.csv" : "curves_before.csv", r + 2, r + 1, after ? "dt 1" : "dt 2",
-                           quoted(rods[r] + (after ? " after" : " before")));
+    row(n) = (task.goal.maximise ? -1 : 1) * trial.values->goal;
+    for (std::size_t j = 0; j < result.condition_of.size(); ++j) {
+      double& excess = row(n + 1 + static_cast<Eigen::Index>(result.condition_of[j]));
+      excess = std::fmax(excess, trial.values->conditions(static_cast<Eigen::Index>(j)));  // NaN at first
     }
   }
-  for (const bool after : {false, true}) {
-    below += fmt::format("{}'{}' using 1:{} with lines lw 2 lc {} {} title '{}'", after ? ", \\\n  " : "plot ",
-                         after ? "curves_after.csv" : "curves_before.csv", rods.size() + 2, after ? 4 : 7,
-                         after ? "dt 1" : "dt 2", after ? "after" : "before");
-  }
-  figure.commands += above + "\n";
-  figure.commands += fmt::format(
-      "unset logscale y\nset format x '%g'\nset xlabel 'crank speed [{}]'\n"
-      "set ylabel 'growth rate [{}]'\n{}\nunset multiplot\n",
-      speed_unit(task, scene.units), units.rate, below);
-  return {figure};
+  return file;
 }
 
 std::string tuned_scene(const TuneTask& task, const TuneResult& result, const std::filesystem::path& scene_file,

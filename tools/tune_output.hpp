@@ -1,4 +1,4 @@
-// What `hb tune` says: table, JSON, CSV, pictures and the tuned scene.
+// What `hb tune` says: table, JSON, designs tried and the tuned scene.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "tools/csv_output.hpp"
-#include "tools/gnuplot.hpp"
 #include "tools/tune_problem.hpp"
 
 namespace hb::tools {
@@ -16,11 +15,6 @@ namespace hb::tools {
 
 // Every design tried: variables, goal, conditions' excess.
 [[nodiscard]] CsvFile history_csv(const TuneTask& task, const TuneResult& result);
-// Speed, deflection of each rod, growth rate.
-[[nodiscard]] CsvFile curves_csv(const TuneTask& task, const DesignCurves& curves, const Scene& scene, bool after);
-// Both designs over the speed: deflection above, growth rate below. Empty at a single speed.
-[[nodiscard]] std::vector<Figure> curves_figures(const TuneTask& task, const TuneResult& result, const Scene& scene);
-
 // The scene with the tuned numbers; relative paths of further files lead from `folder`.
 [[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result,
                                       const std::filesystem::path& scene_file, const std::filesystem::path& folder);

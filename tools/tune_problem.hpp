@@ -9,6 +9,7 @@
 #include "hb/design.hpp"
 #include "tools/tune_design.hpp"
 #include "tools/tune_metric.hpp"
+#include "tools/tune_space.hpp"
 
 namespace hb::tools {
 
@@ -18,8 +19,12 @@ struct TiedNumber {
   double factor = 1;
 };
 
+// An end of the speed range may be a variable too.
+inline constexpr const char* range_from = "over.from";
+inline constexpr const char* range_to = "over.to";
+
 struct TuneVariable {
-  std::string path;
+  std::string path;  // a scene number, range_from or range_to
   double lower = 0, upper = 0, start = 0;
   std::optional<double> moved_from;  // the scene's value if that lies outside the bounds
   std::vector<TiedNumber> tied;
@@ -31,7 +36,8 @@ struct TuneTask {
   Goal goal;
   std::vector<Keep> keeps;
   SpeedSpan span;
-  bool in_rpm = true;  // how speeds are shown
+  bool in_rpm = true;  // how speeds are given and shown
+  double speed_unit = 1;  // rad per unit time in one of those
   std::map<std::string, double> heights;  // given by flag
   Settings settings;
   DesignOptions options;
@@ -54,20 +60,30 @@ struct TuneCondition {
 
 struct TuneResult {
   DesignResult design;
+  std::vector<std::size_t> condition_of;  // of each of its conditions: the place in TuneTask::keeps
   std::vector<double> start, tuned;  // of the variables
   double goal_before = 0, goal_after = 0;
+  Eigen::VectorXd goal_gradient;  // with respect to the variables; empty: not found
   std::vector<TuneRow> rows;
   std::vector<TuneCondition> conditions;
   std::optional<DesignSensitivity> sensitivity;
-  std::optional<double> damping_sensitivity;  // d ln goal / d ln internal damping of all links
+  // d ln goal / d ln internal damping of all links, at fixed variables, and of the best goal: active conditions move.
+  std::optional<double> damping_sensitivity, damping_sensitivity_of_best;
   std::optional<DesignCurves> curves_before, curves_after;
-  int not_closing = 0, refused = 0, without_response = 0;  // designs tried that were none
+  TuneCounts counts;
+  int without_response = 0;  // designs tried that have no periodic solution at some speed
   int rounds = 1;  // searches, each from the last and with more speeds
   bool verified = false;  // the conditions hold and the goal stands on four times the speeds
   std::string goal_unit;  // empty for weighted sums
+  SpeedSpan span_before, span_after;
+  std::vector<Stage> stages;
 };
 
+// Of the scene's numbers.
 [[nodiscard]] std::vector<Override> overrides_at(const TuneTask& task, const std::vector<double>& x);
+
+[[nodiscard]] std::string speed_unit(const TuneTask& task, const Units& units);  // "rpm", "rad/s"
+[[nodiscard]] SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x);
 
 // Throws UsageError and SceneError for what cannot be at the start.
 [[nodiscard]] TuneResult tune(const TuneTask& task);

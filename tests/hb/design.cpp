@@ -72,7 +72,7 @@ TEST(Design, MultipliersAreWhatRelaxingAConditionGains) {
   EXPECT_NEAR(sensitivity->multipliers(0), f / 2, 1e-2 * f);
   EXPECT_NEAR(sensitivity->multipliers(1), f / 2, 1e-2 * f);
   EXPECT_LE(sensitivity->residual, 1e-2);
-  EXPECT_NEAR(sensitivity->goal_gradient(0), 4 * bar_width, 1e-3);
+  EXPECT_NEAR(sensitivity->gradient.goal(0), 4 * bar_width, 1e-3);
 }
 
 TEST(Design, FindsTheMinimaxBetweenTwoKinks) {

@@ -1,0 +1,48 @@
+// Quantities of one design at one speed: what tune_design.hpp takes the worst of and tune_gradient.hpp differentiates.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/stability.hpp"
+#include "tools/linkage_analysis.hpp"
+#include "tools/tune_metric.hpp"
+
+namespace hb::tools {
+
+// Section height across the rod, by name; "*" for all that are not named.
+using SectionHeights = std::map<std::string, double>;
+
+// Periodic solution of one rod; empty where there is none.
+[[nodiscard]] std::optional<FourierSeries> rod_response(const RodModel& rod, double speed, const Settings& settings);
+// Of a [hill] scene the deflection is the largest |q_i|.
+[[nodiscard]] RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q);
+
+// MPa per unit of bending moment: sigma = |E J w''| h/(2 J). Throws UsageError for a rod without height.
+[[nodiscard]] double stress_factor(const SceneModel& model, const RodModel& rod, const SectionHeights& heights,
+                                   const Metric& metric);
+
+struct JointQuantities {
+  std::vector<std::string> names;
+  std::vector<double> force, at;  // largest length over the turn, and its crank angle
+  Range torque;
+};
+[[nodiscard]] JointQuantities joint_quantities(const JointForces& forces);
+// `q` by rod of the model; empty: rigid.
+[[nodiscard]] JointForces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q,
+                                    double tolerance = 1e-10);
+
+// Leading exponents alone where that gives a bound, else all of them; and what the margin is judged by: rate and error.
+[[nodiscard]] Stability leading_stability(const ScaledSystem& system, const Settings& settings);
+[[nodiscard]] double growth_of(const Stability& stability);
+
+// Of the elastic link of that name; empty: of all asked for.
+[[nodiscard]] double mass_of(const SceneModel& model, const std::string& name);
+
+// omega_1 of the mean system at rest, rad per unit time, and omega_1/Omega at a speed.
+[[nodiscard]] double lowest_frequency(const HillSystem& system);
+[[nodiscard]] double frequency_ratio(const HillSystem& system, double speed);
+
+}  // namespace hb::tools
