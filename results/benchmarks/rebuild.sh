@@ -1,0 +1,8 @@
+#!/usr/bin/env bash
+# Error against run time of every method: error_against_time.csv and one picture per system and quantity.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+../../tools/build.sh release hb_error_against_time >/dev/null
+../../build/release/bin/hb_error_against_time >error_against_time.csv
+gnuplot plot.gp

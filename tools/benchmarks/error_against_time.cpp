@@ -1,0 +1,203 @@
+// Error against run time of every method on the project's own systems and on synthetic ones, as CSV on standard output:
+// one row per system, method and asked tolerance. Errors against a reference made by another method, outside the timed
+// runs; a dense Hill solve and shooting with SUNDIALS stand beside as yardsticks.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dense_hill.hpp"
+#include "hb/shooting.hpp"
+#include "hb/stability.hpp"
+#include "hb/steady_state.hpp"
+#include "lib/rod.hpp"
+#include "lib/scene.hpp"
+#include "lib/time_domain.hpp"
+
+namespace hb::benchmarks {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Timing {
+  double best, median;
+};
+
+// At least 3 and at most 200 runs, about 0.2 s.
+Timing timed(const std::function<void()>& run) {
+  std::vector<double> seconds;
+  double sum = 0;
+  while (seconds.size() < 3 || (sum < 0.2 && seconds.size() < 200)) {
+    const auto start = Clock::now();
+    run();
+    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    sum += seconds.back();
+    if (sum > 10) break;
+  }
+  std::sort(seconds.begin(), seconds.end());
+  return {seconds.front(), seconds[seconds.size() / 2]};
+}
+
+struct Case {
+  std::string name;
+  HillSystem system;
+  double speed;
+  bool integrate;  // shooting takes seconds at most
+};
+
+void add_rod(std::vector<Case>& cases, const std::string& name, const std::string& scene_file, double second_moment,
+             double rpm, bool integrate) {
+  std::vector<Override> overrides;
+  if (second_moment > 0) overrides.push_back({"*.J", std::to_string(second_moment)});
+  const Scene scene = read_scene(scene_file, overrides);
+  const auto& linkage = std::get<Linkage>(scene.model);
+  const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+  cases.push_back({name, ritz_system(*body_at(linkage, coefficients.links[0]), coefficients.rods[0], 5),
+                   speed_from_rpm(rpm, scene.units), integrate});
+}
+
+// Frequencies 2.3 i, damping 1 %, two harmonics of stiffness coupling all modes by 10 %.
+HillSystem synthetic(Eigen::Index I) {
+  HillSystem s;
+  s.mass = Eigen::MatrixXd::Identity(I, I);
+  s.damping = Eigen::MatrixXd::Zero(I, I);
+  s.stiffness[0] = FourierSeries(I * I, 2);
+  s.load[0] = FourierSeries(I, 3);
+  for (Eigen::Index i = 0; i < I; ++i) {
+    const double w = 2.3 * static_cast<double>(i + 1);
+    s.damping(i, i) = 0.02 * w;
+    s.stiffness[0].c(i + I * i, 0) = w * w;
+    for (Eigen::Index k = 0; k <= 3; ++k) s.load[0].c(i, k) = 1.0 / static_cast<double>((i + 1) * (k + 1));
+    for (Eigen::Index j = 0; j < I; ++j)
+      for (Eigen::Index k = 1; k <= 2; ++k)
+        s.stiffness[0].c(i + I * j, k) +=
+            0.05 * 5.29 * static_cast<double>((i + 1) * (j + 1)) / static_cast<double>(k * (1 + std::abs(i - j)));
+  }
+  return s;
+}
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  HillSystem mathieu;
+  mathieu.mass = Eigen::MatrixXd::Ones(1, 1);
+  mathieu.damping = Eigen::MatrixXd::Constant(1, 1, 0.1);
+  mathieu.stiffness[0] = FourierSeries(1, 1);
+  mathieu.stiffness[0].c << 1.2, 0.2;
+  mathieu.load[0] = FourierSeries(1, 1);
+  mathieu.load[0].c << 0, 0.5;
+  cases.push_back({"mathieu", mathieu, 1, true});
+  const std::string six_link = HB_SOURCE_DIR "/results/six_link/scene.toml";
+  for (const int rpm : {300, 1500, 3000})
+    add_rod(cases, "six_link_45_" + std::to_string(rpm) + "rpm", six_link, 45, rpm, true);
+  add_rod(cases, "six_link_4500_300rpm", six_link, 4500, 300, false);
+  add_rod(cases, "slider_crank_9000rpm", HB_SOURCE_DIR "/results/slider_crank/scene.toml", 0, 9000, false);
+  for (const int I : {1, 2, 5, 10, 20, 40}) cases.push_back({"synthetic_" + std::to_string(I), synthetic(I), 1, false});
+  return cases;
+}
+
+void row(const Case& c, const char* quantity, const char* method, double asked, long size, double error, double claimed,
+         const Timing& timing) {
+  std::printf("%s,%ld,%s,%s,%.0e,%ld,%.3e,%.3e,%.4e,%.4e\n", c.name.c_str(), static_cast<long>(c.system.num_modes()),
+              quantity, method, asked, size, error, claimed, timing.best, timing.median);
+  std::fflush(stdout);
+}
+
+constexpr double tolerances[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+
+void steady_rows(const Case& c) {
+  const SteadyState finest = solve_steady_state(c.system, c.speed, {.tolerance = 1e-13});
+  const ScaledSystem scaled = scale_system(c.system, c.speed);
+  const int most = static_cast<int>(3000 / c.system.num_modes() / 2);
+  const FourierSeries exact = dense_hill_solution(scaled, std::min(most, finest.num_harmonics + 12), 3);
+  const auto method_rows = [&](const char* name, SteadyMethod method) {
+    for (const double asked : tolerances) {
+      const SteadyOptions options{.tolerance = asked, .method = method};
+      const SteadyState state = solve_steady_state(c.system, c.speed, options);
+      if (state.status != SteadyStatus::converged) continue;
+      row(c, "steady", name, asked, state.num_harmonics, relative_error(state.q, exact), state.error_bound,
+          timed([&] { (void)solve_steady_state(c.system, c.speed, options); }));
+      if (method == SteadyMethod::automatic && c.system.num_modes() <= 10)
+        row(c, "steady", "dense_hill", asked, state.num_harmonics,
+            relative_error(dense_hill_solution(scaled, state.num_harmonics), exact), 0,
+            timed([&] { (void)dense_hill_solution(scaled, state.num_harmonics); }));
+    }
+  };
+  method_rows("automatic", SteadyMethod::automatic);
+  method_rows("direct", SteadyMethod::direct);
+  method_rows("iterative", SteadyMethod::iterative);
+  if (!c.integrate) return;
+  for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    const ShootingOptions options{.integrator = Integrator::adams, .time_limit = 5, .single_run = tolerance};
+    const ShootingResult result = solve_by_shooting(time_domain_system(c.system, c.speed), options);
+    if (result.orbit.q.cols() == 0) continue;
+    const Eigen::MatrixXd q = fourier::synthesise(exact, std::max<Eigen::Index>(result.orbit.q.cols(), 1024));
+    const Eigen::Index stride = q.cols() / result.orbit.q.cols();
+    double error = 0;
+    for (Eigen::Index j = 0; j < result.orbit.q.cols(); ++j)
+      error = std::max(error, (q.col(j * stride) - result.orbit.q.col(j)).cwiseAbs().maxCoeff());
+    row(c, "steady", "cvode_shooting", tolerance, result.steps, error / q.cwiseAbs().maxCoeff(), 0,
+        timed([&] { (void)solve_by_shooting(time_domain_system(c.system, c.speed), options); }));
+  }
+}
+
+void growth_rows(const Case& c) {
+  // The most accurate answer of the other methods.
+  const auto reference = [&](StabilityMethod without) {
+    Stability best;
+    best.growth_error = HUGE_VAL;
+    for (const StabilityMethod method : {StabilityMethod::propagation, StabilityMethod::slaving}) {
+      if (method == without) continue;
+      const Stability here = analyse_stability(c.system, c.speed, {.tolerance = 1e-12, .method = method});
+      if (here.growth_error < best.growth_error) best = here;
+    }
+    return best.growth_rate;
+  };
+  const auto rows = [&](const char* name, StabilityMethod method, bool leading_only) {
+    const double exact = reference(method == StabilityMethod::automatic ? StabilityMethod::slaving : method);
+    for (const double asked : {1e-3, 1e-6, 1e-9, 1e-11}) {
+      if (c.system.num_modes() > 10 && asked != 1e-9) continue;  // seconds each
+      const StabilityOptions options{.tolerance = asked, .method = method, .leading_only = leading_only};
+      const Stability result = analyse_stability(c.system, c.speed, options);
+      if (!std::isfinite(result.growth_error)) continue;
+      const double scale = std::max(std::abs(exact), c.speed);
+      row(c, "growth", name, asked, static_cast<long>(result.exponents.size()),
+          std::abs(result.growth_rate - exact) / scale, result.growth_error / scale,
+          timed([&] { (void)analyse_stability(c.system, c.speed, options); }));
+    }
+  };
+  rows("automatic_leading", StabilityMethod::automatic, true);
+  rows("automatic_all", StabilityMethod::automatic, false);
+  if (c.system.num_modes() > 10) return;
+  rows("slaving", StabilityMethod::slaving, false);
+  rows("propagation", StabilityMethod::propagation, false);
+  if (c.system.num_modes() <= 2) rows("hill", StabilityMethod::hill, false);
+}
+
+std::string cpu_model() {
+  std::ifstream file("/proc/cpuinfo");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
+  return "unknown";
+}
+
+}  // namespace
+
+}  // namespace hb::benchmarks
+
+int main() {
+  using namespace hb::benchmarks;
+  std::printf("# CPU %s; %s; Eigen %d.%d.%d, %s; one thread; seconds: smallest and median of repeated runs\n",
+              cpu_model().c_str(), HB_BUILD, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION,
+              Eigen::SimdInstructionSetsInUse());
+  std::printf("system,modes,quantity,method,asked,size,error,claimed,seconds_min,seconds_median\n");
+  for (const Case& c : all_cases()) {
+    steady_rows(c);
+    growth_rows(c);
+  }
+}
