@@ -2,9 +2,11 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-../../tools/study_run.sh tuned 'tuned.toml history.csv curves_*.csv before_after.svg campbell_*.svg map.svg' \
-  tune scene.toml --minimise mass --vary AB.section.height=5:30 --vary CD.section.height=5:30 \
-  --keep 'stable>=5' --keep 'deflection<=2' --over rpm=300:3000 --speeds 12
+rm -rf tuned
+hb tune scene.toml --minimise mass --vary AB.section.height=5:30 --vary CD.section.height=5:30 \
+  --keep 'stable>=5' --keep 'deflection<=2' --over rpm=300:3000 --speeds 12 --out tuned >tune.txt
+mv tune.txt tuned
+rm tuned/*.png tuned/tune.json tuned/plots.gp tuned/campbell_*.csv tuned/map*.csv
 
 # The same by brute force: everywhere coarsely, then finely around the lightest design that keeps both conditions.
 ./grid.sh "$(seq -s' ' 5 5 30)" "$(seq -s' ' 5 5 30)" >grid_coarse.csv

@@ -2,9 +2,11 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-../../tools/study_run.sh tuned 'tuned.toml history.csv curves_*.csv before_after.svg campbell_*.svg map.svg' \
-  tune scene.toml --minimise force:rod.0 --vary rod.section.width=0.005:0.014 --vary rod.section.height=0.006:0.024 \
-  --keep 'stress<=150' --keep 'stable>=20' --over rpm=6000:12000 --speeds 8
+rm -rf tuned
+hb tune scene.toml --minimise force:rod.0 --vary rod.section.width=0.005:0.014 --vary rod.section.height=0.006:0.024 \
+  --keep 'stress<=150' --keep 'stable>=20' --over rpm=6000:12000 --speeds 8 --out tuned >tune.txt
+mv tune.txt tuned
+rm tuned/*.png tuned/tune.json tuned/plots.gp tuned/campbell_*.csv tuned/map*.csv
 
 # The same by brute force: everywhere coarsely, then finely around the best section that keeps both conditions.
 ./grid.sh "$(seq -s' ' 5 1.5 14)" "$(seq -s' ' 6 3 24)" >grid_coarse.csv
