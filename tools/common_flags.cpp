@@ -87,6 +87,13 @@ Speeds speeds_flag(const std::string& flag, const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
+// An empty text stands for a flag that was not given: one that is given has something to say.
+void add_value(CLI::App& app, const char* name, std::string& text, const char* meaning, const char* type) {
+  app.add_option(name, text, meaning)->type_name(type)->check([](const std::string& value) {
+    return value.empty() ? std::string("found \"\", allowed: a value") : std::string();
+  });
+}
+
 }  // namespace
 
 double number_flag(const std::string& flag, const std::string& text, double lowest, double highest,
@@ -130,12 +137,13 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
   app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
 }
 
+void add_bound_flag(CLI::App& app, CommonFlags& flags) {
+  add_value(app, "--bound", flags.bound, "error bound: estimated, or proved where a proof is found", "KIND");
+}
+
 void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
-  // An empty text stands for a flag that was not given: one that is given has something to say.
   const auto add = [&](const char* name, std::string& text, const char* meaning, const char* type) {
-    app.add_option(name, text, meaning)->type_name(type)->check([](const std::string& value) {
-      return value.empty() ? std::string("found \"\", allowed: a value") : std::string();
-    });
+    add_value(app, name, text, meaning, type);
   };
   add("--modes", flags.modes, "Ritz terms per elastic link, 1 to 60, or auto", "I");
   add("--tol", flags.tolerance, "relative error wanted, 1e-14 to 0.1", "T");
@@ -187,6 +195,10 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                                                      {{"automatic", SteadyMethod::automatic},
                                                       {"direct", SteadyMethod::direct},
                                                       {"iterative", SteadyMethod::iterative}});
+  }
+  if (!flags.bound.empty()) {
+    result.bound = choice_flag<SteadyBound>("--bound", flags.bound,
+                                            {{"estimated", SteadyBound::estimated}, {"proved", SteadyBound::proved}});
   }
   if (!flags.stability_method.empty()) {
     result.stability_method = choice_flag<StabilityMethod>("--stability-method", flags.stability_method,

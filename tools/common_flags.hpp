@@ -20,7 +20,7 @@ namespace hb::tools {
 // As written on the command line; an empty text is a flag that was not given.
 struct CommonFlags {
   std::string scene_file;
-  std::string modes, tolerance, rods, only, rpm, omega, threads, steady_method, stability_method;
+  std::string modes, tolerance, rods, only, rpm, omega, threads, steady_method, stability_method, bound;
   std::optional<std::string> out;
   std::vector<std::string> set;
   bool json = false, no_plots = false, stats = false;
@@ -43,6 +43,7 @@ struct Settings {
   bool json = false, plots = true, stats = false;
   int threads = 1;
   SteadyMethod steady_method = SteadyMethod::automatic;
+  SteadyBound bound = SteadyBound::estimated;
   StabilityMethod stability_method = StabilityMethod::automatic;
 };
 
@@ -50,6 +51,8 @@ struct Settings {
 void add_scene_flags(CLI::App& app, CommonFlags& flags);
 // --modes, --tol, --rods, --only, --rpm, --omega, --threads, --steady-method, --stability-method.
 void add_analysis_flags(CLI::App& app, CommonFlags& flags);
+// --bound: for single speeds.
+void add_bound_flag(CLI::App& app, CommonFlags& flags);
 
 // --set as overrides; throws UsageError unless each is PATH=VALUE.
 [[nodiscard]] std::vector<Override> overrides(const CommonFlags& flags);

@@ -45,6 +45,7 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
   }
   json["q"] = {{"max_abs", std::move(max_abs)}, {"crank_angle", std::move(angles)}, {"fourier", fourier_json(state.q)}};
   json["error_bound"] = state.status == SteadyStatus::singular ? Json() : Json(state.error_bound);
+  json["error_bound_proved"] = state.bound == SteadyBound::proved;
   json["residual"] = state.residual;
   json["resonance_distance"] = state.resonance_distance;
   json["steady_method"] = method_text(state.method);

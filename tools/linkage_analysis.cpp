@@ -48,6 +48,7 @@ SteadyOptions steady_options(const Settings& settings) {
   SteadyOptions options;
   options.tolerance = settings.tolerance;
   options.method = settings.steady_method;
+  options.bound = settings.bound;
   // The difference between two numbers of modes must not drown in the error of either.
   if (is_auto(settings)) options.tolerance = std::max(0.05 * settings.tolerance, 1e-14);
   return options;

@@ -37,7 +37,8 @@ void add_steady(Text& text, const RodResult& rod, const OutputUnits& units, bool
         rod.max_abs[i].crank_angle * degrees_per_radian);
   }
   if (shown < rod.max_abs.size()) add(text, "    ... {} more (--json has all)\n", rod.max_abs.size() - shown);
-  add(text, "  error bound       {:.1e} of the largest |q|{}\n", state.error_bound,
+  add(text, "  error bound       {:.1e} of the largest |q|{}{}\n", state.error_bound,
+      state.bound == SteadyBound::proved ? ", proved" : "",
       state.error_bound <= tolerance ? "" : fmt::format("  NOT REACHED: asked {:.1e}", tolerance));
   add(text, "  resonance         {:.3g} away (1: far, 0: at resonance)\n", state.resonance_distance);
 }

@@ -178,6 +178,20 @@ TEST_F(Steady, FlagsWinOverTheScene) {
   EXPECT_EQ(by_omega["rods"]["AB"]["growth_rate"], plain["rods"]["AB"]["growth_rate"]);
 }
 
+TEST_F(Steady, AProvedBoundIsSaidToBeProvedAndIsNearTheEstimate) {
+  const auto bound = [&](const std::string& flags) {
+    const Json json = document("steady " + scene("six_link") + " --rpm 300 --only steady " + flags);
+    return std::pair{json["rods"]["AB"]["error_bound_proved"].get<bool>(),
+                     json["rods"]["AB"]["error_bound"].get<double>()};
+  };
+  const auto [estimated_proved, estimated] = bound("");
+  const auto [proved_proved, proved] = bound("--bound proved");
+  EXPECT_FALSE(estimated_proved);
+  EXPECT_TRUE(proved_proved);
+  EXPECT_LE(proved, 10 * estimated);
+  EXPECT_NE(hb("steady " + scene("six_link") + " --rpm 300 --bound proved").out.find(", proved"), std::string::npos);
+}
+
 TEST_F(Steady, AutoModesReachTheToleranceOnTheDeflection) {
   const Json found = document("steady " + scene("six_link") + " --rpm 1500 --modes auto --tol 1e-6");
   for (const Json& rod : found["rods"]) {
@@ -357,6 +371,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongFlag{"--rpm 300 --threads 0", "--threads: found \"0\"", "1 to"},
         WrongFlag{"--rpm 300 --set AB.J", "--set: found \"AB.J\"", "PATH=VALUE"},
         WrongFlag{"--rpm 300 --set AB.J=", "--set", "PATH=VALUE"}, WrongFlag{"--rpm 300 --set AB.J=-1", "AB.J", "> 0"},
+        WrongFlag{"--rpm 300 --bound firm", "--bound", "proved"},
         WrongFlag{"--rpm 300 --steady-method magic", "--steady-method", "iterative"},
         WrongFlag{"--rpm 300 --stability-method magic", "--stability-method", "propagation"},
         WrongFlag{"--rpm 300 --rpm 400", "--rpm", "--help"}, WrongFlag{"--rpm", "--rpm", "--help"},
