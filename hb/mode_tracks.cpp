@@ -17,7 +17,7 @@ constexpr double farthest_renamed = 0.5;
 // Two exponents of one mode: a conjugate pair, or two that are locked to the crank (or overdamped).
 struct Pair {
   double growth, growth_low;
-  double folded;     // |Im|
+  double folded;  // |Im|
   double frequency;  // as named
   int mode;
 };
@@ -60,8 +60,7 @@ double unfolded(const Pair& pair, double speed, double expected) {
       const double middle = std::round((near - sign * pair.folded) / speed);
       for (const double k : {middle - 1, middle, middle + 1}) {
         const double frequency = std::abs(sign * pair.folded + k * speed);
-        const double distance =
-            std::abs(frequency - expected) + weight_of_name * std::abs(frequency - pair.frequency);
+        const double distance = std::abs(frequency - expected) + weight_of_name * std::abs(frequency - pair.frequency);
         if (distance < least) {
           least = distance;
           best = frequency;
@@ -69,7 +68,10 @@ double unfolded(const Pair& pair, double speed, double expected) {
       }
     }
   }
-  return std::abs(best - pair.frequency) <= 1e-9 * speed ? pair.frequency : best;
+  // The motion's main harmonic is the one followed or one beside it; further off the expectation has gone astray.
+  constexpr double farthest_from_name = 1.25;
+  const double off = std::abs(best - pair.frequency);
+  return off <= 1e-9 * speed || off > farthest_from_name * speed ? pair.frequency : best;
 }
 
 }  // namespace
@@ -86,7 +88,8 @@ std::vector<ModeState> modes_by_name(const Stability& stability, int num_modes) 
     }
   }
   for (const Pair& pair : homeless) {
-    const auto free = std::find_if(states.begin(), states.end(), [](const ModeState& s) { return std::isnan(s.frequency); });
+    const auto free =
+        std::find_if(states.begin(), states.end(), [](const ModeState& s) { return std::isnan(s.frequency); });
     if (free != states.end()) *free = {pair.frequency, pair.growth, pair.growth_low};
   }
   return states;
@@ -169,8 +172,10 @@ std::vector<std::vector<ModeState>> track_modes(const std::vector<TrackedPlace>&
         if (seen[m].size() == 2 && last.x > seen[m].front().x) {
           const Seen& first = seen[m].front();
           const double reach = (place.x - last.x) / (last.x - first.x);
-          // Frequencies go on straight; growth rates have corners where pairs lock.
-          if (reach <= 3) expected[m].frequency += reach * (last.state.frequency - first.state.frequency);
+          // Frequencies go on straight, unless they have just been unfolded anew; growth rates have corners where pairs
+          // lock.
+          const bool steady = std::abs(last.state.frequency - first.state.frequency) <= 0.75 * place.speed;
+          if (reach <= 3 && steady) expected[m].frequency += reach * (last.state.frequency - first.state.frequency);
         }
         expected[m].frequency = std::abs(expected[m].frequency);
       }

@@ -110,12 +110,10 @@ class Mesh {
   }
 
  private:
-  void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
-    if (options_.parallel_for) {
-      options_.parallel_for(count, work);
-    } else {
-      for (std::size_t k = 0; k < count; ++k) work(k);
-    }
+  template <class Result, class Visit>
+  std::vector<Result> results(std::size_t count, const std::function<Result(std::size_t)>& compute,
+                              const Visit& visit) const {
+    return computed_parts<Result>(options_.parts, count, compute, visit);
   }
 
   // All exponents at a node; the leading ones suffice elsewhere.
@@ -180,15 +178,26 @@ class Mesh {
 
   // Samples at the nodes and crossings of the edges that are new.
   void evaluate() {
-    for_each(nodes_.size() - evaluated_nodes_, [this](std::size_t k) {
-      Node& node = nodes_[evaluated_nodes_ + k];
-      node.sample = sample(x_.at(node.i), y_.at(node.j), options_.search.stability);
-      if (node.sample) node.sample->stability.evidence = {};
-    });
-    evaluated_nodes_ = nodes_.size();
+    using Sample = std::optional<StabilitySample>;
+    std::vector<Sample> samples = results<Sample>(
+        nodes_.size() - evaluated_nodes_,
+        [this](std::size_t k) {
+          const Node& node = nodes_[evaluated_nodes_ + k];
+          return sample(x_.at(node.i), y_.at(node.j), options_.search.stability);
+        },
+        [](auto& visit, Sample& sample) {
+          visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
+        });
+    for (Sample& sample : samples) nodes_[evaluated_nodes_++].sample = std::move(sample);
 
-    std::vector<std::optional<std::vector<StabilityBoundary>>> found(new_edges_.size());
-    for_each(new_edges_.size(), [&](std::size_t k) { found[k] = crossings_of(new_edges_[k]); });
+    using Found = std::optional<std::vector<StabilityBoundary>>;
+    const std::vector<Found> found = results<Found>(
+        new_edges_.size(), [this](std::size_t k) { return crossings_of(new_edges_[k]); },
+        [](auto& visit, Found& crossings) {
+          visit_if_there(visit, crossings, [&](std::vector<StabilityBoundary>& all) {
+            visit_elements(visit, all, [&](StabilityBoundary& boundary) { visit_boundary(visit, boundary); });
+          });
+        });
     for (std::size_t k = 0; k < new_edges_.size(); ++k) {
       if (!found[k]) continue;
       Edge& edge = edges_[new_edges_[k].edge];
@@ -297,14 +306,18 @@ class Mesh {
 
   StabilityBoundary located(const SystemAt& along, const StabilitySample& p, const StabilitySample& q) const {
     StabilityBoundary boundary = locate_boundary(along, p, q, search_);
-    // At the boundary itself rounding may hide that the exponent is locked: a millionth inside it shows.
+    // At the boundary itself rounding may hide that the exponent is locked: a little inside it shows.
     const StabilitySample& unstable = is_unstable(p) ? p : q;
     if (boundary.kind == BoundaryKind::complex) {
       const double room = unstable.x - boundary.x;
-      const double step = std::min(std::abs(room), 1e-6 * std::max(std::abs(p.x), std::abs(q.x)));
-      const std::optional<StabilitySample> inside =
-          stability_sample(along, boundary.x + std::copysign(step, room), search_.stability);
-      if (inside && is_unstable(*inside)) boundary.kind = boundary_kind(inside->stability, inside->speed);
+      for (const double away : {1e-6, 1e-5, 1e-4}) {
+        const double step = std::min(std::abs(room), away * std::max(std::abs(p.x), std::abs(q.x)));
+        const std::optional<StabilitySample> inside =
+            stability_sample(along, boundary.x + std::copysign(step, room), search_.stability);
+        if (!inside || !is_unstable(*inside) || !leading_resolved(inside->stability)) continue;
+        boundary.kind = boundary_kind(inside->stability, inside->speed);
+        break;
+      }
       // One oscillator leaves at +1 or -1 only.
       if (num_modes_ == 1) boundary.kind = boundary_kind(unstable.stability, unstable.speed);
     }
@@ -429,13 +442,14 @@ class Mesh {
       return !crossings.empty() || (present > 0 && present < 4) || (present == 4 && uneven(cell));
     }
     if (present < 4 || crossings.empty()) return false;
-    if (crossings.size() > 2) return !thin_tongue(cell);
+    if (crossings.size() > 2) return !thin_band(cell);
     const Crossing &p = crossings_[crossings[0]], &q = crossings_[crossings[1]];
     return p.boundary.kind != q.boundary.kind || one_side(cell);
   }
 
-  // Two crossings of one kind on each of two sides, in a cell smaller than the grid's: a tongue passes through.
-  bool thin_tongue(const Cell& cell) const {
+  // Two crossings of one kind on each of two sides, in a cell smaller than the grid's: a tongue, or the gap between
+  // two, passes through.
+  bool thin_band(const Cell& cell) const {
     if (width(cell) >= x_.units || height(cell) >= y_.units) return false;
     std::vector<std::size_t> all;
     for (const std::size_t e : cell.edges) {
@@ -444,8 +458,10 @@ class Mesh {
       if (all.size() != before && all.size() != before + 2) return false;
     }
     const auto kind = [&](std::size_t c) { return crossings_[c].boundary.kind; };
-    return all.size() == 4 && !nodes_[cell.corners[0]].unstable() &&
-           std::all_of(all.begin(), all.end(), [&](std::size_t c) { return kind(c) == kind(all[0]); });
+    // A gap between two tongues has two kinds.
+    return all.size() == 4 &&
+           (nodes_[cell.corners[0]].unstable() ||
+            std::all_of(all.begin(), all.end(), [&](std::size_t c) { return kind(c) == kind(all[0]); }));
   }
 
   // Both crossings on one side: the tip of a tongue.
@@ -534,18 +550,17 @@ class Mesh {
       if (rims[c].size() >= 2 && rims[c].size() % 2 == 0) crossed.push_back(c);
       if (rims[c].size() > 2 && rims[c].size() % 2 == 0) unclear.push_back(c);
     }
-    std::vector<char> centre_unstable(unclear.size(), 0);
-    for_each(unclear.size(), [&](std::size_t k) {
-      const Cell& cell = cells_[unclear[k]];
-      if (thin_tongue(cell)) {
-        centre_unstable[k] = 1;
-        return;
-      }
-      const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
-      const auto s =
-          sample(0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)), search_.stability);
-      centre_unstable[k] = s && is_unstable(*s);
-    });
+    const std::vector<bool> centre_unstable = results<bool>(
+        unclear.size(),
+        [&](std::size_t k) {
+          const Cell& cell = cells_[unclear[k]];
+          if (thin_band(cell)) return !nodes_[cell.corners[0]].unstable();
+          const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
+          const auto s =
+              sample(0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)), search_.stability);
+          return s && is_unstable(*s);
+        },
+        [](auto& visit, bool& unstable) { visit_as_number(visit, unstable); });
     std::vector<CurveLink> links;
     std::size_t next_unclear = 0;
     for (const std::size_t c : crossed) {
@@ -555,7 +570,7 @@ class Mesh {
         continue;
       }
       const bool start = nodes_[cells_[c].corners[0]].unstable();
-      for (const auto& [p, q] : joined_in_cell(r.size(), start, centre_unstable[next_unclear] != 0)) {
+      for (const auto& [p, q] : joined_in_cell(r.size(), start, centre_unstable[next_unclear])) {
         links.push_back({{r[p], r[q]}, c});
       }
       ++next_unclear;

@@ -8,23 +8,22 @@
 #include <vector>
 
 #include "hb/boundary_curve.hpp"
+#include "hb/part.hpp"
 #include "hb/stability.hpp"
 #include "hb/sweep.hpp"
 
 namespace hb {
 
 // Empty where there is no system (a linkage that does not close). Same place, same result; called from several threads
-// when parallel_for uses several.
+// when the parts are computed by several.
 using MapSystemAt = std::function<std::optional<ScaledSystem>(double x, double y)>;
-// Calls work(0) .. work(count - 1), each once, in any order.
-using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
 
 struct MapOptions {
   SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
   std::size_t evaluate_all = 40000;  // grids of at most so many points are evaluated at every point
-  double sag = 2e-4;  // of a boundary's chord, relative to the map's width and height
+  double sag = 5e-4;  // of a boundary's chord, relative to the map's width and height
   bool curves_only = false;  // no grid values; the grid serves the search alone
-  ParallelFor parallel_for;  // empty: one after the other
+  PartsOf parts;  // who computes the parts of a step; empty: one after the other
 };
 
 enum class MapSource {

@@ -89,6 +89,23 @@ class Search {
     return highest(line, low, *middle, high);
   }
 
+  // Between a real multiplier above 1 and one below -1 both must come together and turn through the complex plane:
+  // halved between the last +1 and the first -1 until that shows.
+  std::optional<StabilitySample> turning() {
+    const BoundaryKind first = boundary_kind(a_.sample.stability, a_.sample.speed);
+    double low = a_.sample.x, high = b_.sample.x;
+    while (high - low > 1e-12 * scale_of(low, high)) {
+      const double x = 0.5 * (low + high);
+      if (!(x > low && x < high)) break;
+      std::optional<StabilitySample> middle = stability_sample(at_, x, options_.stability);
+      if (!middle || !is_unstable(*middle)) return middle;
+      const BoundaryKind kind = boundary_kind(middle->stability, middle->speed);
+      if (kind == BoundaryKind::complex) break;
+      (kind == first ? low : high) = x;
+    }
+    return std::nullopt;
+  }
+
   // Least growth between two unstable ends whose exponents lie at different places: a stable gap may be between.
   std::optional<StabilitySample> lowest() {
     std::optional<Place> middle = place(0.5 * (a_.sample.x + b_.sample.x), a_, b_);
@@ -216,15 +233,10 @@ double ResonanceStrength::operator()(std::size_t i, std::size_t j, double k) {
   return safety * coupling(static_cast<Index>(j), static_cast<Index>(k) - 1);
 }
 
-namespace {
-
-// The exponents that are resolved begin with the one that gives the growth rate.
 bool leading_resolved(const Stability& stability) {
   return !stability.exponents.empty() &&
          stability.exponents.front().value.real() >= stability.growth_rate - stability.growth_error;
 }
-
-}  // namespace
 
 BoundaryKind boundary_kind(const Stability& stability, double speed) {
   if (!leading_resolved(stability)) return BoundaryKind::complex;
@@ -255,8 +267,11 @@ std::vector<StabilitySample> look_between(const SystemAt& at, const StabilitySam
   const Place start{a, modes_a}, end{b, modes_b};
   Search search(at, start, end, options);
   if (is_unstable(a)) {
-    if (boundary_kind(a.stability, a.speed) != boundary_kind(b.stability, b.speed)) {
-      if (std::optional<StabilitySample> gap = search.lowest()) found.push_back(std::move(*gap));
+    const BoundaryKind kind_a = boundary_kind(a.stability, a.speed), kind_b = boundary_kind(b.stability, b.speed);
+    if (kind_a != kind_b) {
+      const bool turns = kind_a != BoundaryKind::complex && kind_b != BoundaryKind::complex;
+      if (std::optional<StabilitySample> gap = turns ? search.turning() : search.lowest())
+        found.push_back(std::move(*gap));
     }
     return found;
   }

@@ -47,6 +47,9 @@ class ResonanceStrength {
   std::vector<Eigen::MatrixXd> of_mode_;
 };
 
+// The exponents that are resolved begin with the one that gives the growth rate.
+[[nodiscard]] bool leading_resolved(const Stability& stability);
+
 // How the leading exponent leaves: multiplier +1, -1 (half the crank's speed), or a complex pair.
 enum class BoundaryKind { plus_one, minus_one, complex };
 [[nodiscard]] BoundaryKind boundary_kind(const Stability& stability, double speed);

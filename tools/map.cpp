@@ -19,7 +19,7 @@
 #include "tools/output_folder.hpp"
 #include "tools/parallel_for.hpp"
 #include "tools/parameter_range.hpp"
-#include "tools/progress.hpp"
+#include "tools/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -29,6 +29,7 @@ constexpr Eigen::Index default_modes = 5;
 
 struct MapFlags : CommonFlags {
   std::string x, y, damping_range, colour = "growth";
+  bool resume = false;
 };
 
 struct AxisRange {
@@ -188,6 +189,34 @@ std::vector<Figure> write_tables(const MapDocument& document, MapColour colour, 
   return {map_figure(document, files, colour)};
 }
 
+// Of everything that the map depends on; numbers of the scene by what they lead to, at the corners and inside.
+std::uint64_t map_key(const ScenePlane& plane, const AxisRange& x, const AxisRange& y, const Settings& settings,
+                      const std::optional<Factors>& factors) {
+  TaskKey key;
+  key.add("map");
+  for (const AxisRange* range : {&x, &y}) {
+    key.add(range->axis.path);
+    for (const double value : range->values) key.add(value);
+  }
+  key.add(settings.tolerance).add(static_cast<double>(settings.stability_method));
+  key.add(factors ? factors->low : -1).add(factors ? factors->high : -1);
+  for (const double s : {0.0, 0.37, 1.0}) {
+    for (const double t : {0.0, 0.61, 1.0}) {
+      for (std::size_t r = 0; r < plane.rods().size(); ++r) {
+        key.add(plane.rods()[r]);
+        const std::optional<ScaledSystem> system =
+            plane.system(r, x.axis.from + s * (x.axis.to - x.axis.from), y.axis.from + t * (y.axis.to - y.axis.from));
+        key.add(system ? static_cast<double>(system->num_modes()) : -1);
+        if (!system) continue;
+        key.add(system->speed);
+        for (const double value : system->G.reshaped()) key.add(value);
+        for (const std::complex<double> value : system->K.c.reshaped()) key.add(value.real()).add(value.imag());
+      }
+    }
+  }
+  return key.value();
+}
+
 int run_map(const MapFlags& flags) {
   const AxisRange x = axis_range("--x", flags.x), y = axis_range("--y", flags.y);
   const MapColour colour = colour_flag(flags.colour);
@@ -207,10 +236,9 @@ int run_map(const MapFlags& flags) {
   plane_options.num_modes = std::holds_alternative<int>(options.modes) ? std::get<int>(options.modes) : default_modes;
   if (!is_speed(x) && !is_speed(y)) plane_options.speed = single_speed(flags, scene);
   plane_options.rods = options.rods;
-  const auto spread = [&options](std::size_t count, const std::function<void(std::size_t)>& work) {
+  plane_options.parallel_for = [&options](std::size_t count, const std::function<void(std::size_t)>& work) {
     parallel_for(count, options.threads, work);
   };
-  plane_options.parallel_for = spread;
   const auto plane_with = [&](const std::vector<Override>& further) {
     std::vector<Override> all = set;
     all.insert(all.end(), further.begin(), further.end());
@@ -223,17 +251,13 @@ int run_map(const MapFlags& flags) {
   search.search.stability.method = options.stability_method;
   search.search.stability.tolerance = std::clamp(0.1 * options.tolerance, 1e-13, 1e-9);
   search.search.tolerance = std::clamp(0.1 * options.tolerance, 1e-14, 1e-6);
-  search.parallel_for = [&](std::size_t count, const std::function<void(std::size_t)>& work) {
-    Progress progress("stability map, this step", count);
-    spread(count, [&](std::size_t k) {
-      work(k);
-      progress.advance();
-    });
-  };
 
   const ScenePlane plane = plane_with({});
-  MapResult result = compute_map(plane, x.axis, x.values, y.axis, y.values, search);
-  if (factors) {
+  MapResult result;
+  const auto compute = [&](SharedWork& work) {
+    search.parts = work.of("stability map, this step");
+    result = compute_map(plane, x.axis, x.values, y.axis, y.values, search);
+    if (!factors) return;
     const std::filesystem::path file(flags.scene_file);
     const SceneSource as_set(source.text_with(set), flags.scene_file, file.parent_path());
     for (const double factor : {factors->low, factors->high}) {
@@ -246,6 +270,9 @@ int run_map(const MapFlags& flags) {
       }
       result.damping.push_back({factor, worst_boundaries(damped, maps, search)});
     }
+  };
+  if (!run_kept("map", options.out, flags.resume, map_key(plane, x, y, options, factors), options.threads, compute)) {
+    return exit_interrupted;
   }
 
   const MapDocument document{result, plane.scene(), plane_options.num_modes, search.search.tolerance};
@@ -288,6 +315,7 @@ void add_map_command(CLI::App& app, int& status) {
   command
       ->add_option("--colour", flags->colour, "colours of the picture: growth, turn (growth per turn), tenfold (time)")
       ->type_name("WHAT");
+  command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
   command->callback([flags, &status] { status = run_map(*flags); });
 }
 

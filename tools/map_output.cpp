@@ -123,7 +123,6 @@ Json map_json(const MapDocument& document) {
     add_grids(rod, r.maps[k], r.maps[k].points);
     rod["boundaries"] = Json::array();
     for (const BoundaryCurve& curve : r.maps[k].boundaries) rod["boundaries"].push_back(curve_json(curve));
-    rod["samples"] = r.maps[k].samples;
   }
   json["rods"] = std::move(rods);
   if (!r.damping.empty()) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tools/output_units.hpp"
+#include "tools/path_unit.hpp"
 #include "tools/wording.hpp"
 
 namespace hb::tools {
@@ -19,7 +21,7 @@ constexpr const char* palette =
 std::string axis_label(const MapDocument& document, const PlaneAxis& axis) {
   if (axis.role == PlaneAxis::Role::rpm) return quoted("speed [rpm]");
   if (axis.role == PlaneAxis::Role::omega) return quoted("speed [rad/" + document.scene.units.time + "]");
-  return quoted(axis.path);
+  return quoted(axis.path + bracketed(path_unit(axis.path, document.scene.units)));
 }
 
 struct ColourScale {
@@ -126,7 +128,8 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "set title '{{/:Bold {}}}'.\"\\n\".{}\n"
       "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {}\n"
       "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
-      "set key outside below horizontal samplen 3 width 1\n"
+      "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom horizontal maxrows 4 samplen 3 "
+      "width 1\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(scene_name(document.scene)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),
       r.y().front(), r.y().back(), axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label),
@@ -182,7 +185,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
     }
   }
   figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));
-  figure.commands += "unset label\nunset object\nset key\nset xrange [*:*]\nset yrange [*:*]\n";
+  figure.commands += "unset label\nunset object\nset key default\nset bmargin -1\nset xrange [*:*]\nset yrange [*:*]\n";
   return figure;
 }
 

@@ -9,14 +9,6 @@ namespace {
 
 constexpr std::size_t max_lines = 10;
 
-void for_each(const MapOptions& search, std::size_t count, const std::function<void(std::size_t)>& work) {
-  if (search.parallel_for) {
-    search.parallel_for(count, work);
-  } else {
-    for (std::size_t k = 0; k < count; ++k) work(k);
-  }
-}
-
 // Least stable point of all rods: unstable before undecided before stable, then by growth.
 MapPoint worse(const MapPoint& a, const MapPoint& b) {
   if (a.source == MapSource::missing || b.source == MapSource::missing) return {};
@@ -80,17 +72,21 @@ std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vecto
       for (const BoundaryPoint& p : curve.points) places.push_back({r, p.x, p.y});
     }
   }
-  std::vector<char> hidden(places.size(), 0);
+  std::vector<bool> hidden(places.size(), false);
   if (maps.size() > 1) {
     StabilityOptions options = search.search.stability;
     options.leading_only = true;
-    for_each(search, places.size(), [&](std::size_t k) {
-      for (std::size_t r = 0; r < maps.size() && !hidden[k]; ++r) {
-        if (r == places[k].rod) continue;
-        const std::optional<ScaledSystem> system = plane.system(r, places[k].x, places[k].y);
-        hidden[k] = system && analyse_stability(*system, options).verdict == Verdict::unstable;
-      }
-    });
+    hidden = computed_parts<bool>(
+        search.parts, places.size(),
+        [&](std::size_t k) {
+          for (std::size_t r = 0; r < maps.size(); ++r) {
+            if (r == places[k].rod) continue;
+            const std::optional<ScaledSystem> system = plane.system(r, places[k].x, places[k].y);
+            if (system && analyse_stability(*system, options).verdict == Verdict::unstable) return true;
+          }
+          return false;
+        },
+        [](auto& visit, bool& is_hidden) { visit_as_number(visit, is_hidden); });
   }
   std::vector<RodCurve> result;
   std::size_t k = 0;

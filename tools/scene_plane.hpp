@@ -16,6 +16,9 @@
 
 namespace hb::tools {
 
+// Calls work(0) .. work(count - 1), each once, in any order.
+using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
+
 struct PlaneAxis {
   enum class Role { rpm, omega, scene_number };
   Role role = Role::scene_number;

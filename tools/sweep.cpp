@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "tools/checkpoint.hpp"
 #include "tools/command.hpp"
 #include "tools/common_flags.hpp"
 #include "tools/json_output.hpp"
 #include "tools/output_folder.hpp"
 #include "tools/parameter_range.hpp"
+#include "tools/shared_work.hpp"
 #include "tools/sweep_analysis.hpp"
 #include "tools/sweep_figures.hpp"
 #include "tools/sweep_output.hpp"
@@ -21,8 +21,6 @@
 
 namespace hb::tools {
 namespace {
-
-constexpr int exit_interrupted = 130;  // as shells report Ctrl-C
 
 struct SweepFlags : CommonFlags {
   std::string x;
@@ -49,9 +47,10 @@ AxisAndSpeed axis_of(const SweepFlags& flags, const Scene& scene) {
     axis.path = in_rpm ? "rpm" : "omega";
     const std::string flag = "--" + axis.path;
     if (speeds.from == speeds.to || speeds.step == 0) {
-      throw UsageError(fmt::format("{}: found the single speed {}, allowed: a range FROM:TO:STEP (hb steady does one "
-                                   "speed)",
-                                   flag, speeds.from));
+      throw UsageError(
+          fmt::format("{}: found the single speed {}, allowed: a range FROM:TO:STEP (hb steady does one "
+                      "speed)",
+                      flag, speeds.from));
     }
     axis.values = range_by_step(flag, speeds.from, speeds.to, speeds.step);
     require_speeds(flag, axis, scene.units);
@@ -109,41 +108,6 @@ std::vector<Figure> write_tables(const SweepScene& scene, const SweepResult& res
   return figures;
 }
 
-std::filesystem::path part_file(std::filesystem::path folder) {
-  if (!folder.has_filename()) folder = folder.parent_path();
-  return folder.string() + ".part";
-}
-
-std::optional<SweepResult> run_with_checkpoint(const SweepScene& scene, const std::filesystem::path& file, bool resume) {
-  Checkpoint checkpoint(file, sweep_key(scene), resume, "the same scene and flags");
-  if (resume) {
-    fmt::print(stderr, "hb sweep: {} of {} points were finished\n", checkpoint.num_finished(),
-               scene.axis().values.size());
-  }
-  SweepHooks hooks;
-  hooks.finished = [&](std::size_t k) -> std::optional<SweepPoint> {
-    const std::vector<double>* part = checkpoint.find(k);
-    return part ? unpacked(*part) : std::nullopt;
-  };
-  hooks.store = [&](std::size_t k, const SweepPoint& point) { checkpoint.store(k, packed(point)); };
-  hooks.stop = interrupted;
-  const InterruptGuard guard;
-  std::optional<SweepResult> result;
-  try {
-    result = run_sweep(scene, hooks);
-  } catch (...) {
-    checkpoint.remove();
-    throw;
-  }
-  if (result) {
-    checkpoint.remove();
-  } else {
-    fmt::print(stderr, "hb sweep: stopped; finished points are kept in {}: the same command with --resume goes on\n",
-               file.string());
-  }
-  return result;
-}
-
 int run_sweep_command(const SweepFlags& flags) {
   SceneSource source(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
@@ -153,13 +117,11 @@ int run_sweep_command(const SweepFlags& flags) {
   std::optional<OutputFolder> folder;
   if (options.out) folder.emplace(*options.out);
 
-  if (flags.resume && !options.out) throw UsageError("--resume: found no --out, allowed: the folder of the run to go on with");
-
   const SweepScene sweep_scene(std::move(source), set, options, std::move(asked.axis), asked.speed, asked.rpm);
-  const std::optional<SweepResult> finished =
-      folder ? run_with_checkpoint(sweep_scene, part_file(*options.out), flags.resume) : run_sweep(sweep_scene);
+  SweepResult result;
+  const bool finished = run_kept("sweep", options.out, flags.resume, sweep_key(sweep_scene), options.threads,
+                                 [&](SharedWork& work) { result = run_sweep(sweep_scene, work); });
   if (!finished) return exit_interrupted;
-  const SweepResult& result = *finished;
   const nlohmann::ordered_json document =
       options.json || folder ? sweep_json(sweep_scene, result) : nlohmann::ordered_json();
   if (folder) {

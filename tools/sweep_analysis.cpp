@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "tools/command.hpp"
-#include "tools/parallel_for.hpp"
-#include "tools/progress.hpp"
+#include "tools/shared_work.hpp"
+#include "tools/sweep_parts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -289,7 +289,7 @@ ScenePlace SweepScene::at(double x) const {
   return place;
 }
 
-std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& hooks) {
+SweepResult run_sweep(const SweepScene& scene, SharedWork& work) {
   const Settings& settings = scene.settings();
   const std::vector<double>& values = scene.axis().values;
   const SceneModel& model = scene.first();
@@ -303,20 +303,9 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
 
   // The points asked for.
   Stopwatch watch;
-  result.points.resize(values.size());
-  {
-    Progress progress("sweep", values.size());
-    const bool complete = parallel_for(
-        values.size(), settings.threads,
-        [&](std::size_t k) {
-          std::optional<SweepPoint> earlier = hooks.finished ? hooks.finished(k) : std::nullopt;
-          result.points[k] = earlier ? std::move(*earlier) : analyse_point(scene, values[k], only);
-          if (!earlier && hooks.store) hooks.store(k, result.points[k]);
-          progress.advance();
-        },
-        hooks.stop);
-    if (!complete) return std::nullopt;
-  }
+  const auto visit_whole_point = [](auto& visit, SweepPoint& point) { visit_point(visit, point); };
+  result.points = work.results<SweepPoint>(
+      "sweep", values.size(), [&](std::size_t k) { return analyse_point(scene, values[k], only); }, visit_whole_point);
   result.stages.push_back({"points", watch.seconds(), fmt::format("{} points", values.size())});
 
   std::vector<std::size_t> reported;
@@ -342,24 +331,32 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
   // Between them: narrow bands and narrow resonances, each interval and rod on its own.
   Stopwatch between_watch;
   const std::size_t intervals = values.size() - 1, num_tasks = intervals * reported.size();
-  std::vector<std::vector<StabilitySample>> bands_between(num_tasks);
-  std::vector<std::vector<ResponseSample>> peaks_between(num_tasks);
+  struct Between {
+    std::vector<StabilitySample> bands;
+    std::vector<ResponseSample> peaks;
+  };
+  std::vector<Between> between(num_tasks);
   if (only.stability) {
-    const bool complete = parallel_for(
-        num_tasks, settings.threads,
+    between = work.results<Between>(
+        "narrow bands and peaks", num_tasks,
         [&](std::size_t task) {
+          Between found;
           const std::size_t r = reported[task / intervals], k = task % intervals;
           const SweepPoint &a = result.points[k], &b = result.points[k + 1];
-          if (!a.problem.empty() || !b.problem.empty()) return;
-          bands_between[task] = look_between([&](double x) { return along[r].system(x); }, *a.rods[r].stability,
-                                             *b.rods[r].stability, modes[r][k], modes[r][k + 1], sweep_options);
-          if (only.steady) {
-            peaks_between[task] =
-                resonances_between(along[r], a, b, a.rods[r], b.rods[r], modes[r][k], modes[r][k + 1]);
-          }
+          if (!a.problem.empty() || !b.problem.empty()) return found;
+          found.bands = look_between([&](double x) { return along[r].system(x); }, *a.rods[r].stability,
+                                     *b.rods[r].stability, modes[r][k], modes[r][k + 1], sweep_options);
+          if (only.steady)
+            found.peaks = resonances_between(along[r], a, b, a.rods[r], b.rods[r], modes[r][k], modes[r][k + 1]);
+          return found;
         },
-        hooks.stop);
-    if (!complete) return std::nullopt;
+        [](auto& visit, Between& found) {
+          visit_elements(visit, found.bands, [&](StabilitySample& sample) { visit_sample(visit, sample); });
+          visit_elements(visit, found.peaks, [&](ResponseSample& sample) {
+            visit(sample.x);
+            visit_elements(visit, sample.max_abs, visit);
+          });
+        });
   }
   result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
 
@@ -368,7 +365,6 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
   struct BoundaryTask {
     std::size_t rod;
     const StabilitySample *a, *b;
-    StabilityBoundary boundary;
   };
   std::vector<BoundaryTask> boundary_tasks;
   std::vector<std::vector<const StabilitySample*>> samples(result.rods.size());
@@ -379,29 +375,27 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
         const SweepPoint& point = result.points[k];
         samples[r].push_back(point.problem.empty() ? &*point.rods[r].stability : nullptr);
         if (k < intervals)
-          for (const StabilitySample& sample : bands_between[i * intervals + k]) samples[r].push_back(&sample);
+          for (const StabilitySample& sample : between[i * intervals + k].bands) samples[r].push_back(&sample);
       }
       for (std::size_t k = 1; k < samples[r].size(); ++k) {
         const StabilitySample *a = samples[r][k - 1], *b = samples[r][k];
-        if (a && b && is_unstable(*a) != is_unstable(*b)) boundary_tasks.push_back({r, a, b, {}});
+        if (a && b && is_unstable(*a) != is_unstable(*b)) boundary_tasks.push_back({r, a, b});
       }
     }
-    const bool complete = parallel_for(
-        boundary_tasks.size(), settings.threads,
+    const std::vector<StabilityBoundary> boundaries = work.results<StabilityBoundary>(
+        "boundaries", boundary_tasks.size(),
         [&](std::size_t k) {
-          BoundaryTask& task = boundary_tasks[k];
-          task.boundary =
-              locate_boundary([&](double x) { return along[task.rod].system(x); }, *task.a, *task.b, sweep_options);
+          const BoundaryTask& task = boundary_tasks[k];
+          return locate_boundary([&](double x) { return along[task.rod].system(x); }, *task.a, *task.b, sweep_options);
         },
-        hooks.stop);
-    if (!complete) return std::nullopt;
-    for (const BoundaryTask& task : boundary_tasks) {
-      if (!task.boundary.converged) {
+        [](auto& visit, StabilityBoundary& boundary) { visit_boundary(visit, boundary); });
+    for (std::size_t k = 0; k < boundaries.size(); ++k) {
+      SweepRod& rod = result.rods[boundary_tasks[k].rod];
+      if (!boundaries[k].converged) {
         result.shortfalls.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only",
-                                                result.rods[task.rod].name, scene.axis().path, task.boundary.x,
-                                                task.boundary.error));
+                                                rod.name, scene.axis().path, boundaries[k].x, boundaries[k].error));
       }
-      result.rods[task.rod].boundaries.push_back(task.boundary);
+      rod.boundaries.push_back(boundaries[k]);
     }
     for (const std::size_t r : reported) result.rods[r].bands = unstable_bands(samples[r], result.rods[r].boundaries);
   }
@@ -430,21 +424,21 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
           run.push_back({point.x, point.rods[r].max_abs});
         }
         if (k < intervals && !run.empty())
-          for (const ResponseSample& sample : peaks_between[i * intervals + k]) run.push_back(sample);
+          for (const ResponseSample& sample : between[i * intervals + k].peaks) run.push_back(sample);
       }
       finish();
     }
   }
-  std::vector<std::optional<CriticalPoint>> critical(tasks.size());
-  const bool located = parallel_for(
-      tasks.size(), settings.threads,
-      [&](std::size_t k) {
+  using MaybeCritical = std::optional<CriticalPoint>;
+  const std::vector<MaybeCritical> critical = work.results<MaybeCritical>(
+      "resonance peaks", tasks.size(),
+      [&](std::size_t k) -> MaybeCritical {
         const PeakTask& task = tasks[k];
         const RodAlong& rod = along[task.rod];
         const std::optional<ResponsePeak> peak = locate_peak(rod.largest(task.component, rough_steady_tolerance),
                                                              rod.largest(task.component, refined_steady_tolerance),
                                                              task.low, task.inside, task.high, peak_tolerance);
-        if (!peak) return;
+        if (!peak) return std::nullopt;
         CriticalPoint point;
         point.rod = task.rod;
         point.component = task.component;
@@ -472,11 +466,12 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
             }
           }
         }
-        critical[k] = point;
+        return point;
       },
-      hooks.stop);
-  if (!located) return std::nullopt;
-  for (const std::optional<CriticalPoint>& point : critical) {
+      [](auto& visit, MaybeCritical& point) {
+        visit_if_there(visit, point, [&](CriticalPoint& there) { visit_critical(visit, there); });
+      });
+  for (const MaybeCritical& point : critical) {
     if (!point) continue;
     if (!point->peak.converged) {
       result.shortfalls.push_back(fmt::format("{}: the peak of q_{} at {} = {:.10g} is known to {:.1e} only",
@@ -505,19 +500,16 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
     if (width > 0 && width < widest)
       for (const double t : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) places.push_back(point.peak.x + t * width);
   }
-  for (const std::vector<StabilitySample>& between : bands_between)
-    for (const StabilitySample& sample : between) places.push_back(sample.x);
+  for (const Between& found : between)
+    for (const StabilitySample& sample : found.bands) places.push_back(sample.x);
   std::sort(places.begin(), places.end());
   std::erase_if(places, [&](double x) {
     return !(x > values.front() && x < values.back()) || std::binary_search(values.begin(), values.end(), x);
   });
   places.erase(std::unique(places.begin(), places.end()), places.end());
-  result.refined.resize(places.size());
-  if (!parallel_for(
-          places.size(), settings.threads,
-          [&](std::size_t k) { result.refined[k] = analyse_point(scene, places[k], only); }, hooks.stop)) {
-    return std::nullopt;
-  }
+  result.refined = work.results<SweepPoint>(
+      "refined points", places.size(), [&](std::size_t k) { return analyse_point(scene, places[k], only); },
+      visit_whole_point);
   result.stages.push_back({"refined points", refined_watch.seconds(), fmt::format("{} points", places.size())});
 
   // What missed its tolerance.
@@ -554,6 +546,11 @@ std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& 
     }
   }
   return result;
+}
+
+SweepResult run_sweep(const SweepScene& scene) {
+  SharedWork work(scene.settings().threads);
+  return run_sweep(scene, work);
 }
 
 std::vector<const SweepPoint*> all_points(const SweepResult& result) {

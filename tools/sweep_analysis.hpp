@@ -14,6 +14,8 @@
 
 namespace hb::tools {
 
+class SharedWork;
+
 struct Axis {
   enum class Kind { rpm, omega, parameter };
   Kind kind = Kind::rpm;
@@ -107,14 +109,8 @@ struct SweepResult {
   std::vector<Stage> stages;
 };
 
-struct SweepHooks {
-  std::function<std::optional<SweepPoint>(std::size_t)> finished;  // an earlier run's point
-  std::function<void(std::size_t, const SweepPoint&)> store;  // called from any thread
-  std::function<bool()> stop;  // true: end early
-};
-
-// Empty if stopped.
-[[nodiscard]] std::optional<SweepResult> run_sweep(const SweepScene& scene, const SweepHooks& hooks = {});
+[[nodiscard]] SweepResult run_sweep(const SweepScene& scene, SharedWork& work);
+[[nodiscard]] SweepResult run_sweep(const SweepScene& scene);  // nothing kept
 
 // Points and refined points together, ascending.
 [[nodiscard]] std::vector<const SweepPoint*> all_points(const SweepResult& result);

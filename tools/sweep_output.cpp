@@ -13,6 +13,7 @@
 #include "tools/json_output.hpp"
 #include "tools/output_folder.hpp"
 #include "tools/output_units.hpp"
+#include "tools/path_unit.hpp"
 #include "tools/wording.hpp"
 
 namespace hb::tools {
@@ -165,7 +166,7 @@ std::string axis_label(const SweepScene& scene) {
     case Axis::Kind::omega: return "omega [rad/" + scene.scene().units.time + "]";
     case Axis::Kind::parameter: break;
   }
-  return scene.axis().path;
+  return scene.axis().path + bracketed(path_unit(scene.axis().path, scene.scene().units));
 }
 
 Json sweep_json(const SweepScene& scene, const SweepResult& result) {

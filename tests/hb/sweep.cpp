@@ -216,7 +216,7 @@ TEST(ResponsePeak, IsToldFromAPole) {
   // 1/|x - x0| with a background that leans.
   const double x0 = 1.2345678901;
   const auto value = [&](double x) -> std::optional<double> { return std::abs(1e-3 / (x - x0) + 0.7 * x); };
-  const std::optional<ResponsePeak> pole = locate_peak(value, value, 1.1, 1.234, 1.4);
+  const std::optional<ResponsePeak> pole = locate_peak(value, value, 1.1, 1.2345, 1.4);
   ASSERT_TRUE(pole);
   EXPECT_TRUE(std::isinf(pole->value));
   EXPECT_NEAR(pole->x, x0, 1e-10 * x0);

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "hb/stability.hpp"
 #include "lib/rod.hpp"
 #include "lib/scene.hpp"
-#include "hb/stability.hpp"
 #include "run_command.hpp"
 
 namespace {
@@ -17,9 +17,10 @@ namespace fs = std::filesystem;
 
 class Sweep : public CommandTest {
  protected:
-  Json document(const std::string& arguments, int expected_status = 0) const {
+  Json document(const std::string& arguments) const {
     const CommandResult result = hb("sweep " + arguments + " --json");
-    EXPECT_EQ(result.status, expected_status) << result.err;
+    // 3: the error bound of a growth rate, inside tongues of strongly damped rods, may exceed what was asked.
+    EXPECT_TRUE(result.status == 0 || result.status == 3) << result.err;
     return Json::parse(result.out, nullptr, false);
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
@@ -75,6 +76,42 @@ TEST_F(Sweep, EachPointIsWhatHbSteadySays) {
   EXPECT_EQ(found["torque"]["max"][1], steady["torque"]["max"]);
 }
 
+TEST_F(Sweep, GivesTheSameBitsWhateverTheNumberOfThreads) {
+  const std::string arguments = scene("six_link") + " --rpm 900:1800:100 --modes 2";
+  const Json one = document(arguments + " --threads 1"), two = document(arguments + " --threads 2");
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(Sweep, BandsOfTheSixLinkMechanismAgreeWithBisection) {
+  const Json found = document(scene("six_link") + " --rpm 1600:3000:100 --only stability");
+  const hb::Scene six_link = hb::read_scene(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  const hb::Linkage& linkage = std::get<hb::Linkage>(six_link.model);
+  const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
+  int ends = 0;
+  for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
+    const hb::Body& link = *hb::body_at(linkage, coefficients.links[r]);
+    const hb::HillSystem system = hb::ritz_system(link, coefficients.rods[r], 5);
+    const auto unstable = [&](double rpm) {
+      return hb::analyse_stability(system, hb::speed_from_rpm(rpm, six_link.units)).growth_rate > 0;
+    };
+    for (const Json& band : found["unstable_bands"][link.name]) {
+      for (const double end : {band[0].get<double>(), band[1].get<double>()}) {
+        if (end == 1600 || end == 3000) continue;
+        double low = end * (1 - 1e-6), high = end * (1 + 1.3e-6);
+        const bool above = unstable(high);
+        ASSERT_NE(unstable(low), above) << link.name << " " << end;
+        for (int step = 0; step < 18; ++step) {
+          const double middle = 0.5 * (low + high);
+          (unstable(middle) == above ? high : low) = middle;
+        }
+        EXPECT_NEAR(end, 0.5 * (low + high), 1e-10 * end);
+        ++ends;
+      }
+    }
+  }
+  EXPECT_GE(ends, 6);
+}
+
 TEST_F(Sweep, CriticalSpeedOfADampedOscillatorIsTheClosedForm) {
   write("oscillator.toml",
         "[hill]\nmass = [[1.0]]\ndamping = [[0.02]]\nstiffness = [{ harmonic = 0, cos = [[1.0]] }]\n"
@@ -120,8 +157,9 @@ TEST_F(Sweep, MarksPointsWhereTheLinkageDoesNotClose) {
 
 TEST_F(Sweep, RefusesWrongRanges) {
   const std::string six = scene("six_link");
-  for (const char* range : {"300", "300:300:10", "600:300:10", "300:600:0", "300:600:-10", "300:600:1e-9", "300:600:nan",
-                            "300:inf:10", "300:600", "300:600:10:10", "a:b:c", "300:600:500", "-600:600:10", "0:600:10"}) {
+  for (const char* range :
+       {"300", "300:300:10", "600:300:10", "300:600:0", "300:600:-10", "300:600:1e-9", "300:600:nan", "300:inf:10",
+        "300:600", "300:600:10:10", "a:b:c", "300:600:500", "-600:600:10", "0:600:10"}) {
     const CommandResult result = hb("sweep " + six + " --json --rpm=" + range);
     EXPECT_EQ(result.status, 2) << range;
     EXPECT_NE(result.err.find("--rpm"), std::string::npos) << range << ": " << result.err;
@@ -151,18 +189,18 @@ TEST_F(Sweep, RefusesUnknownPathsWithTheNearestAndImpossibleValues) {
 TEST_F(Sweep, WritesTablesAndPictures) {
   const CommandResult result = hb("sweep " + scene("slider_crank") + " --rpm 2000:6000:500 --modes 2 --out out");
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* name : {"sweep.json", "sweep_rod.csv", "critical.csv", "unstable_bands.csv", "sweep_joint_forces.csv",
-                           "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png", "growth_rod.png", "plots.gp"}) {
+  for (const char* name :
+       {"sweep.json", "sweep_rod.csv", "critical.csv", "unstable_bands.csv", "sweep_joint_forces.csv",
+        "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png", "growth_rod.png", "plots.gp"}) {
     EXPECT_TRUE(fs::is_regular_file(folder_ / "out" / name)) << name;
   }
   EXPECT_EQ(num_entries(folder_), 1u);
 }
 
 TEST_F(Sweep, GoesOnWhereItWasStoppedAndRefusesAChangedScene) {
-  const std::string arguments = "sweep " + scene("six_link") + " --rpm 200:6000:2 --only stability --no-plots --out out ";
-  const CommandResult stopped = hb(arguments, "timeout -s INT 0.3");
-  ASSERT_EQ(stopped.status, 124) << stopped.err;  // of timeout
-  ASSERT_TRUE(fs::exists(folder_ / "out.part")) << stopped.err;
+  const std::string arguments =
+      "sweep " + scene("six_link") + " --rpm 200:6000:2 --only stability --no-plots --out out ";
+  ASSERT_EQ(stopped_by("INT", arguments, "out.part"), 130);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
   const CommandResult changed = hb(arguments + "--set AB.J=46 --resume");
   EXPECT_EQ(changed.status, 2);
@@ -171,11 +209,12 @@ TEST_F(Sweep, GoesOnWhereItWasStoppedAndRefusesAChangedScene) {
 }
 
 TEST_F(Sweep, ResumedWorkEndsInTheSameDocument) {
-  const std::string range = " --rpm 1000:2000:10 --only steady,stability --modes 2 --no-plots ";
-  ASSERT_EQ(hb("sweep " + scene("six_link") + range + "--out whole").status, 0);
-  hb("sweep " + scene("six_link") + range + "--out parts", "timeout -s KILL 0.02");
-  const CommandResult resumed = hb("sweep " + scene("six_link") + range + "--out parts --resume");
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  const std::string arguments =
+      "sweep " + scene("six_link") + " --rpm 1000:1500:5 --only steady,stability --modes 2 --no-plots --out ";
+  const int status = hb(arguments + "whole").status;
+  ASSERT_EQ(stopped_by("KILL", arguments + "parts", "parts.part"), 137);
+  const CommandResult resumed = hb(arguments + "parts --resume");
+  ASSERT_EQ(resumed.status, status) << resumed.err;
   EXPECT_EQ(read(folder_ / "whole/sweep.json"), read(folder_ / "parts/sweep.json"));
   EXPECT_FALSE(fs::exists(folder_ / "parts.part"));
 }

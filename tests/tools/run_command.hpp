@@ -37,6 +37,16 @@ class CommandTest : public testing::Test {
     return result;
   }
 
+  // Status of the command after a signal (its short name) sent as soon as `file` holds more than its head.
+  int stopped_by(const std::string& signal, const std::string& arguments, const std::string& file) const {
+    const std::string line =
+        "cd '" + folder_.string() + "' && { '" HB_COMMAND "' " + arguments +
+        " >/dev/null 2>&1 </dev/null & child=$!; while kill -0 $child 2>/dev/null && [ $(stat -c %s " + file +
+        " 2>/dev/null || echo 0) -lt 100 ]; do :; done; kill -" + signal + " $child; wait $child; }";
+    const int status = std::system(line.c_str());
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
   static std::string read(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     std::ostringstream text;
