@@ -31,9 +31,6 @@ namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
 constexpr double eps = 2.220446049250313e-16;
-// Error of the finer of two runs from their difference. Step sizes respond to the tolerance unevenly: with BDF the
-// finer of two runs was once seen as far from the truth as from the coarser.
-constexpr double difference_factor = 3;
 
 double seconds_since(Deadline start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -35,11 +35,16 @@ struct PeriodicOrbit {
   Eigen::MatrixXd q, q1, q2;  // I x N
 };
 
+// Error of the finer of two runs from their difference. Step sizes respond to the tolerance unevenly: with BDF the
+// finer of two runs was once seen as far from the truth as from the coarser.
+inline constexpr double difference_factor = 3;
+
 struct ShootingResult {
   ShootingStatus status = ShootingStatus::failed;
   std::string message;  // what stopped it; empty if converged
   PeriodicOrbit orbit;
-  PeriodicOrbit coarser;  // of the less accurate run: what is computed from both shows its own error
+  PeriodicOrbit coarser;  // of the less accurate run: the difference of what is computed from both, times
+                          // difference_factor, is its error
   double q_error = 0;  // estimate of max_t |error of q| / max_t |q|
   double q1_error = 0;  // of q', relative to max_t |q'|
   std::vector<Exponent> exponents;  // real part descending; those that the integration resolves

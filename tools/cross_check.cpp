@@ -187,7 +187,7 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
     const bool is_torque = k == n - 1;
     const double scale = is_torque ? torque : force;
     const double arm = is_torque ? force * linkage.crank.body.length / torque : 1;
-    const Comparison here{difference(k) / scale, (own(k) + bar(k)) / scale + 1e-12 * std::max(1.0, arm)};
+    const Comparison here{difference(k) / scale, (difference_factor * own(k) + bar(k)) / scale + 1e-12 * std::max(1.0, arm)};
     if (is_torque) {
       check.torque = here;
     } else if (!(here.difference - here.allowed <= worst)) {
