@@ -11,7 +11,7 @@
 #include "tools/map_output.hpp"
 #include "tools/map_plot.hpp"
 #include "tools/output_units.hpp"
-#include "tools/shared_work.hpp"
+#include "tools/parallel_for.hpp"
 #include "tools/sweep_analysis.hpp"
 #include "tools/sweep_figures.hpp"
 #include "tools/wording.hpp"
@@ -19,8 +19,8 @@
 namespace hb::tools {
 namespace {
 
-constexpr int campbell_points = 81;
-constexpr int map_speeds = 97, map_designs = 41;
+constexpr int campbell_points = 49;
+constexpr int map_speeds = 61, map_designs = 23;
 
 std::vector<double> evenly(double from, double to, int count) {
   std::vector<double> values;
@@ -147,18 +147,31 @@ class Way {
   mutable std::map<double, std::shared_ptr<const SceneModel>> models_;
 };
 
+// Growth at every point of the grid; boundaries between them are `hb map`'s business.
+StabilityMap grid_map(const Way& way, std::size_t rod, const std::vector<double>& x, const std::vector<double>& y,
+                      const Settings& settings) {
+  StabilityMap map{.x = x, .y = y, .points = std::vector<MapPoint>(x.size() * y.size()), .boundaries = {}};
+  parallel_for(map.points.size(), settings.threads, [&](std::size_t p) {
+    const std::optional<ScaledSystem> system = way.system(rod, x[p % x.size()], y[p / x.size()]);
+    if (!system) return;
+    const Stability stability = leading_stability(*system, settings);
+    MapPoint& point = map.points[p];
+    point.source = MapSource::evaluated;
+    point.speed = system->speed;
+    point.growth_rate = stability.growth_rate;
+    point.growth_error = stability.growth_error;
+    point.verdict = stability.verdict;
+    point.converged = stability.converged;
+  });
+  return map;
+}
+
 void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene, OutputFolder& folder,
              std::vector<Figure>& figures) {
   const Way way(task, result, task.settings);
   const double from = std::min(result.span_before.from, result.span_after.from) / task.speed_unit;
   const double to = std::max(result.span_before.to, result.span_after.to) / task.speed_unit;
   const std::vector<double> x = evenly(from, to, map_speeds), y = evenly(-0.05, 1.05, map_designs);
-  MapOptions options;
-  options.search.stability.method = task.settings.stability_method;
-  options.search.tolerance = 1e-4;
-  options.sag = 2e-3;
-  SharedWork work(task.settings.threads);
-  options.parts = work.of("stability before and after");
   MapResult map;
   map.x_axis = {task.in_rpm ? PlaneAxis::Role::rpm : PlaneAxis::Role::omega, task.in_rpm ? "rpm" : "omega", from, to};
   map.y_axis = {PlaneAxis::Role::scene_number, "way from the design before (0) to the tuned one (1)", y.front(),
@@ -167,15 +180,15 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
   for (std::size_t r = 0; r < tuned->rods.size(); ++r) {
     if (!tuned->rods[r].reported) continue;
     map.rods.push_back(tuned->rods[r].name);
-    map.maps.push_back(stability_map([&](double u, double t) { return way.system(r, u, t); }, x, y, options));
+    map.maps.push_back(grid_map(way, r, x, y, task.settings));
     const StabilityMap& own = map.maps.back();
-    for (const BoundaryCurve& curve : own.boundaries) map.boundaries.push_back({map.rods.size() - 1, curve});
     if (map.worst.empty()) map.worst = own.points;
     for (std::size_t p = 0; p < own.points.size(); ++p)
       if (own.points[p].growth_rate > map.worst[p].growth_rate) map.worst[p] = own.points[p];
   }
+  constexpr double no_boundaries = 0;
   const MapDocument document{map, scene, static_cast<Eigen::Index>(tuned->rods.front().system.num_modes()),
-                             options.search.tolerance};
+                             no_boundaries};
   MapFiles files;
   const auto write = [&](CsvFile file, const std::string& name) {
     file.name = name;
@@ -183,10 +196,8 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
     return name;
   };
   files.grid = write(map_grid_csv(document), "map.csv");
-  files.boundaries = write(map_boundary_csv(document, map.boundaries, "", "boundaries of stability of every rod"),
-                           "map_boundaries.csv");
   Figure figure = map_figure(document, files, MapColour::growth);
-  std::string marks;
+  std::string marks = "set colorbox vertical default\n";
   for (const int t : {0, 1})
     marks += fmt::format(
         "set arrow from graph 0, first {0} to graph 1, first {0} nohead front linewidth 2 linecolor '#000000'\n"
