@@ -20,7 +20,7 @@ enum class StabilityMethod {
 };
 
 struct StabilityOptions {
-  double tolerance = 1e-9;  // wanted error of the growth rate, relative to max(|growth|, Omega-scaled 1)
+  double tolerance = 1e-9;  // wanted error of the growth rate, relative to max(|growth|, Omega)
   StabilityMethod method = StabilityMethod::automatic;
   // Growth rate and verdict only: exponents that a bound shows to lie below the leading ones are not computed.
   bool leading_only = false;

@@ -51,7 +51,8 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
   json["steady_method"] = method_text(state.method);
 }
 
-void add_stability(Json& json, const Stability& stability) {
+void add_stability(Json& json, const RodResult& rod) {
+  const Stability& stability = *rod.stability;
   Json exponents = Json::array(), errors = Json::array();
   for (const Exponent& exponent : stability.exponents) {
     exponents.push_back(pair(exponent.value));
@@ -59,6 +60,7 @@ void add_stability(Json& json, const Stability& stability) {
   }
   json["exponents"] = std::move(exponents);
   json["exponent_errors"] = std::move(errors);
+  json["exponents_unresolved"] = unresolved_exponents(rod);
   json["growth_rate"] = stability.growth_rate + 0.0;
   json["exponent_error"] = stability.growth_error;
   json["verdict"] = to_string(stability.verdict);
@@ -135,7 +137,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       entry["deflection"] = peak_json(rod.shape->deflection, units);
       entry["bending_moment"] = peak_json(rod.shape->bending_moment, units);
     }
-    if (rod.stability) add_stability(entry, *rod.stability);
+    if (rod.stability) add_stability(entry, rod);
   }
   if (result.forces) {
     json["joints"] = joints_json(*result.forces);

@@ -73,6 +73,11 @@ struct SpeedResult {
   return rod.modes_error && !(*rod.modes_error <= 0.01);
 }
 
+// Exponents that were not resolved and are not listed, of 2I.
+[[nodiscard]] inline Eigen::Index unresolved_exponents(const RodResult& rod) {
+  return 2 * rod.num_modes - static_cast<Eigen::Index>(rod.stability->exponents.size());
+}
+
 // Number of modes that I modes are compared with to see the error of the cut: I + max(3, I/2).
 [[nodiscard]] Eigen::Index comparison_modes(Eigen::Index num_modes);
 

@@ -49,7 +49,8 @@ void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, 
       units.length, peak.crank_angle * degrees_per_radian);
 }
 
-void add_stability(Text& text, const Stability& stability, double speed, const Scene& scene) {
+void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene) {
+  const Stability& stability = *rod.stability;
   const OutputUnits units = output_units(scene);
   std::vector<std::string> shown;
   std::size_t next = 0;
@@ -65,6 +66,9 @@ void add_stability(Text& text, const Stability& stability, double speed, const S
     add(text, "  exponents [{}]   {}{}\n", units.rate, fmt::join(shown, ", "),
         next < stability.exponents.size() ? ", ..." : "");
   }
+  if (const Eigen::Index missing = unresolved_exponents(rod); missing > 0)
+    add(text, "                    {} of {} not resolved to a part in 10^6 and not listed\n", missing,
+        2 * rod.num_modes);
   add(text, "  growth rate       {} {}{}\n", with_error(stability.growth_rate, stability.growth_error), units.rate,
       stability.converged ? "" : "  NOT REACHED");
   add(text, "  {}\n", verdict_sentence(stability, speed, scene.units));
@@ -117,7 +121,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
       add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units);
       add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units);
     }
-    if (rod.stability) add_stability(text, *rod.stability, result.speed, scene);
+    if (rod.stability) add_stability(text, rod, result.speed, scene);
     add(text, "\n");
   }
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");

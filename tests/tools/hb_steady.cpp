@@ -407,6 +407,17 @@ TEST_F(Command, HillScenesHaveNoModesToChooseAndNoJoints) {
   EXPECT_EQ(hb("steady " + scene("mathieu") + " --omega 1 --modes 1 --only steady").status, 0);
 }
 
+TEST_F(Steady, ListsEveryExponentOrSaysHowManyAreMissing) {
+  for (const char* rpm : {"300", "6000"}) {
+    const Json found = document("steady " + scene("six_link") + " --only stability --modes 10 --tol 1e-4 --rpm " + rpm);
+    for (const char* name : {"AB", "CD"}) {
+      const Json& rod = found["rods"][name];
+      EXPECT_EQ(rod["exponents"].size() + rod["exponents_unresolved"].get<std::size_t>(), 20u) << rpm << name;
+      EXPECT_EQ(rod["exponents"].size(), rod["exponent_errors"].size());
+    }
+  }
+}
+
 TEST_F(Steady, LooseToleranceLoosensTheExponents) {
   const Json strict =
       document("steady " + scene("six_link") + " --rpm 1500 --only stability --stability-method propagation");
