@@ -218,7 +218,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
   std::vector<Index> together;
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
   std::vector<MatrixXd> starts(std::size_t(I), MatrixXd{});  // of the subspaces, per mode alone
-  MatrixXd start_together;
+  MatrixXd start_together(2 * I, 0);
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
     const ReducedSystem reduced = slave_to(system, one);
