@@ -1,9 +1,8 @@
 #include "hb/constant_coefficients.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "hb/eigenvalue_radius.hpp"
+#include "hb/inexact_eigenvalues.hpp"
 
 namespace hb {
 
@@ -52,8 +51,8 @@ TurnExponents constant_exponents(const ScaledSystem& system) {
   A.bottomRightCorner(I, I) = -system.G;
   // Backward error of the eigenvalues, and of the coefficients themselves.
   const double change = 8 * eps * double(2 * I) * A.norm();
-  const Eigen::VectorXcd s = MatrixXd(A).eigenvalues();
-  for (Index i = 0; i < 2 * I; ++i) add(s(i), eigenvalue_radius(A, s(i), change));
+  const InexactEigenvalues s = inexact_eigenvalues(A, change);
+  for (Index i = 0; i < 2 * I; ++i) add(s.value(i), s.radius(i));
   return result;
 }
 

@@ -1,7 +1,7 @@
 // Exponents when nothing varies over the turn: roots of det(s^2 + s G + K) = 0.
 #pragma once
 
-#include "hb/propagation.hpp"
+#include "hb/turn_exponents.hpp"
 #include "hb/scaled_system.hpp"
 
 namespace hb {

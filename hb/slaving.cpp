@@ -1,12 +1,13 @@
 #include "hb/slaving.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <deque>
 #include <vector>
+
+#include "hb/anderson.hpp"
 
 namespace hb {
 
@@ -27,38 +28,6 @@ cplx root(double b, double w2) {
   const cplx r = std::sqrt(cplx(b * b / 4 - w2, 0));
   return b >= 0 && r.imag() == 0 ? cplx(-w2 / (b / 2 + r.real()), 0) : -b / 2 + r;
 }
-
-// Anderson mixing of depth 4 for x <- x + f(x).
-class Anderson {
- public:
-  VectorXd step(const VectorXd& x, const VectorXd& f) {
-    if (last_x_.size() > 0) {
-      dx_.push_back(x - last_x_);
-      df_.push_back(f - last_f_);
-      if (dx_.size() > depth) {
-        dx_.pop_front();
-        df_.pop_front();
-      }
-    }
-    last_x_ = x;
-    last_f_ = f;
-    VectorXd next = x + f;
-    if (dx_.empty()) return next;
-    const Index d = static_cast<Index>(df_.size());
-    MatrixXd F(f.size(), d);
-    for (Index i = 0; i < d; ++i) F.col(i) = df_[static_cast<std::size_t>(i)];
-    const VectorXd gamma = F.colPivHouseholderQr().solve(f);
-    if (!gamma.allFinite()) return next;
-    for (Index i = 0; i < d; ++i)
-      next -= gamma(i) * (dx_[static_cast<std::size_t>(i)] + df_[static_cast<std::size_t>(i)]);
-    return next;
-  }
-
- private:
-  static constexpr std::size_t depth = 4;
-  std::deque<VectorXd> dx_, df_;
-  VectorXd last_x_, last_f_;
-};
 
 struct Partition {
   std::vector<Index> S, F;
@@ -90,8 +59,16 @@ class Iteration {
         K_(fourier::synthesise(system.K, num_samples).transpose()),
         alpha_(N_, m_ * m_),
         beta_(N_, m_ * m_),
-        P_(MatrixXd::Zero(N_, n_ * m_)),
-        R_(MatrixXd::Zero(N_, n_ * m_)) {
+        back_(N_, 4 * n_ * m_),
+        forward_(N_, 4 * n_ * m_),
+        A_(back_.samples().data(), N_, n_ * m_),
+        A1_(A_.data() + A_.size(), N_, n_ * m_),
+        C_(A1_.data() + A_.size(), N_, n_ * m_),
+        C1_(C_.data() + A_.size(), N_, n_ * m_),
+        P_(forward_.samples().data(), N_, n_ * m_),
+        R_(P_.data() + P_.size(), N_, n_ * m_) {
+    P_.setZero();
+    R_.setZero();
     const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
     for (const Index s : S_) weight_.push_back(std::max(1.0, std::abs(root(b(s), w2(s)))));
     // kappa: what an error of A does to alpha.
@@ -116,22 +93,23 @@ class Iteration {
         }
   }
 
-  // Solves for A, C; false if it diverges. `change` is then a bound on the remaining error of alpha.
+  // Solves for A, C; false if it diverges, or would take too long. `change` is then a bound on the remaining error of
+  // alpha.
   bool run(double tolerance, int& iterations) {
-    const Index nm = n_ * m_;
-    VectorXd x = VectorXd::Zero(nm * 2 * 2 * (H_ + 1));
-    Anderson anderson;
+    constexpr int most_iterations = 80, window = 8;
+    VectorXd x = VectorXd::Zero(n_ * m_ * 2 * 2 * (H_ + 1)), f(x.size()), last_x, last_f;
+    Anderson anderson(x.size());
     bool mixing = false;
     double previous = HUGE_VAL, best = HUGE_VAL;
-    VectorXd last_x, last_f;
-    std::deque<double> secants;
+    std::deque<double> secants, bests;
     int stalled = 0;
-    for (int iteration = 1; iteration <= 80; ++iteration) {
+    for (int iteration = 1; iteration <= most_iterations; ++iteration) {
       ++iterations;
-      const VectorXd f = correction(x);
+      correction(x, f);
       if (!f.allFinite()) return false;
       const double change = kappa_ * norm(f);
       const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
+      const double goal = std::max(2 * eps, tolerance) * scale;
       const double rho = change / previous;
       stalled = change < 0.9 * best ? 0 : stalled + 1;
       best = std::min(best, change);
@@ -144,8 +122,7 @@ class Iteration {
       last_x = x;
       last_f = f;
       // Rounding reached: nothing is left to gain.
-      if (change <= std::max(2 * eps, tolerance) * scale ||
-          (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
+      if (change <= goal || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
         amplification_ = 1;
         for (const double secant : secants) amplification_ = std::max(amplification_, secant);
         change_ = change + tail(x);
@@ -153,8 +130,19 @@ class Iteration {
         return !needs_more_samples_;
       }
       if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 15) return false;
+      // At the pace of the last iterations it would not arrive; the first ones only show divergence.
+      bests.push_back(best);
+      if (bests.size() > window) {
+        const double pace = std::log(best / bests.front()) / window;
+        bests.pop_front();
+        if (!(pace < -0.1)) return false;
+        if (iteration > 2 * window && iteration + std::log(goal / best) / pace > most_iterations) return false;
+      }
       if (iteration >= 4 && rho > 0.25) mixing = true;
-      x = mixing ? anderson.step(x, f) : VectorXd(x + f);
+      if (mixing)
+        x = anderson.step(x, f);
+      else
+        x += f;
       previous = change;
     }
     return false;
@@ -167,8 +155,9 @@ class Iteration {
     reduced.alpha = fourier::analyse(alpha_.transpose());
     reduced.beta = fourier::analyse(beta_.transpose());
     const double iteration = 2 * change_ * amplification_;
-    reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * largest_A_);
-    reduced.beta_error = iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * largest_C_);
+    reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * A_.cwiseAbs().maxCoeff());
+    reduced.beta_error =
+        iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * C_.cwiseAbs().maxCoeff());
     reduced.others_below = others_below();
     reduced.start = start();
     return reduced;
@@ -260,56 +249,48 @@ class Iteration {
     return {reinterpret_cast<const cplx*>(x.data()) + (q * 2 + 1) * (H_ + 1), H_ + 1};
   }
 
-  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k.
-  double norm(const VectorXd& x) const {
+  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k; harmonics from `first` on.
+  double norm(const VectorXd& x, Index first = 0) const {
     double largest = 0;
-    for (Index q = 0; q < n_ * m_; ++q)
-      largest = std::max(largest, 2 * (A_of(x, q).cwiseAbs().sum() + C_of(x, q).cwiseAbs().sum()));
+    for (Index part = 0; part < n_ * m_; ++part) {
+      double sum = 0;
+      for (Index half = 2 * part; half < 2 * part + 2; ++half) {
+        const double* z = x.data() + half * 2 * (H_ + 1);
+        for (Index k = first; k <= H_; ++k) sum += std::sqrt(z[2 * k] * z[2 * k] + z[2 * k + 1] * z[2 * k + 1]);
+      }
+      largest = std::max(largest, 2 * sum);
+    }
     return largest;
   }
 
   // What the last quarter of the harmonics carries: the truncation's share.
-  double tail(const VectorXd& x) const {
-    double largest = 0;
-    const Index count = std::max<Index>(1, H_ / 4);
-    for (Index q = 0; q < n_ * m_; ++q)
-      largest =
-          std::max(largest, 2 * (A_of(x, q).tail(count).cwiseAbs().sum() + C_of(x, q).tail(count).cwiseAbs().sum()));
-    return kappa_ * largest;
-  }
+  double tail(const VectorXd& x) const { return kappa_ * norm(x, H_ + 1 - std::max<Index>(1, H_ / 4)); }
 
   // Residual of the two invariance equations, pushed through the inverse of their constant part:
   //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
   //   x_F'  = P x_S + R x_S',             P = A' - C alpha,   R = A + C' - C beta
   //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
-  VectorXd correction(const VectorXd& x) {
+  void correction(const VectorXd& x, VectorXd& f) {
     const Index nm = n_ * m_;
-    auto& back = fourier::thread_transform(N_, 4 * nm);
     {
-      auto spectrum = back.spectrum();
+      auto spectrum = back_.spectrum();
       spectrum.setZero();
       for (Index q = 0; q < nm; ++q) {
-        const double weight = weight_[std::size_t(q / n_)];
+        const double inverse_weight = 1 / weight_[std::size_t(q / n_)];
         const auto a = A_of(x, q), c = C_of(x, q);
         for (Index k = 0; k <= H_; ++k) {
-          const cplx ik(0, double(k));
+          const double n = double(k);
+          const cplx scaled = c(k) * inverse_weight;
           spectrum(k, q) = a(k);
-          spectrum(k, nm + q) = ik * a(k);
-          spectrum(k, 2 * nm + q) = c(k) / weight;
-          spectrum(k, 3 * nm + q) = ik * c(k) / weight;
+          spectrum(k, nm + q) = {-n * a(k).imag(), n * a(k).real()};
+          spectrum(k, 2 * nm + q) = scaled;
+          spectrum(k, 3 * nm + q) = {-n * scaled.imag(), n * scaled.real()};
         }
       }
     }
-    back.backward();
-    const MatrixXd samples = back.samples();
-    const auto A = [&](Index j, Index l) { return samples.col(j + n_ * l).array(); };
-    const auto A1 = [&](Index j, Index l) { return samples.col(nm + j + n_ * l).array(); };
-    const auto C = [&](Index j, Index l) { return samples.col(2 * nm + j + n_ * l).array(); };
-    const auto C1 = [&](Index j, Index l) { return samples.col(3 * nm + j + n_ * l).array(); };
-    A_ = samples.leftCols(nm);
-    largest_A_ = A_.cwiseAbs().maxCoeff();
-    C_ = samples.middleCols(2 * nm, nm);
-    largest_C_ = C_.cwiseAbs().maxCoeff();
+    back_.backward();
+    const auto A = [&](Index j, Index l) { return A_.col(j + n_ * l).array(); };
+    const auto C = [&](Index j, Index l) { return C_.col(j + n_ * l).array(); };
 
     for (int pass = 0; pass < (diagonal_damping_ ? 1 : 3); ++pass) {
       for (Index l = 0; l < m_; ++l)
@@ -317,7 +298,7 @@ class Iteration {
           auto alpha = alpha_.col(s + m_ * l).array();
           auto beta = beta_.col(s + m_ * l).array();
           alpha = K(S_[s], S_[l]);
-          beta = ArrayXd::Constant(N_, G_(S_[s], S_[l]));
+          beta.setConstant(G_(S_[s], S_[l]));
           for (Index j = 0; j < n_; ++j) {
             alpha += K(S_[s], F_[j]) * A(j, l);
             beta += K(S_[s], F_[j]) * C(j, l);
@@ -331,8 +312,8 @@ class Iteration {
         for (Index j = 0; j < n_; ++j) {
           auto P = P_.col(j + n_ * l).array();
           auto R = R_.col(j + n_ * l).array();
-          P = A1(j, l);
-          R = A(j, l) + C1(j, l);
+          P = A1_.col(j + n_ * l).array();
+          R = A(j, l) + C1_.col(j + n_ * l).array();
           for (Index s = 0; s < m_; ++s) {
             P -= C(j, s) * alpha_.col(s + m_ * l).array();
             R -= C(j, s) * beta_.col(s + m_ * l).array();
@@ -340,10 +321,7 @@ class Iteration {
         }
     }
 
-    auto& forward = fourier::thread_transform(N_, 4 * nm);
-    auto out = forward.samples();
-    out.leftCols(nm) = P_;
-    out.middleCols(nm, nm) = R_;
+    auto out = forward_.samples();
     for (Index l = 0; l < m_; ++l)
       for (Index j = 0; j < n_; ++j) {
         auto r1 = out.col(2 * nm + j + n_ * l).array();
@@ -363,24 +341,23 @@ class Iteration {
           }
         }
       }
-    forward.forward();
-    const auto spectrum = forward.spectrum();
+    forward_.forward();
+    const auto spectrum = forward_.spectrum();
 
-    VectorXd f(x.size());
     cplx* data = reinterpret_cast<cplx*>(f.data());
     for (Index l = 0; l < m_; ++l)
       for (Index j = 0; j < n_; ++j) {
         const Index q = j + n_ * l;
         for (Index k = 0; k <= H_; ++k) {
-          const cplx ik(0, double(k));
-          const cplx r1 = spectrum(k, 2 * nm + q) + ik * spectrum(k, q);
-          const cplx r2 = spectrum(k, 3 * nm + q) + ik * spectrum(k, nm + q);
+          const double n = double(k);
+          const cplx p = spectrum(k, q), r = spectrum(k, nm + q);
+          const cplx r1 = spectrum(k, 2 * nm + q) + cplx(-n * p.imag(), n * p.real());
+          const cplx r2 = spectrum(k, 3 * nm + q) + cplx(-n * r.imag(), n * r.real());
           const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
           data[q * 2 * (H_ + 1) + k] = M(0, 0) * r1 + M(0, 1) * r2;
           data[(q * 2 + 1) * (H_ + 1) + k] = weight_[std::size_t(l)] * (M(1, 0) * r1 + M(1, 1) * r2);
         }
       }
-    return f;
   }
 
   std::vector<Index> S_, F_;
@@ -390,11 +367,12 @@ class Iteration {
   Index I_;
   MatrixXd K_;  // N x I*I
   MatrixXd alpha_, beta_;  // N x m*m
-  MatrixXd P_, R_, A_, C_;  // N x n*m
+  fourier::RealTransform back_, forward_;
+  Eigen::Map<MatrixXd> A_, A1_, C_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
   bool needs_more_samples_ = false;
-  double kappa_ = 0, change_ = 0, amplification_ = 1, largest_A_ = 0, largest_C_ = 0;
+  double kappa_ = 0, change_ = 0, amplification_ = 1;
 };
 
 }  // namespace

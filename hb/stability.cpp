@@ -8,12 +8,14 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "hb/constant_coefficients.hpp"
 #include "hb/hill_exponents.hpp"
-#include "hb/propagation.hpp"
+#include "hb/radau_turn.hpp"
 #include "hb/scalar_hill.hpp"
 #include "hb/slaving.hpp"
+#include "hb/turn_exponents.hpp"
 
 namespace hb {
 
@@ -25,6 +27,8 @@ using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
 constexpr double eps = 2.220446049250313e-16;
+// Above, slaving each mode on its own is tried before all are propagated.
+constexpr Index most_modes_propagated = 10;
 
 // Exponents per radian of crank angle (s = lambda/Omega) with their bars.
 struct Exponents {
@@ -78,7 +82,9 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
   const double fastest = std::sqrt(fastest2);
   const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
 
-  Index cells = std::max({Index(12), Index(std::ceil(1.2 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance)});
+  // Eight stages resolve two harmonics a cell.
+  Index cells =
+      radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 1) / 2));
   const Index most = std::max<Index>(512, 12 * cells);
   Exponents result;
   std::optional<TurnExponents> coarse;
@@ -88,7 +94,8 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
     // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
     // tested on strongly damped systems.
     const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
-    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only);
+    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only,
+                                        coarse ? coarse->subspaces : MatrixXd());
     if (coarse) {
       result.s = fine.s;
       result.others_below = fine.others_below;
@@ -101,7 +108,7 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
           turn = std::min(turn, std::abs(1 - turn));
           nearest = std::min(nearest, std::hypot(fine.s[i].real() - other.real(), turn));
         }
-        // Order 15 would make the finer one 1.5^15 = 437 times nearer; nothing of that is claimed.
+        // Order 15 would make the finer one 75 times nearer at least; nothing of that is claimed.
         result.error[i] = nearest + fine.error[i] + damping_error;
       }
       if (result.s.empty()) break;
@@ -110,7 +117,7 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
       if (result.converged || integration <= fine.error[0]) break;
     }
     coarse = std::move(fine);
-    cells = cells + cells / 2;
+    cells = radau_cells(cells + 1);
   }
   if (result.s.empty() && coarse) {
     result.s = coarse->s;
@@ -210,6 +217,47 @@ bool spans(const ScaledSystem& system, Matrix states) {
   return Eigen::PartialPivLU<Matrix>(states).rcond() > 1e-8;
 }
 
+// Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
+// what is allowed: ds = d alpha/(2 sqrt|w^2 - b^2/4|).
+double sufficient(const ScaledSystem& system, std::span<const Index> kept, double tolerance) {
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  double smallest = 1;
+  for (const Index s : kept) {
+    const cplx root = std::sqrt(cplx(b(s) * b(s) / 4 - w2(s), 0));
+    const double wanted = std::max(std::abs((-b(s) / 2 + root).real()), 0.01);
+    const double size = std::max(std::abs(w2(s)), 1e-4);
+    smallest = std::min(smallest, wanted * 2 * std::max(std::abs(root), 1e-3) / size);
+  }
+  return 1e-3 * tolerance * smallest;
+}
+
+// Slaving the others to more than half of the modes costs more than propagating them all.
+bool too_many(const std::vector<Index>& together, Index I) { return 2 * Index(together.size()) > I; }
+
+// Exponents of one mode that are known better than those of a whole list take their place. A list that has lost them,
+// because they decay too fast for it, gets them.
+void sharpen(Exponents& list, const Exponents& pair) {
+  for (std::size_t p = 0; p < pair.s.size(); ++p) {
+    bool missing = true;
+    for (std::size_t i = 0; i < list.s.size(); ++i) {
+      const cplx apart = list.s[i] - pair.s[p];
+      const double turn = std::abs(apart.imag() - std::round(apart.imag()));
+      if (!(std::hypot(apart.real(), turn) <= list.error[i] + pair.error[p])) continue;
+      missing = false;
+      if (!(pair.error[p] < list.error[i])) continue;
+      list.s[i] = pair.s[p];
+      list.error[i] = pair.error[p];
+      list.mode[i] = pair.mode[p];
+      list.frequency[i] = pair.frequency[p];
+      break;
+    }
+    if (!missing || !(pair.s[p].real() < list.others_below)) continue;
+    list.add(pair.s[p], pair.error[p]);
+    list.mode.push_back(pair.mode[p]);
+    list.frequency.push_back(pair.frequency[p]);
+  }
+}
+
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
 // reduction converges.
 Search by_slaving(const ScaledSystem& system, double tolerance) {
@@ -221,7 +269,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
   MatrixXd start_together(2 * I, 0);
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
-    const ReducedSystem reduced = slave_to(system, one);
+    const ReducedSystem reduced = slave_to(system, one, sufficient(system, one, tolerance));
     if (reduced.converged) alone[std::size_t(g)] = of_reduction(reduced, tolerance);
     name_modes(alone[std::size_t(g)], system, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty())
@@ -231,8 +279,8 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
   }
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
-    while (Index(together.size()) < I) {
-      const ReducedSystem reduced = slave_to(system, together);
+    while (!too_many(together, I)) {
+      const ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
       if (reduced.converged) {
         search.exponents = of_reduction(reduced, tolerance);
         name_modes(search.exponents, system, together);
@@ -244,7 +292,11 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
       strength.maxCoeff(&next);
       together.push_back(next);
     }
-    if (Index(together.size()) == I) return propagate_all(system, tolerance);
+    if (too_many(together, I)) {
+      search = propagate_all(system, tolerance);
+      for (const Exponents& pair : alone) sharpen(search.exponents, pair);
+      return search;
+    }
     search.evidence = fmt::format(
         "{} modes propagated over a turn by Radau IIA, the others slaved to them; {} modes "
         "each with the others slaved to it",
@@ -281,18 +333,8 @@ Search by_hill(const ScaledSystem& system) {
   return search;
 }
 
-// Relative error of alpha that moves no kept mode's exponent by more than a tenth of what is allowed:
-// ds = d alpha/(2 w).
-double sufficient(const ScaledSystem& system, const std::vector<Index>& kept, double tolerance) {
-  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
-  double smallest = 1;
-  for (const Index s : kept)
-    smallest = std::min(smallest, std::max(b(s) / 2, 0.01) / std::max(std::sqrt(std::abs(w2(s))), 0.01));
-  return 0.1 * tolerance * smallest;
-}
-
 // Only the leading exponents: the slowest modes with the others slaved to them, and a bound that puts all other
-// exponents below. Empty if no bound does.
+// exponents below; without such a bound all modes propagated. Empty if neither serves.
 std::optional<Search> leading(const ScaledSystem& system, double tolerance, const std::vector<int>& keep) {
   const Index I = system.num_modes();
   if (!system.diagonal_damping) return std::nullopt;
@@ -310,7 +352,7 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
     }
     together.push_back(slowest);
   }
-  while (Index(together.size()) < I) {
+  while (!too_many(together, I)) {
     const ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
     if (reduced.converged) {
       Search search;
@@ -319,7 +361,7 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
       double growth = -HUGE_VAL;
       for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
         growth = std::max(growth, search.exponents.s[i].real() - search.exponents.error[i]);
-      if (!(std::max(reduced.others_below, search.exponents.others_below) < growth)) return std::nullopt;
+      if (!(std::max(reduced.others_below, search.exponents.others_below) < growth)) break;
       search.method = StabilityMethod::slaving;
       search.evidence = fmt::format("{} modes kept, the others slaved to them and bounded below the leading exponent",
                                     together.size());
@@ -332,6 +374,7 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
     strength.maxCoeff(&next);
     together.push_back(next);
   }
+  if (I > most_modes_propagated) return std::nullopt;
   return propagate_all(system, tolerance, true);
 }
 

@@ -14,7 +14,7 @@ using std::sqrt;
 constexpr double largest_contraction = 0.35;
 // Pairs with (largest own coupling)/|D| above this enter the core; below 0.1 the core costs more than it saves.
 constexpr double core_threshold = 0.5;
-constexpr std::size_t largest_core = 64;  // pairs
+constexpr std::size_t largest_core = 96;  // pairs
 constexpr int most_iterations = 60;
 
 double turn_norm(const Spectrum& x) { return sqrt(2 * x.squaredNorm() - x.row(0).squaredNorm()); }

@@ -166,7 +166,8 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const SweepP
     if (!std::isfinite(first) || !std::isfinite(last)) continue;
     const double low = std::min(first, last), high = std::max(first, last);
     const double half_width = 0.5 * (modes_a[j].damping() / a.speed + modes_b[j].damping() / b.speed);
-    if (!(half_width < 2 * (high - low))) continue;  // wide enough to show on the points themselves
+    // Wide enough to show on the points themselves, or growing.
+    if (!(half_width > 0 && half_width < 2 * (high - low))) continue;
     for (double n = std::max(1.0, std::floor(low) + 1); n < high && n <= most; ++n) {
       const double t = (n - first) / (last - first), x = a.x + t * (b.x - a.x);
       const double flank = std::min({3 * half_width / (high - low) * (b.x - a.x), 0.5 * (x - a.x), 0.5 * (b.x - x)});

@@ -1,0 +1,20 @@
+// Eigenvalues of a matrix that is known up to a change of given size.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace hb {
+
+struct InexactEigenvalues {
+  Eigen::VectorXcd value;
+  // Every matrix within the change has just as many eigenvalues inside the circle of this radius about `value` as M.
+  // Infinite if no such radius was found.
+  Eigen::VectorXd radius;
+};
+
+// `change` is in the 2-norm. Discs by Gershgorin's theorem in the coordinates of the eigenvectors where they are apart;
+// otherwise, for eigenvalues that lie close or are defective, circles on which no such matrix has an eigenvalue,
+// checked at eight points with a factor of two between them.
+[[nodiscard]] InexactEigenvalues inexact_eigenvalues(const Eigen::MatrixXd& M, double change);
+
+}  // namespace hb

@@ -1,0 +1,258 @@
+#include "hb/turn_exponents.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "hb/inexact_eigenvalues.hpp"
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+constexpr double eps = 2.220446049250313e-16;
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// One mode, two exponents: with the determinant known (Liouville), s = -b/2 +- acosh(disc)/(2 pi),
+// disc = tr Phi/(2 sqrt(det Phi)) and det Phi = exp(-2 pi b), whatever the size of the multipliers.
+TurnExponents discriminant(const Eigen::Matrix2d& M, double log_size, double change, double damping) {
+  const double mean = -damping / 2;
+  const double log_disc = std::log(std::max(std::abs(M.trace() / 2), 1e-300)) + log_size - two_pi * mean;
+  if (log_disc > 20) {  // acosh(x) = ln 2x to rounding
+    const double growth = (log_disc + std::numbers::ln2) / two_pi, angle = M.trace() < 0 ? 0.5 : 0;
+    const double error = 2 * change / std::abs(M.trace() / 2) / two_pi;
+    return {{{mean + growth, angle}, {mean - growth, angle}}, {error, error}, -HUGE_VAL, {}};
+  }
+  const double scale = std::exp(log_size - two_pi * mean);
+  const double disc = M.trace() / 2 * scale, error = change * scale;
+  const double mean_error = 4 * eps * std::abs(mean);
+  const double size = std::abs(disc), angle = disc < 0 ? 0.5 : 0;
+  TurnExponents result;
+  if (size <= 1) {
+    const double turn = std::acos(std::clamp(disc, -1.0, 1.0)) / two_pi;
+    // Within `error` of +-1 the pair may as well be real.
+    const double slack = (std::acos(std::max(size - error, -1.0)) - std::acos(size)) / two_pi;
+    const double growth = size + error > 1 ? std::acosh(std::max(1.0, size + error)) / two_pi : 0;
+    result.s = {{mean, -turn}, {mean, turn}};
+    result.error = {mean_error + slack + growth, mean_error + slack + growth};
+  } else {
+    const double growth = std::acosh(size) / two_pi;
+    const double up = std::acosh(size + error) / two_pi - growth;
+    const double down = growth - std::acosh(std::max(1.0, size - error)) / two_pi;
+    const double turn = size - error < 1 ? std::acos(std::max(size - error, -1.0)) / two_pi : 0;
+    result.s = {{mean + growth, angle}, {mean - growth, angle}};
+    result.error = {mean_error + std::max(up, down) + turn, mean_error + std::max(up, down) + turn};
+  }
+  return result;
+}
+
+// A = Q R by Householder reflections; A is overwritten by R. Small fixed sizes with columns padded to whole registers:
+// several times faster than the general routine.
+template <int size>
+void orthogonalise(Eigen::Matrix<double, size, size>& A, Eigen::Matrix<double, size, size>& Q) {
+  using Square = Eigen::Matrix<double, size, size>;
+  if constexpr (size == Eigen::Dynamic) {
+    const Eigen::HouseholderQR<Square> qr(A);
+    Q = qr.householderQ();
+    A = qr.matrixQR().template triangularView<Eigen::Upper>();
+  } else {
+    constexpr int padded = (size + 3) / 4 * 4;
+    using Columns = Eigen::Matrix<double, padded, size>;
+    Columns R = Columns::Zero(), V, P = Columns::Zero();
+    R.template topRows<size>() = A;
+    std::array<double, size> beta;
+    for (int k = 0; k < size; ++k) {
+      auto v = V.col(k);
+      v = R.col(k);
+      v.head(k).setZero();
+      const double end = v(k) > 0 ? -v.norm() : v.norm();
+      v(k) -= end;
+      const double squared = v.squaredNorm();
+      beta[std::size_t(k)] = squared > 0 ? 2 / squared : 0;
+      for (int j = k + 1; j < size; ++j) R.col(j) -= beta[std::size_t(k)] * v.dot(R.col(j)) * v;
+      R(k, k) = end;
+    }
+    for (int k = 0; k < size; ++k) P(k, k) = 1;
+    for (int k = size - 1; k >= 0; --k)
+      for (int j = k; j < size; ++j) P.col(j) -= beta[std::size_t(k)] * V.col(k).dot(P.col(j)) * V.col(k);
+    Q = P.template topRows<size>();
+    A = R.template topRows<size>().template triangularView<Eigen::Upper>();
+  }
+}
+
+// R_i, i = 1..N, and what turns the last of them back to the first: Q_0^T Q_N.
+struct Sweep {
+  MatrixXd R;  // n x n N
+  MatrixXd turned;
+  std::vector<Index> ends;  // of the diagonal blocks: exclusive
+  double closing = 0;  // what is left below the blocks of `turned`
+  MatrixXd Q;
+};
+
+// Q_i R_i = Phi_i Q_(i-1); over the turns Q_0 turns into the ordered invariant subspaces. `from`: Q_0 to start from, or
+// empty: both states of one mode after the other.
+template <int size>
+Sweep sweep(const TurnMaps& maps, const MatrixXd& from) {
+  using Square = Eigen::Matrix<double, size, size>;
+  const Index n = maps.num_states(), N = maps.num_cells;
+  constexpr int most_sweeps = 16;
+  const double apart = std::log(10.0);
+  Sweep result{MatrixXd(n, n * N), {}, {}, 0, {}};
+  Square Q = Square::Zero(n, n), start, next;
+  if (from.rows() == n)
+    Q = from;
+  else
+    for (Index i = 0; i < n; ++i) Q(i % 2 == 0 ? i / 2 : n / 2 + i / 2, i) = 1;
+  for (int count = 0; count < most_sweeps; ++count) {
+    start = Q;
+    VectorXd logs = VectorXd::Zero(n);
+    for (Index i = 0; i < N; ++i) {
+      next.noalias() = maps.cells.middleCols<size>(n * i, n).lazyProduct(Q);
+      orthogonalise<size>(next, Q);
+      result.R.middleCols<size>(n * i, n) = next;
+      logs += next.diagonal().cwiseAbs().cwiseMax(1e-300).array().log().matrix();
+    }
+    // Split where the growth over the turn differs by 10 and the leading subspace has come back onto itself.
+    result.turned = start.transpose() * Q;
+    result.ends.clear();
+    bool settled = true;
+    for (Index j = 1; j < n; ++j) {
+      if (!(logs(j - 1) - logs(j) > apart)) continue;
+      if (result.turned.bottomLeftCorner(n - j, j).norm() <= 1e-13 * std::sqrt(double(n)))
+        result.ends.push_back(j);
+      else
+        settled = false;
+    }
+    result.ends.push_back(n);
+    if (settled && count > 0) break;
+  }
+  for (const Index end : result.ends)
+    if (end < n) result.closing = std::max(result.closing, result.turned.bottomLeftCorner(n - end, end).norm());
+  result.Q = Q;
+  return result;
+}
+
+// Product of the diagonal blocks of R, |M| = 1, its size kept apart as a logarithm, and what a change of the cell maps
+// does to it.
+struct BlockProduct {
+  MatrixXd M;
+  double log_size = 0;
+  double change = 0;  // |dM|
+  double log_bound = 0;  // log of the product of the norms
+};
+
+// A cell map known to `cell_error` of its own size, block or not, changes the product by
+// sum_i |behind_i| |Phi_i| |before_i|. A leading subspace that has not quite come back is a change of the last cell.
+template <int size, int most = size>
+BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell_error) {
+  using Square = Eigen::Matrix<double, size, size, Eigen::ColMajor, most, most>;
+  const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
+  const auto block = [&](Index i) { return sweep.R.block<size, size>(begin, n * i + begin, p, p); };
+  const auto whole = [&](Index i) { return sweep.R.middleCols(n * i, n).norm(); };
+  BlockProduct result;
+  std::vector<double> before(std::size_t(N) + 1, 0);
+  Square product = Square::Identity(p, p);
+  for (Index i = 0; i < N; ++i) {
+    product = block(i).lazyProduct(product).eval();
+    const double norm = std::max(product.norm(), 1e-300);
+    product /= norm;
+    result.log_size += std::log(norm);
+    before[std::size_t(i) + 1] = result.log_size;
+  }
+  Square behind = Square::Identity(p, p);
+  double log_behind = 0;
+  for (Index i = N - 1; i >= 0; --i) {
+    const bool last = i == N - 1;
+    const double norm = whole(i);
+    const double term =
+        std::exp(std::min(before[std::size_t(i)] + log_behind + std::log(norm) - result.log_size, 600.0));
+    result.change += (cell_error + (last ? sweep.closing : 0)) * term;
+    result.log_bound += std::log(block(i).norm() + (cell_error + (last ? sweep.closing : 0)) * norm);
+    behind = behind.lazyProduct(block(i)).eval();
+    const double size_behind = std::max(behind.norm(), 1e-300);
+    behind /= size_behind;
+    log_behind += std::log(size_behind);
+  }
+  result.M = sweep.turned.block(begin, begin, p, p) * product;
+  return result;
+}
+
+template <int size>
+TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_only, const MatrixXd& subspaces) {
+  const Index n = maps.num_states();
+  const bool at_once = leading_only || n == 2;
+  const Sweep swept = at_once ? Sweep{maps.cells, MatrixXd::Identity(n, n), {n}, 0, {}} : sweep<size>(maps, subspaces);
+
+  TurnExponents result;
+  const auto lose = [&](double bound) {
+    result.others_below = std::isnan(bound) ? HUGE_VAL : std::max(result.others_below, bound);
+  };
+  Index begin = 0;
+  for (const Index end : swept.ends) {
+    const Index p = end - begin;
+    const auto [M, log_size, change, log_bound] =
+        p == n ? block_product<size>(swept, begin, p, cell_error)
+               : block_product<Eigen::Dynamic, size>(swept, begin, p, cell_error);
+    begin = end;
+    if (n == 2) return discriminant(M, log_size, change, maps.damping_trace);
+    if (!(change < 0.5)) {
+      lose(log_bound / two_pi);
+      continue;
+    }
+    const InexactEigenvalues mu = inexact_eigenvalues(M, change);
+    for (Index j = 0; j < p; ++j) {
+      const double radius = mu.radius(j), modulus = std::abs(mu.value(j));
+      if (!(radius < 0.5 * modulus)) {
+        lose((std::log(modulus + radius) + log_size) / two_pi);
+        continue;
+      }
+      double argument = std::arg(mu.value(j));
+      if (argument <= -std::numbers::pi) argument = std::numbers::pi;
+      result.s.emplace_back((std::log(modulus) + log_size) / two_pi, argument / two_pi);
+      result.error.push_back(1.5 * radius / modulus / two_pi);
+    }
+  }
+  std::vector<std::size_t> order(result.s.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) {
+    if (result.s[i].real() != result.s[j].real()) return result.s[i].real() > result.s[j].real();
+    return result.s[i].imag() < result.s[j].imag();
+  });
+  TurnExponents sorted;
+  sorted.others_below = result.others_below;
+  sorted.subspaces = swept.Q;
+  for (const std::size_t i : order) {
+    sorted.s.push_back(result.s[i]);
+    sorted.error.push_back(result.error[i]);
+  }
+  return sorted;
+}
+
+}  // namespace
+
+TurnExponents turn_exponents(const TurnMaps& maps, double cell_error, bool leading_only, const MatrixXd& subspaces) {
+  switch (maps.num_states()) {
+    case 2:
+      return exponents<2>(maps, cell_error, leading_only, subspaces);
+    case 4:
+      return exponents<4>(maps, cell_error, leading_only, subspaces);
+    case 6:
+      return exponents<6>(maps, cell_error, leading_only, subspaces);
+    case 8:
+      return exponents<8>(maps, cell_error, leading_only, subspaces);
+    case 10:
+      return exponents<10>(maps, cell_error, leading_only, subspaces);
+    default:
+      return exponents<Eigen::Dynamic>(maps, cell_error, leading_only, subspaces);
+  }
+}
+
+}  // namespace hb
