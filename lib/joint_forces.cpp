@@ -85,6 +85,14 @@ std::vector<ResponseSamples> response_samples(const std::vector<LinkResponse>& r
 
 constexpr int force_group = 0, torque_group = 1;
 
+// Sum over both signs of the coefficients of one row beyond its length, twice. Of a row that has not decayed the last
+// eighth stands for what is missing.
+double left_out(const TurnSeries& turn, Eigen::Index row) {
+  const Eigen::Index size = turn.series.c.cols();
+  const Eigen::Index length = std::min(turn.length[static_cast<std::size_t>(row)], size - size / 8);
+  return 4 * turn.series.c.row(row).tail(size - length).cwiseAbs().sum();
+}
+
 }  // namespace
 
 // Sampled per crank angle: rigid and elastic (x, y) of every row, then rigid and elastic torque.
@@ -135,7 +143,7 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
   for (const LinkResponse& response : responses) H = std::max(H, response.q.num_harmonics());
   TurnSamplingOptions options{.tolerance = tolerance};
   while (options.first < 2 * H + 2) options.first *= 2;
-  options.last = std::max(options.last, options.first);
+  options.last = std::max(options.last, 2 * options.first);
   const TurnSeries turn = sample_turn(components, fill, options);
 
   JointForces result;
@@ -144,9 +152,12 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
     const bool normal_only = row.kind == Row::Kind::guide;
     const Eigen::Index first = 4 * i + (normal_only ? 1 : 0), count = normal_only ? 1 : 2;
     result.joints.push_back({row.name, cut_rows(turn, first, count), cut_rows(turn, first + 2, count)});
+    for (Eigen::Index c = 0; c < count; ++c)
+      result.force_error = std::max({result.force_error, left_out(turn, first + c), left_out(turn, first + 2 + c)});
   }
   result.torque_rigid = cut_rows(turn, 4 * num_rows, 1);
   result.torque = cut_rows(turn, 4 * num_rows + 1, 1);
+  result.torque_error = std::max(left_out(turn, 4 * num_rows), left_out(turn, 4 * num_rows + 1));
   return result;
 }
 

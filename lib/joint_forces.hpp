@@ -71,10 +71,13 @@ struct JointForce {
 struct JointForces {
   std::vector<JointForce> joints;
   FourierSeries torque_rigid, torque;  // 1 component
+  // Estimated errors of any force component and of the torque, elastic or rigid, from sampling the turn and from
+  // rounding: coefficients left out, twice, as what lies beyond the last one was folded onto those kept.
+  double force_error = 0, torque_error = 0;
 };
 
 // Over the whole turn at one speed (rad per unit time); sampling doubles until the Fourier coefficients have decayed
-// below `tolerance` relative to the largest (or 2^14 samples). An empty `responses` gives elastic = rigid.
+// below `tolerance` relative to the largest (or 2^14 samples, or twice what the responses need). An empty `responses` gives elastic = rigid.
 [[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed,
                                       const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
 

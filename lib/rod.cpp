@@ -80,11 +80,12 @@ LinkageCoefficients linkage_coefficients(const Linkage& linkage, double toleranc
   };
   TurnSamplingOptions options{.tolerance = tolerance};
   while (options.first < 2 * slider_force_harmonics(linkage) + 2) options.first *= 2;
-  options.last = std::max(options.last, options.first);
+  options.last = std::max(options.last, 2 * options.first);
   const TurnSeries turn = sample_turn(components, fill, options);
 
   result.num_samples = turn.num_samples;
   result.tail = turn.tail;
+  result.resolved = turn.reached || turn.tail <= 1e-10;
   for (std::size_t i = 0; i < result.links.size(); ++i) {
     RodCoefficients& rod = result.rods.emplace_back();
     for (int p = 0; p < 3; ++p) rod.f[at(p)] = cut_rows(turn, 15 * static_cast<Eigen::Index>(i) + 5 * p, 5);

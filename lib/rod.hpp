@@ -28,10 +28,14 @@ struct LinkageCoefficients {
   std::vector<RodCoefficients> rods;     // one per link
   Eigen::Index num_samples = 0;          // of the crank angle that were needed
   double tail = 0;                       // largest coefficient left out, relative to the largest of its kind
+  // The coefficients have decayed, to rounding or below 1e-10. If not, the linkage comes so near a dead centre that
+  // num_samples do not show its motion: nothing computed from the coefficients is worth anything.
+  bool resolved = true;
 };
 
 // Samples one turn with N = 64, 128, ... points until the Fourier coefficients have decayed to rounding (`tolerance`
-// relative, per f_k^(p)) or N = 2^14, and cuts what is below rounding. Precondition: find_obstruction() is empty.
+// relative, per f_k^(p)) or N = 2^14 (twice what the slider forces need, if that is more), and cuts what is below
+// rounding. Precondition: find_obstruction() is empty.
 [[nodiscard]] LinkageCoefficients linkage_coefficients(const Linkage& linkage, double tolerance = 1e-16);
 
 // M, B, C, h of (3.8)-(3.13) with I = num_modes terms, divided by EJ as in the paper.

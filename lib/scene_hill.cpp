@@ -51,8 +51,8 @@ std::optional<Eigen::VectorXd> read_vector(const TableView& table, std::string_v
   const auto values = table.numbers(key, finite_number);
   if (!values) return std::nullopt;
   if (static_cast<Eigen::Index>(values->size()) != size) {
-    table.problem(
-        key, fmt::format("found {}, allowed {} numbers, as many as mass has rows", describe(*table.node(key)), size));
+    table.problem(key, fmt::format("found {}, allowed {}, as many as mass has rows", describe(*table.node(key)),
+                                   counted(size, "number")));
     return std::nullopt;
   }
   return Eigen::Map<const Eigen::VectorXd>(values->data(), size);

@@ -1,5 +1,7 @@
 #include "lib/scene_keys.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace hb {
@@ -108,6 +110,10 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 }
 
 std::string nearest_name(std::string_view name, const TableKind& kind) { return nearest_name(name, names_of(kind)); }
+
+std::string counted(std::ptrdiff_t count, std::string_view noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
 
 std::string joined(const std::vector<std::string>& names) {
   std::string text;

@@ -1,6 +1,7 @@
 // Which keys a scene may hold, table by table: one list for reading, for overrides and for proposing the nearest name.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,9 @@ struct TableKind {
 // The candidate with the smallest edit distance to `name`, or "" if none is near (more than half the letters differ).
 [[nodiscard]] std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 [[nodiscard]] std::string nearest_name(std::string_view name, const TableKind& kind);
+
+// "1 row", "2 rows".
+[[nodiscard]] std::string counted(std::ptrdiff_t count, std::string_view noun);
 
 // "a, b, c", cut after some twenty names.
 [[nodiscard]] std::string joined(const std::vector<std::string>& names);

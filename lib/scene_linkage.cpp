@@ -430,8 +430,8 @@ class LinkageReader {
     }
     if (table.has("rocker") == table.has("slider")) {
       table.problem(table.has("rocker") ? "slider" : "rocker",
-                    fmt::format("found {} rocker and slider, allowed exactly one of the two",
-                                table.has("rocker") ? "both" : "neither"));
+                    fmt::format("found {}, allowed exactly one of the two",
+                                table.has("rocker") ? "both rocker and slider" : "neither rocker nor slider"));
     } else if (const auto rocker = table.table("rocker")) {
       const TableView body = named(*rocker);
       Rocker closing;

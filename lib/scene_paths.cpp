@@ -197,7 +197,8 @@ toml::table parse_value(const Override& change) {
   std::vector<std::string> known = numeric_paths(scene);
   const std::string near = nearest_name(change.path, known);
   // Keys of the same link, if it is the key that is wrong; else whatever there is.
-  const std::string_view first = parts_of(change.path)[0];
+  std::string_view first = parts_of(change.path)[0];
+  if (const auto name = scene["crank"]["name"].value<std::string_view>(); name == first) first = "crank";
   std::vector<std::string> same;
   for (const std::string& path : known) {
     if (parts_of(path)[0] == first) same.push_back(path);

@@ -75,7 +75,7 @@ NumberTable parse_table(const std::string& text, const std::string& name, Eigen:
     header_allowed = false;
     if (header) continue;
     if (static_cast<Eigen::Index>(fields.size()) != num_columns) {
-      fail(fmt::format("{} fields", fields.size()), fmt::format("{} numbers in a row", num_columns));
+      fail(counted(static_cast<std::ptrdiff_t>(fields.size()), "field"), counted(num_columns, "number") + " in a row");
     }
     if (static_cast<Eigen::Index>(table.lines.size()) == max_rows) {
       fail("more rows", fmt::format("at most {} rows", max_rows));

@@ -79,16 +79,16 @@ TurnSeries sample_turn(const std::vector<TurnComponent>& components, const FillS
     }
     turn.length.assign(components.size(), 0);
     turn.tail = 0;
-    bool reached = true;
+    turn.reached = true;
     for (Eigen::Index i = 0; i < n; ++i) {
       const TurnComponent& component = components[static_cast<std::size_t>(i)];
       const Decay decay =
           decay_of(size.row(i).transpose(), group_scale[component.group] / component.unit, options.tolerance);
       turn.length[static_cast<std::size_t>(i)] = decay.length;
       turn.tail = std::max(turn.tail, decay.tail);
-      reached = reached && decay.reached;
+      turn.reached = turn.reached && decay.reached;
     }
-    if (reached || !samples.allFinite()) break;
+    if (turn.reached || !samples.allFinite()) break;
   }
   return turn;
 }

@@ -28,6 +28,7 @@ struct TurnSeries {
   std::vector<Eigen::Index> length;  // per component: coefficients above `tolerance` and above rounding; 0: all zero
   Eigen::Index num_samples = 0;  // N
   double tail = 0;  // largest coefficient beyond `length`, relative to the component's largest
+  bool reached = false;  // every component has decayed, to `tolerance` or to rounding
 };
 
 // Fills columns begin, begin + step, ... of samples (components x N), at tau_j = 2 pi j / N. Each sample is asked for

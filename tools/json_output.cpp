@@ -143,6 +143,12 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     json["joints"] = joints_json(*result.forces);
     json["torque"] = range_json(result.forces->torque, 0);
     json["torque"]["rigid"] = range_json(result.forces->torque_rigid, 0);
+    if (const std::optional<ForceErrors>& errors = result.force_errors) {
+      json["joints_error"] = errors->force;
+      json["torque_error"] = errors->torque;
+      json["joints_modes_error"] = errors->force_cut;
+      json["torque_modes_error"] = errors->torque_cut;
+    }
   } else if (!model.linkage() && settings.only.reactions) {
     json["joints"] = Json::object();
   }

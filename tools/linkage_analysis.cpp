@@ -8,6 +8,8 @@
 #include <chrono>
 
 #include "tools/command.hpp"
+#include "tools/output_units.hpp"
+#include "tools/scene_report.hpp"
 #include "tools/wording.hpp"
 
 namespace hb::tools {
@@ -93,6 +95,7 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
       SteadyState finer_state = solve_steady_state(*finer, speed, options);
       if (finer_state.status == SteadyStatus::singular) break;
       result.modes_error = cut_error(link, coefficients, speed, state.q, finer_state.q);
+      result.more_modes = finer_state.q;
       stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
       if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
       I = std::min(more, max_auto_modes);
@@ -103,6 +106,46 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
   result.num_modes = I;
   for (Eigen::Index i = 0; i < state.q.num_components(); ++i) result.max_abs.push_back(fourier::max_abs(state.q, i));
   result.steady = std::move(state);
+}
+
+// The steady state of a rod once more, with half as many harmonics again.
+FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
+                                  const RodResult& result) {
+  SteadyOptions options = steady_options(settings);
+  options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
+  const HillSystem& system = rod.system;
+  const SteadyState state =
+      result.num_modes == system.num_modes()
+          ? solve_steady_state(system, speed, options)
+          : solve_steady_state(ritz_system(link_of(model, rod), coefficients_of(model, rod), result.num_modes), speed,
+                               options);
+  return state.status == SteadyStatus::singular ? result.steady->q : state.q;
+}
+
+std::string unresolved_text(const Scene& scene, const LinkageCoefficients& coefficients, TransmissionAngle worst,
+                            std::size_t dyad) {
+  const Linkage& linkage = std::get<Linkage>(scene.model);
+  return fmt::format(
+      "{}: tolerance not reached: dyad {} ({}, {}) passes within {:.3g} deg of a dead centre at crank angle {:.4g} "
+      "deg, "
+      "nearer than {} crank angles a turn, the limit, can show: Fourier coefficients of {:.1e} of the largest are left "
+      "over, allowed 1e-10. Nothing was computed; `hb scene` draws the linkage",
+      scene.file.string(), dyad + 1, linkage.dyads[dyad].coupler.name,
+      body_name(linkage, closing_index(static_cast<int>(dyad))), worst.smallest * degrees_per_radian,
+      worst.crank_angle * degrees_per_radian, coefficients.num_samples, coefficients.tail);
+}
+
+[[noreturn]] void refuse_unresolved(const Scene& scene, const LinkageCoefficients& coefficients) {
+  const Linkage& linkage = std::get<Linkage>(scene.model);
+  std::size_t dyad = 0;
+  TransmissionAngle worst = transmission_angle(linkage, 0);
+  for (std::size_t d = 1; d < linkage.dyads.size(); ++d) {
+    const TransmissionAngle angle = transmission_angle(linkage, static_cast<int>(d));
+    if (!(angle.smallest < worst.smallest)) continue;
+    dyad = d;
+    worst = angle;
+  }
+  throw UnresolvedLinkage(unresolved_text(scene, coefficients, worst, dyad), static_cast<int>(dyad), worst.crank_angle);
 }
 
 std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& computed, const Settings& settings) {
@@ -199,6 +242,7 @@ SceneModel make_model(Scene scene, const Settings& settings) {
 
   if (const Linkage* linkage = model.linkage(); linkage && !model.rods.empty()) {
     model.coefficients = linkage_coefficients(*linkage);
+    if (!model.coefficients.resolved) refuse_unresolved(model.scene, model.coefficients);
     model.stages.push_back(
         {"coefficients of the geometry", watch.seconds(),
          fmt::format("{} crank angles, tail {:.1e}", model.coefficients.num_samples, model.coefficients.tail)});
@@ -231,9 +275,10 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     entry.link = rod.link;
     entry.reported = rod.reported;
     entry.num_modes = rod.system.num_modes();
-    const bool with_cut = rod.reported && wants_modes_error(only);
+    const bool shows_cut = rod.reported && wants_modes_error(only);
     if (only.steady || only.shape || only.reactions || auto_modes) {
-      solve_steady(model, rod, speed, settings, with_cut, entry, stages);
+      solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry, stages);
+      if (!shows_cut) entry.modes_error.reset();
     } else {
       stages.push_back({"steady state of " + rod.name, 0, "not asked for", true});
     }
@@ -267,17 +312,29 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     if (model.linkage()) stages.push_back({"joint forces", 0, "not asked for", true});
     return result;
   }
-  std::vector<LinkResponse> responses;
   for (const RodResult& rod : result.rods) {
-    if (rod.steady->status == SteadyStatus::singular) {
-      stages.push_back({"joint forces", 0, rod.name + " has no periodic solution", true});
-      return result;
-    }
-    responses.push_back({rod.link, rod.steady->q});
+    if (rod.steady->status != SteadyStatus::singular) continue;
+    stages.push_back({"joint forces", 0, rod.name + " has no periodic solution", true});
+    return result;
   }
   Stopwatch watch;
+  std::vector<LinkResponse> responses, more_modes;
+  double response_error = 0;
+  for (const RodResult& rod : result.rods) {
+    responses.push_back({rod.link, rod.steady->q});
+    more_modes.push_back({rod.link, rod.more_modes.c.size() > 0 ? rod.more_modes : rod.steady->q});
+    response_error = std::max(response_error, rod.steady->error_bound);
+  }
   result.forces = joint_forces(*model.linkage(), speed, responses);
   stages.push_back({"joint forces", watch.seconds(), ""});
+  Stopwatch error_watch;
+  std::vector<LinkResponse> more_harmonics;
+  for (std::size_t r = 0; r < model.rods.size(); ++r)
+    more_harmonics.push_back(
+        {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
+  result.force_errors =
+      force_errors(*model.linkage(), speed, *result.forces, response_error, more_harmonics, more_modes);
+  stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include "lib/rod.hpp"
 #include "lib/scene.hpp"
 #include "tools/common_flags.hpp"
+#include "tools/force_error.hpp"
 
 namespace hb::tools {
 
@@ -52,6 +53,7 @@ struct RodResult {
   std::optional<double> modes_error;
   std::optional<RodShape> shape;
   std::optional<Stability> stability;
+  FourierSeries more_modes;  // the steady state with more modes, where the error of the cut was looked at
 };
 
 struct SpeedResult {
@@ -59,11 +61,18 @@ struct SpeedResult {
   Only computed;  // what was asked for and exists in this scene
   std::vector<RodResult> rods;
   std::optional<JointForces> forces;
+  std::optional<ForceErrors> force_errors;
   std::vector<std::string> shortfalls;  // one sentence for each thing that missed its tolerance; empty: all reached
   std::vector<Stage> stages;
 };
 
-// Throws UsageError for a name in settings.rods that is not an elastic link.
+// A linkage that turns through, but so near a dead centre that no number of crank angles allowed shows its motion.
+class UnresolvedLinkage : public ObstructedLinkage {
+ public:
+  using ObstructedLinkage::ObstructedLinkage;
+};
+
+// Throws UsageError for a name in settings.rods that is not an elastic link, and UnresolvedLinkage.
 [[nodiscard]] SceneModel make_model(Scene scene, const Settings& settings);
 
 [[nodiscard]] SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings);

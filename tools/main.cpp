@@ -1,5 +1,6 @@
 // The `hb` command: registers the subcommands and turns exceptions into sentences and exit codes.
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -7,9 +8,13 @@
 #include <cstring>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "lib/scene.hpp"
+#include "lib/scene_keys.hpp"
 #include "tools/command.hpp"
+#include "tools/linkage_analysis.hpp"
 
 namespace {
 
@@ -23,6 +28,15 @@ int flush_output(int status) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
   fmt::print(stderr, "hb: standard output cannot be written: {}\n", std::strerror(errno));
   return hb::tools::exit_wrong_input;
+}
+
+std::string unknown_command(const CLI::App& app, const std::string& found) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const std::string near = hb::nearest_name(found, names);
+  return fmt::format("found the command \"{}\"{}, allowed {}", found, near.empty() ? "" : " (" + near + " meant?)",
+                     fmt::join(names, ", "));
 }
 
 int run(int argc, char** argv) {
@@ -46,10 +60,16 @@ int run(int argc, char** argv) {
     return status;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+      fmt::print(stderr, "hb: {}\n", unknown_command(app, argv[1]));
+      return exit_wrong_input;
+    }
     const auto chosen = app.get_subcommands();
     const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
     fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, error.what(), command);
     return exit_wrong_input;
+  } catch (const UnresolvedLinkage& error) {
+    return say(exit_not_reached, error.what());
   } catch (const hb::SceneError& error) {
     return say(exit_wrong_input, error.what());
   } catch (const UsageError& error) {

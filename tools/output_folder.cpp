@@ -2,15 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <system_error>
 
 #include "tools/command.hpp"
@@ -72,7 +75,8 @@ std::string file_name(const std::string& text) {
   return name;
 }
 
-OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
+OutputFolder::OutputFolder(fs::path folder, const std::string& command)
+    : folder_(std::move(folder)), list_(command.empty() ? "" : ".hb-" + command) {
   std::error_code error;
   // "out/" is out.
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
@@ -133,9 +137,29 @@ void OutputFolder::write(const std::string& name, const std::string& text) {
   if (close(file) != 0) fail(folder_ / name, std::strerror(errno));
 }
 
+// Only plain files in the folder itself, whatever the list says.
+void OutputFolder::remove_old(const fs::path& place, const std::vector<std::string>& written) const {
+  std::ifstream list(place / list_);
+  std::error_code ignored;
+  for (std::string name; std::getline(list, name);) {
+    const bool plain = !name.empty() && name.find('/') == std::string::npos;
+    if (plain && std::find(written.begin(), written.end(), name) == written.end() &&
+        fs::is_regular_file(fs::symlink_status(place / name, ignored)))
+      fs::remove(place / name, ignored);
+  }
+}
+
 void OutputFolder::commit() {
   std::error_code error;
   const fs::path place = fs::absolute(folder_);
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(scratch_))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  if (!list_.empty()) {
+    write(list_, fmt::format("{}\n", fmt::join(names, "\n")));
+    names.push_back(list_);
+  }
   unfinished[0] = '\0';
   if (!existed_) {
     fs::rename(scratch_, place, error);
@@ -143,14 +167,13 @@ void OutputFolder::commit() {
     committed_ = true;
     return;
   }
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(scratch_)) files.push_back(entry.path());
-  for (const fs::path& file : files) {
-    if (fs::is_directory(place / file.filename(), error)) fail(folder_ / file.filename(), "a folder has that name");
+  for (const std::string& name : names) {
+    if (fs::is_directory(place / name, error)) fail(folder_ / name, "a folder has that name");
   }
-  for (const fs::path& file : files) {
-    fs::rename(file, place / file.filename(), error);
-    if (error) fail(folder_ / file.filename(), error.message());
+  if (!list_.empty()) remove_old(place, names);
+  for (const std::string& name : names) {
+    fs::rename(scratch_ / name, place / name, error);
+    if (error) fail(folder_ / name, error.message());
   }
   fs::remove(scratch_, error);
   committed_ = true;

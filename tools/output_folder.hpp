@@ -16,7 +16,9 @@ class OutputFolder {
  public:
   // Makes the temporary folder: inside `folder` if that exists, else beside it. Throws OutputError naming the folder
   // and the reason; nothing is left behind then.
-  explicit OutputFolder(std::filesystem::path folder);
+  // Of an earlier run of the same `command` in that folder, files that are not written again go when the new ones
+  // come: it left their names in `.hb-COMMAND`. With no command named, old files stay.
+  explicit OutputFolder(std::filesystem::path folder, const std::string& command = "");
   // Removes what was not committed; Ctrl-C, SIGTERM and SIGHUP do so too. One folder at a time.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -30,7 +32,10 @@ class OutputFolder {
   void commit();
 
  private:
+  void remove_old(const std::filesystem::path& place, const std::vector<std::string>& written) const;
+
   std::filesystem::path folder_, scratch_;
+  std::string list_;  // name of the file with the names of the others; may be empty
   std::vector<std::filesystem::path> made_parents_;  // innermost last
   bool existed_ = false;
   bool committed_ = false;

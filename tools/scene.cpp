@@ -21,7 +21,7 @@ int run_scene(const CommonFlags& flags) {
   const Scene scene = read_scene(flags.scene_file, overrides(flags));
   const Settings options = settings(flags, scene);
   if (options.out) {
-    OutputFolder folder(*options.out);
+    OutputFolder folder(*options.out, "scene");
     folder.write("scene.txt", scene_table(scene));
     if (std::holds_alternative<Linkage>(scene.model)) {
       const CsvFile mechanism = mechanism_csv(scene);

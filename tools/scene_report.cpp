@@ -45,7 +45,15 @@ std::string speeds_text(const Scene& scene) {
   return "no speed";
 }
 
-std::string point_text(std::complex<double> point) {
+// cos 90 deg is 6e-17: what is rounding beside the other coordinate counts as 0.
+std::complex<double> cleaned(std::complex<double> point) {
+  const double rounding = 1e-15 * std::abs(point);
+  const auto clean = [&](double x) { return std::abs(x) <= rounding ? 0.0 : x; };
+  return {clean(point.real()), clean(point.imag())};
+}
+
+std::string point_text(std::complex<double> given) {
+  const std::complex<double> point = cleaned(given);
   return fmt::format("({:.6g}, {:.6g})", point.real(), point.imag());
 }
 
@@ -86,6 +94,14 @@ void add_body(Text& text, const Body& body, const char* kind, const Units& units
       fmt::join(frequencies, ", "), units.time, fmt::join(speeds, ", "));
 }
 
+std::string force_text(const FourierSeries& force, const Units& units) {
+  const Eigen::Index harmonics = force.num_components() == 0 ? -1 : force.num_harmonics();
+  if (harmonics < 0) return "";
+  if (harmonics > 0) return fmt::format(", applied force of {} harmonic{}", harmonics, harmonics == 1 ? "" : "s");
+  return fmt::format(", constant applied force {:.6g} {} {}/{}^2", force.c(0, 0).real(), units.mass, units.length,
+                     units.time);
+}
+
 void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
   const Units& units = scene.units;
   add(text, "gravity {:.6g} {}/{}^2 along -y\n\n", linkage.gravity, units.length, units.time);
@@ -104,9 +120,7 @@ void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
       const Slider& slider = std::get<Slider>(dyad.closing);
       add(text, "  {:<8} {:<12} mass {:.6g} {}, guide through {} {}, direction {:.6g} deg{}\n", "slider", slider.name,
           slider.mass, units.mass, point_text(slider.guide), units.length, slider.direction * degrees_per_radian,
-          slider.force.num_components() == 0 ? ""
-                                             : fmt::format(", applied force of {} harmonics",
-                                                           std::max<Eigen::Index>(0, slider.force.num_harmonics())));
+          force_text(slider.force, units));
     }
     const TransmissionAngle worst = transmission_angle(linkage, static_cast<int>(d));
     add(text, "  smallest transmission angle {:.4g} deg, at crank angle {:.4g} deg\n",
@@ -120,7 +134,10 @@ Eigen::Index highest_harmonic(const std::array<FourierSeries, 3>& powers) {
   return highest;
 }
 
-Json point_json(std::complex<double> point) { return Json::array({point.real(), point.imag()}); }
+Json point_json(std::complex<double> given) {
+  const std::complex<double> point = cleaned(given);
+  return Json::array({point.real(), point.imag()});
+}
 
 Json body_json(const Body& body, const Units& units) {
   Json json = {
@@ -148,6 +165,7 @@ Json linkage_json(const Linkage& linkage, const Units& units) {
   Json json;
   json["gravity"] = linkage.gravity;
   json["crank"] = body_json(linkage.crank.body, units);
+  json["crank"]["name"] = linkage.crank.body.name;
   json["crank"]["pivot"] = point_json(linkage.crank.pivot);
   Json& dyads = json["dyads"] = Json::array();
   for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {

@@ -62,7 +62,7 @@ int run_steady(const CommonFlags& flags) {
   const Settings options = settings(flags, scene);
   const double speed = single_speed(flags, scene);
   std::optional<OutputFolder> folder;
-  if (options.out) folder.emplace(*options.out);
+  if (options.out) folder.emplace(*options.out, "steady");
 
   const SceneModel model = make_model(std::move(scene), options);
   const SpeedResult result = analyse(model, speed, options);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <complex>
 #include <iterator>
+#include <optional>
 
 #include "tools/output_units.hpp"
 #include "tools/wording.hpp"
@@ -52,23 +53,25 @@ void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, 
 void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene) {
   const Stability& stability = *rod.stability;
   const OutputUnits units = output_units(scene);
-  std::vector<std::string> shown;
   std::size_t next = 0;
-  while (next < stability.exponents.size() && shown.size() < max_exponents_shown) {
+  for (std::size_t shown = 0; next < stability.exponents.size() && shown < max_exponents_shown; ++shown) {
+    if (shown == 0)
+      add(text, "  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate), "real part",
+          "imaginary part", "error");
     // Of a conjugate pair the first stands for both.
     const Exponent& exponent = stability.exponents[next++];
     const bool pair = next < stability.exponents.size() && exponent.value.imag() != 0 &&
                       stability.exponents[next].value == std::conj(exponent.value);
     if (pair) ++next;
-    shown.push_back(exponent_text(exponent, pair));
+    const double re = exponent.value.real() + 0.0, im = exponent.value.imag() + 0.0;
+    const auto digits = [&](double value) { return trusted_digits(value, exponent.error); };
+    add(text, "  {:<16}  {:>18}  {:>18}  {:>8.1e}\n", "", fmt::format("{:.{}g}", re, digits(re)),
+        fmt::format("{}{:.{}g}", pair ? "+-" : "", pair ? std::abs(im) : im, digits(im)), exponent.error);
   }
-  if (!shown.empty()) {
-    add(text, "  exponents [{}]   {}{}\n", units.rate, fmt::join(shown, ", "),
-        next < stability.exponents.size() ? ", ..." : "");
-  }
+  if (next < stability.exponents.size())
+    add(text, "    ... {} more (--json has all)\n", stability.exponents.size() - next);
   if (const Eigen::Index missing = unresolved_exponents(rod); missing > 0)
-    add(text, "                    {} of {} not resolved to a part in 10^6 and not listed\n", missing,
-        2 * rod.num_modes);
+    add(text, "    {} of {} not resolved to a part in 10^6 and not listed\n", missing, 2 * rod.num_modes);
   add(text, "  growth rate       {} {}{}\n", with_error(stability.growth_rate, stability.growth_error), units.rate,
       stability.converged ? "" : "  NOT REACHED");
   add(text, "  {}\n", verdict_sentence(stability, speed, scene.units));
@@ -79,7 +82,8 @@ std::string range_text(const FourierSeries& series, Eigen::Index component, doub
   return fmt::format("{:>12.6g} .. {:<12.6g}", range.min.value * factor, range.max.value * factor);
 }
 
-void add_forces(Text& text, const Linkage& linkage, const JointForces& forces, const OutputUnits& units) {
+void add_forces(Text& text, const Linkage& linkage, const JointForces& forces, const std::optional<ForceErrors>& errors,
+                const OutputUnits& units) {
   add(text,
       "Joint forces, smallest .. largest over the turn. {};\n"
       "LINK.1 acts on the link, LINK.0 is passed on to the link before it, pivots and guides act on their link.\n",
@@ -94,6 +98,11 @@ void add_forces(Text& text, const Linkage& linkage, const JointForces& forces, c
   }
   add(text, "  {:<22}  {}  {}\n", "driving torque [N m]", range_text(forces.torque_rigid, 0, units.moment),
       range_text(forces.torque, 0, units.moment));
+  if (!errors) return;
+  add(text, "  estimated errors: forces {:.1e} of the largest, torque {:.1e}", errors->force, errors->torque);
+  if (errors->force_cut > 0 || errors->torque_cut > 0)
+    add(text, "; from the cut of the modes {:.1e} and {:.1e}", errors->force_cut, errors->torque_cut);
+  add(text, "\n");
 }
 
 }  // namespace
@@ -126,7 +135,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   }
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");
   if (result.forces) {
-    add_forces(text, *model.linkage(), *result.forces, units);
+    add_forces(text, *model.linkage(), *result.forces, result.force_errors, units);
     const bool unstable = std::any_of(result.rods.begin(), result.rods.end(), [](const RodResult& rod) {
       return rod.stability && rod.stability->verdict == Verdict::unstable;
     });

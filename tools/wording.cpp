@@ -10,14 +10,6 @@
 namespace hb::tools {
 namespace {
 
-// Significant digits of a value that an error leaves, 3 to 10.
-int trusted_digits(double value, double error) {
-  constexpr int fewest = 3, most = 10;
-  if (value == 0 || !(error < std::abs(value))) return fewest;
-  if (error == 0) return most;
-  return std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value) / error))) + 1, fewest, most);
-}
-
 // How the leading exponent's disturbance returns: after one turn the same, reversed, or at a frequency of its own.
 std::string kind_of(const Stability& stability, double speed) {
   if (stability.exponents.empty()) return "";
@@ -46,19 +38,15 @@ std::string speed_text(double speed, const Scene& scene) {
   return fmt::format("omega = {:.10g} rad/{}", speed, scene.units.time);
 }
 
-std::string with_error(double value, double error) {
-  return fmt::format("{:.{}g} +/- {:.1e}", value, trusted_digits(value, error), error);
+int trusted_digits(double value, double error) {
+  constexpr int fewest = 3, most = 10;
+  if (value == 0 || !(error < std::abs(value))) return fewest;
+  if (error == 0) return most;
+  return std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value) / error))) + 1, fewest, most);
 }
 
-std::string exponent_text(const Exponent& exponent, bool conjugate_pair) {
-  const double re = exponent.value.real(), im = exponent.value.imag();
-  const std::string real = fmt::format("{:.{}g}", re, trusted_digits(re, exponent.error));
-  if (im == 0) return real;
-  return fmt::format("{} {} {:.{}g} i", real,
-                     conjugate_pair ? "+/-"
-                     : im < 0       ? "-"
-                                    : "+",
-                     std::abs(im), trusted_digits(im, exponent.error));
+std::string with_error(double value, double error) {
+  return fmt::format("{:.{}g} +/- {:.1e}", value, trusted_digits(value, error), error);
 }
 
 std::string verdict_sentence(const Stability& stability, double speed, const Units& units) {

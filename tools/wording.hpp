@@ -20,8 +20,8 @@ namespace hb::tools {
 [[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Units& units);
 // "-16.045448 +/- 1.2e-11": digits as far as the error allows.
 [[nodiscard]] std::string with_error(double value, double error);
-// "-16.05 + 0.335 i"; "-16.05 +/- 0.335 i" for a conjugate pair.
-[[nodiscard]] std::string exponent_text(const Exponent& exponent, bool conjugate_pair = false);
+// Significant digits of a value that an error leaves, 3 to 10.
+[[nodiscard]] int trusted_digits(double value, double error);
 // Along and across what the components x and y of joint forces are; elastic rockers have joints in frames of their own.
 [[nodiscard]] std::string force_frames(const std::vector<std::string>& elastic_rockers);
 [[nodiscard]] std::vector<std::string> elastic_rockers(const Linkage& linkage);

@@ -22,6 +22,19 @@ FourierSeries sampled(double (*f)(double), Eigen::Index N) {
 // 1/(1.25 - cos tau) = (4/3) sum 2^-|k| e^{ik tau}: maximum 4 at 0, minimum 4/9 at pi.
 double poisson(double tau) { return 1 / (1.25 - std::cos(tau)); }
 
+TEST(Fourier, RangeOfANarrowPeakIsTheTrueOne) {
+  // Poisson's kernel 1 + 2 sum_k r^k cos k(tau - a) = (1 - r^2)/(1 - 2 r cos(tau - a) + r^2).
+  const double r = 0.99, a = 2.3456;
+  FourierSeries series(1, 3000);
+  for (Eigen::Index k = 0; k <= 3000; ++k)
+    series.c(0, k) = std::polar(std::pow(r, static_cast<double>(k)), -a * static_cast<double>(k));
+  const Range range = fourier::range(series, 0);
+  EXPECT_NEAR(range.max.value, (1 + r) / (1 - r), 1e-10);
+  EXPECT_NEAR(range.max.crank_angle, a, 1e-9);
+  EXPECT_NEAR(range.min.value, (1 - r) / (1 + r), 1e-10);
+  EXPECT_NEAR(range.min.crank_angle, a + std::numbers::pi, 1e-5);
+}
+
 }  // namespace
 
 TEST(Fourier, CoefficientsOfThePoissonKernelAreItsGeometricSeries) {

@@ -69,4 +69,20 @@ TEST(JointForces, AgreeWithAnIndependentFormulationOfTheSixLinkMechanism) {
   }
 }
 
+TEST(JointForces, ErrorOfSamplingCoversTheTrueOne) {
+  const Linkage linkage = six_link::linkage({.J = 45.0});
+  const JointForces truth = joint_forces(linkage, 31.4, {}, 1e-16);
+  for (const double tolerance : {1e-2, 1e-3, 1e-5, 1e-8, 1e-11}) {
+    const JointForces forces = joint_forces(linkage, 31.4, {}, tolerance);
+    double error = 0;
+    for (std::size_t j = 0; j < forces.joints.size(); ++j)
+      error = std::max(
+          error, (fourier::synthesise(forces.joints[j].rigid, 512) - fourier::synthesise(truth.joints[j].rigid, 512))
+                     .cwiseAbs()
+                     .maxCoeff());
+    EXPECT_LE(error, forces.force_error) << tolerance;
+    EXPECT_LE(forces.force_error, 100 * error + truth.force_error) << tolerance;
+  }
+}
+
 }  // namespace

@@ -471,7 +471,7 @@ TEST(SceneErrors, WrongTablesOfNumbersAreNamedWithTheirLine) {
            {"0, 1\n90, 2\n180, x\n270, 4\n", "force.csv:3: ", {"\"x\""}, deg},
            {"0, 1\n90, 2\n180, nan\n270, 4\n", "force.csv:3: ", {"nan"}, deg},
            {"0, 1\n90, 2\n180, inf\n270, 4\n", "force.csv:3: ", {"inf"}, deg},
-           {"0, 1\n90\n180, 3\n270, 4\n", "force.csv:2: ", {"1 fields", "2 numbers"}, deg},
+           {"0, 1\n90\n180, 3\n270, 4\n", "force.csv:2: ", {"1 field,", "2 numbers"}, deg},
            {"0, 1, 5\n90, 2\n", "force.csv:1: ", {"3 fields"}, deg},
            {"0, 1\n90, \n", "force.csv:2: ", {"\"\""}, deg},
            {"a, b\nc, d\n0, 1\n", "force.csv:2: ", {"\"c\""}, deg},
