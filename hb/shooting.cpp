@@ -1,8 +1,11 @@
 #include "hb/shooting.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+#include <random>
 
 #include "hb/floquet_product.hpp"
 #include "hb/integration_cost.hpp"
@@ -40,13 +43,20 @@ Deadline deadline_after(Deadline start, double seconds) {
   return start + std::chrono::duration_cast<Deadline::duration>(std::chrono::duration<double>(std::min(seconds, 1e8)));
 }
 
+// What CVODE's local errors add up to, per step: with BDF four times the tolerance was measured, with Adams less than
+// one.
+double error_per_step(Integrator integrator, double tolerance) {
+  return (integrator == Integrator::bdf ? 5 : 1) * tolerance;
+}
+
 // What one run over the turn gives.
 struct Run {
   ShootingStatus status = ShootingStatus::failed;
   std::string message;
   Eigen::MatrixXd states;  // (x; v) at the outputs
   LogMultipliers multipliers;
-  double largest_entry = 0;  // of the segment maps
+  // Of the periodic displacements and velocities, relative to their largest, when the maps change by their own errors.
+  double x_sensitivity = 0, v_sensitivity = 0;
   long steps = 0;
 };
 
@@ -54,6 +64,33 @@ struct Precision {
   double tolerance = 0;  // CVODE
   int cells = 0;  // collocation, between outputs
 };
+
+// An ill-conditioned cycle (a multiplier near 1) amplifies errors of the maps, and in two runs that err alike the
+// difference does not show it: the cycle is solved again with every entry changed at random by up to `noise` of the
+// largest in its map.
+void add_sensitivity(Run& run, const std::vector<SegmentMap>& segments, const CyclicSolution& cycle, double noise) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform(-noise, noise);
+  std::vector<SegmentMap> changed = segments;
+  for (SegmentMap& segment : changed) {
+    const double map_size = std::max(1.0, segment.transition.cwiseAbs().maxCoeff());
+    const double load_size = segment.particular.cwiseAbs().maxCoeff();
+    for (double& entry : segment.transition.reshaped()) entry += map_size * uniform(generator);
+    for (double& entry : segment.particular) entry += load_size * uniform(generator);
+  }
+  const CyclicSolution other = solve_cyclic(changed);
+  const Eigen::Index I = segments.front().particular.size() / 2;
+  double x = 0, v = 0, dx = 0, dv = 0;
+  for (std::size_t k = 0; k < segments.size(); ++k) {
+    const Eigen::VectorXd &state = cycle.states[k], change = other.states[k] - state;
+    x = std::max(x, state.head(I).cwiseAbs().maxCoeff());
+    v = std::max(v, state.tail(I).cwiseAbs().maxCoeff());
+    dx = std::max(dx, change.head(I).cwiseAbs().maxCoeff());
+    dv = std::max(dv, change.tail(I).cwiseAbs().maxCoeff());
+  }
+  run.x_sensitivity = x > 0 ? dx / x : 0;
+  run.v_sensitivity = v > 0 ? dv / v : 0;
+}
 
 // All 2I unit columns and the forced one over every segment; then the cycle.
 Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int num_segments, int num_outputs,
@@ -84,7 +121,6 @@ Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int 
     }
     const Eigen::MatrixXd& end = part.states.back();
     segments.push_back({end.leftCols(n), end.col(n)});
-    run.largest_entry = std::max(run.largest_entry, end.leftCols(n).cwiseAbs().maxCoeff());
     for (Eigen::MatrixXd& state : part.states) maps.push_back(std::move(state));
   }
 
@@ -101,6 +137,10 @@ Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int 
     run.message = "a multiplier is 1 to the accuracy of the integration: no unique periodic solution";
     return run;
   }
+  // Errors of the steps add up at random.
+  const double per_step =
+      eps + (integrator == Integrator::collocation ? 0 : error_per_step(integrator, precision.tolerance));
+  add_sensitivity(run, segments, cycle, per_step * std::sqrt(static_cast<double>(run.steps) / num_segments));
   // states(j) belongs to tau_j; the map to tau_(j+1) starts at its segment's first state.
   for (int j = 0; j < num_outputs; ++j) {
     const Eigen::VectorXd& first = cycle.states[static_cast<std::size_t>(j / outputs_per_segment)];
@@ -210,6 +250,7 @@ Plan choose_plan(ScaledMotion& motion, const FrozenSpectrum& spectrum, const Sho
 
 void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& options, double Omega, Deadline deadline,
               ShootingResult& result) {
+  if (options.begin) options.begin(plan.integrator, plan.predicted_seconds);
   const bool single = options.single_run > 0;
   const bool collocation = plan.integrator == Integrator::collocation;
   result.integrator = plan.integrator;
@@ -244,18 +285,26 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
   if (fine.status != ShootingStatus::converged) return;
 
   result.orbit = orbit_of(motion, fine.states);
-  // Collocation: rounding, some 1e-14 (measured), taken tenfold. CVODE: a hundred local errors.
-  const double map_error = collocation ? 1e-13 : 100 * plan.fine.tolerance;
+  // Collocation: rounding, some 1e-15 (measured), taken tenfold. CVODE: all steps of a segment err the same way.
+  const double map_error = collocation ? 1e-14
+                                       : error_per_step(plan.integrator, plan.fine.tolerance) *
+                                             static_cast<double>(fine.steps) / plan.num_segments;
   result.exponents = exponents_of(fine, single ? nullptr : &coarse, map_error, Omega);
   result.some_below = fine.multipliers.some_below;
+  if (result.some_below && !result.exponents.empty()) result.complete_above = result.exponents.back().value.real();
   if (!single) {
     result.coarser = orbit_of(motion, coarse.states);
     const double rounding = 1e-14 + eps * std::sqrt(static_cast<double>(fine.steps));
-    result.q_error = difference_factor * relative_difference(result.orbit.q, result.coarser.q) + rounding;
-    result.q1_error = difference_factor * relative_difference(result.orbit.q1, result.coarser.q1) + rounding;
+    const auto error = [&](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, double sensitivity) {
+      return difference_factor * (relative_difference(a, b) + sensitivity) + rounding;
+    };
+    result.q_error = error(result.orbit.q, result.coarser.q, fine.x_sensitivity);
+    result.q1_error = error(result.orbit.q1, result.coarser.q1, fine.v_sensitivity);
     // Exponents on which two accuracies disagree grossly are those of modes that were not resolved.
     const auto resolved = [&](const Exponent& e) { return e.error <= 1e-3 * (Omega + std::abs(e.value.real())); };
     while (result.exponents.size() > 1 && !resolved(result.exponents.back())) {
+      const Exponent& last = result.exponents.back();
+      result.complete_above = std::max(result.complete_above, last.value.real() + last.error);
       result.exponents.pop_back();
       result.some_below = true;
     }
@@ -271,6 +320,9 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
   for (const Exponent& e : result.exponents)
     if (e.value.real() + e.error > result.growth_rate)
       result.growth_error = std::max(result.growth_error, e.value.real() + e.error - result.growth_rate);
+  // One that was not resolved may be the leading one.
+  if (result.complete_above > result.growth_rate)
+    result.growth_error = std::max(result.growth_error, result.complete_above - result.growth_rate);
   result.verdict = result.growth_rate - result.growth_error > 0   ? Verdict::unstable
                    : result.growth_rate + result.growth_error < 0 ? Verdict::stable
                                                                   : Verdict::undecided;
@@ -279,7 +331,11 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
       single || (result.q_error <= options.tolerance && result.growth_error <= options.tolerance * growth_scale);
   if (!reached) {
     result.status = ShootingStatus::not_reached;
-    result.message = std::string(to_string(plan.integrator)) + " does not reach the tolerance";
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "%s reaches an error of q of %.1e and of the growth rate of %.1e, asked %.1e",
+                  to_string(plan.integrator), result.q_error, result.growth_error / growth_scale, options.tolerance);
+    result.message = text.data();
   }
 }
 
@@ -328,6 +384,18 @@ ShootingResult solve_by_shooting(const TimeDomainSystem& system, const ShootingO
   return result;
 }
 
+namespace {
+
+// Factor per turn by which the changes shrank over the second half of the turns; 1 before it can be told.
+double measured_decay(const std::vector<double>& changes) {
+  constexpr std::size_t least = 16;
+  const std::size_t n = changes.size(), half = n / 2;
+  if (n < least || !(changes.back() < changes[half])) return changes.back() == 0 ? 0 : 1;
+  return std::pow(changes.back() / changes[half], 1 / static_cast<double>(n - 1 - half));
+}
+
+}  // namespace
+
 MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOptions& options) {
   const Deadline start = std::chrono::steady_clock::now();
   const Deadline deadline = deadline_after(start, options.time_limit);
@@ -335,7 +403,7 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
   const FrozenSpectrum spectrum = frozen_spectrum(motion);
   const Eigen::Index n = 2 * motion.num_modes();
   const double tolerance = options.integrator_tolerance > 0 ? options.integrator_tolerance
-                                                            : std::clamp(options.tolerance / 100, 1e-13, 1e-3);
+                                                            : std::clamp(options.tolerance / 1000, 1e-13, 1e-3);
   MarchingResult result;
   result.integrator = options.integrator;
   if (result.integrator != Integrator::adams && result.integrator != Integrator::bdf)
@@ -369,7 +437,8 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
   for (int j = 0; j < num_outputs; ++j) outputs[static_cast<std::size_t>(j)] = turn * (j + 1) / num_outputs;
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(n, 1), states(n, num_outputs), before;
   const Eigen::VectorXd load = Eigen::VectorXd::Ones(1);
-  double change_before = 0;
+  std::vector<double> changes;
+  double envelope = 0;
   result.status = ShootingStatus::time_limit;
   while (true) {
     // Each turn starts at tau = 0 again: the coefficients are periodic and a large tau would cost digits.
@@ -389,12 +458,15 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
     state = trajectory.states.back();
     const double size = states.cwiseAbs().maxCoeff();
     result.change = size > 0 ? (state - states.col(0)).cwiseAbs().maxCoeff() / size : 0;
-    if (result.turns > 1 && change_before > 0) result.decay_per_turn = result.change / change_before;
-    change_before = result.change;
-    // The rest of the transient sums to change/(1 - decay).
-    const double rest = result.change / std::max(1e-3, 1 - std::min(result.decay_per_turn, 1.0));
-    result.q_error = rest + 100 * tolerance;
-    if (rest <= options.tolerance) {
+    changes.push_back(result.change);
+    result.decay_per_turn = per_turn < 0 ? std::exp(per_turn) : measured_decay(changes);
+    // A transient that oscillates passes through small changes: the envelope of the changes shrinks by the decay. What
+    // is left sums to envelope/(1 - decay), and so do the errors of the turns.
+    envelope = std::max(envelope * result.decay_per_turn, result.change);
+    const double turns_kept = 1 / (1 - result.decay_per_turn);
+    result.q_error =
+        turns_kept * (envelope + error_per_step(result.integrator, tolerance) * static_cast<double>(trajectory.steps));
+    if (envelope * turns_kept <= options.tolerance) {
       result.status = ShootingStatus::converged;
       break;
     }

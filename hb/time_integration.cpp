@@ -226,11 +226,10 @@ std::pair<double, double> legendre(Eigen::Index n, double s) {
 }
 
 // Nodes c: roots of P_s(2c-1) - P_(s-1)(2c-1), the last one c = 1. A_ij = int_0^c_i L_j: integration of the Lagrange
-// polynomials, here by solving A V = R with V_jk = P_k(2 c_j - 1), R_ik = int_0^c_i P_k (2c-1) dc.
+// polynomials, here by solving A V = R with V_jk = P_k(2 c_j - 1), R_ik = int_0^c_i P_k (2c-1) dc. A2 = A A.
 struct RadauTableau {
   Eigen::VectorXd c{num_stages};
-  Eigen::MatrixXd A_inverse, A_inverse2;
-  Eigen::VectorXd A_inverse_ones;
+  Eigen::MatrixXd A, A2;
 
   RadauTableau() {
     for (Eigen::Index j = 0; j < num_stages - 1; ++j) {
@@ -261,9 +260,8 @@ struct RadauTableau {
                       : (legendre(k + 1, s).first - legendre(k - 1, s).first) / (2 * (2 * static_cast<double>(k) + 1));
       }
     }
-    A_inverse = V * R.inverse();
-    A_inverse2 = A_inverse * A_inverse;
-    A_inverse_ones = A_inverse.rowwise().sum();
+    A = V.transpose().partialPivLu().solve(R.transpose()).transpose();
+    A2 = A * A;
   }
 };
 
@@ -274,17 +272,18 @@ const RadauTableau& radau() {
 
 }  // namespace
 
-// Stages X_j = x + Z_j, with U_j = W V_j = x' at the stages: U = A^-1 Z/h, x'' = A^-1 (U - u)/h. The equation at stage
-// j,
-//   x''_j + W G W^-1 U_j + W K_j (x + Z_j) = load W f_j,
-// is one linear system of s I unknowns Z per cell. The last stage is the end of the cell.
+// With u = x', ' = d/dtau, and accelerations a_j = x'' at the stages,
+//   x_j = x + c_j h u + h^2 sum_k A2_jk a_k,   u_j = u + h sum_k A_jk a_k,   a_j + D u_j + K_j x_j = load f_j,
+// D = W G W^-1, K and f times W: one linear system of s I unknowns a per cell, the unit matrix for a short one. The
+// last stage is the end of the cell. (With displacements as unknowns, the velocity is a difference of nearly equal
+// numbers.)
 Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double tau0, const Eigen::MatrixXd& Y0,
                                  const Eigen::VectorXd& load, std::span<const double> outputs, Deadline deadline) {
   const RadauTableau& tableau = radau();
   const Eigen::Index s = num_stages, I = motion.num_modes(), m = Y0.cols();
   const Eigen::VectorXd& w = motion.w();
   const Eigen::MatrixXd damping = w.asDiagonal() * motion.G() * w.cwiseInverse().asDiagonal();
-  Eigen::MatrixXd Y = Y0, A(s * I, s * I), right(s * I, m), Z;
+  Eigen::MatrixXd Y = Y0, system(s * I, s * I), right(s * I, m);
   Trajectory trajectory;
   trajectory.states.reserve(outputs.size());
   double start = tau0;
@@ -296,25 +295,26 @@ Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double
         trajectory.message = "time limit at crank angle " + std::to_string(start + cell * h) + " rad";
         return trajectory;
       }
-      const Eigen::MatrixXd u = w.asDiagonal() * Y.bottomRows(I);
+      const Eigen::MatrixXd x = Y.topRows(I), u = w.asDiagonal() * Y.bottomRows(I);
       for (Eigen::Index j = 0; j < s; ++j) {
         motion.evaluate(start + (cell + tableau.c(j)) * h);
-        for (Eigen::Index k = 0; k < s; ++k) {
-          A.block(j * I, k * I, I, I) = h * tableau.A_inverse(j, k) * damping;
-          A.block(j * I, k * I, I, I).diagonal().array() += tableau.A_inverse2(j, k);
-        }
-        const Eigen::MatrixXd K = h * h * w.asDiagonal() * motion.K();
-        A.block(j * I, j * I, I, I) += K;
-        right.middleRows(j * I, I) = h * h * w.cwiseProduct(motion.f()) * load.transpose() - K * Y.topRows(I) +
-                                     h * tableau.A_inverse_ones(j) * u;
+        const Eigen::MatrixXd K = w.asDiagonal() * motion.K();
+        for (Eigen::Index k = 0; k < s; ++k)
+          system.block(j * I, k * I, I, I) = h * tableau.A(j, k) * damping + h * h * tableau.A2(j, k) * K;
+        system.block(j * I, j * I, I, I).diagonal().array() += 1;
+        right.middleRows(j * I, I) =
+            w.cwiseProduct(motion.f()) * load.transpose() - damping * u - K * (x + tableau.c(j) * h * u);
       }
       // Rows of fast modes are h^2 w^2 larger than the others: equal them before pivoting.
-      const Eigen::VectorXd row_scale = A.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
-      Z = (row_scale.asDiagonal() * A).partialPivLu().solve(row_scale.asDiagonal() * right);
-      Y.topRows(I) += Z.bottomRows(I);
-      Y.bottomRows(I).setZero();
-      for (Eigen::Index k = 0; k < s; ++k)
-        Y.bottomRows(I) += tableau.A_inverse(s - 1, k) / h * w.cwiseInverse().asDiagonal() * Z.middleRows(k * I, I);
+      const Eigen::VectorXd row_scale = system.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
+      const Eigen::MatrixXd a = (row_scale.asDiagonal() * system).partialPivLu().solve(row_scale.asDiagonal() * right);
+      Eigen::MatrixXd dx = h * u, du = Eigen::MatrixXd::Zero(I, m);
+      for (Eigen::Index k = 0; k < s; ++k) {
+        dx += h * h * tableau.A2(s - 1, k) * a.middleRows(k * I, I);
+        du += h * tableau.A(s - 1, k) * a.middleRows(k * I, I);
+      }
+      Y.topRows(I) += dx;
+      Y.bottomRows(I) += w.cwiseInverse().asDiagonal() * du;
       ++trajectory.steps;
     }
     if (!Y.allFinite()) {

@@ -7,22 +7,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
-#include "hb/fixed_step.hpp"
-#include "hb/shooting.hpp"
 #include "lib/time_domain_rod.hpp"
+#include "tools/bench_rod.hpp"
 #include "tools/command.hpp"
 #include "tools/common_flags.hpp"
 #include "tools/gnuplot.hpp"
 #include "tools/json_output.hpp"
-#include "tools/linkage_analysis.hpp"
 #include "tools/output_folder.hpp"
+#include "tools/progress.hpp"
 #include "tools/wording.hpp"
 
 namespace hb::tools {
@@ -32,178 +29,6 @@ using Json = nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-struct Row {
-  std::string rod, method;
-  double asked = 0;  // tolerance; 0: none
-  long size = 0;  // harmonics, or steps
-  double error = 0;  // max |q - reference| / max |reference|
-  double seconds = 0, median_seconds = 0;
-  bool harmonic_balance = false;
-};
-
-struct RodBench {
-  std::string name;
-  Integrator reference = Integrator::collocation;
-  double reference_error = 0;
-  Verdict verdict = Verdict::undecided;
-  std::vector<Row> rows;
-  std::vector<std::string> notes;  // what was left out, and why
-};
-
-// The orbit at the reference's angles, from N samples of which N is a multiple or a divisor.
-double error_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& reference) {
-  const Eigen::Index n = std::min(q.cols(), reference.cols());
-  double difference = 0;
-  for (Eigen::Index j = 0; j < n; ++j)
-    difference = std::max(
-        difference, (q.col(j * (q.cols() / n)) - reference.col(j * (reference.cols() / n))).cwiseAbs().maxCoeff());
-  const double error = difference / reference.cwiseAbs().maxCoeff();
-  return std::isfinite(error) ? error : INFINITY;
-}
-
-Eigen::MatrixXd at_angles(const FourierSeries& series, Eigen::Index N) {
-  Eigen::MatrixXd values(series.num_components(), N);
-  for (Eigen::Index j = 0; j < N; ++j)
-    values.col(j) = fourier::evaluate(series, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N));
-  return values;
-}
-
-// Repeats until 50 ms or 200 runs have passed, at least once; shortest and median time of one run.
-void time_row(Row& row, const std::function<void()>& work) {
-  std::vector<double> times;
-  const auto start = Clock::now();
-  do {
-    const auto begin = Clock::now();
-    work();
-    times.push_back(seconds_since(begin));
-  } while (seconds_since(start) < 0.05 && times.size() < 200);
-  std::sort(times.begin(), times.end());
-  row.seconds = times.front();
-  row.median_seconds = times[times.size() / 2];
-}
-
-RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, double time_limit) {
-  const double speed = system.speed;
-  RodBench bench;
-  bench.name = rod.name;
-  ShootingOptions tight;
-  tight.integrator = Integrator::collocation;
-  tight.tolerance = 1e-13;
-  tight.time_limit = 10 * time_limit;
-  const ShootingResult reference = solve_by_shooting(system, tight);
-  if (reference.orbit.q.size() == 0 || !(reference.orbit.q.cwiseAbs().maxCoeff() > 0)) {
-    bench.notes.push_back("no reference: " +
-                          (reference.message.empty() ? "the rod carries no load" : reference.message));
-    return bench;
-  }
-  const Eigen::MatrixXd& exact = reference.orbit.q;
-  bench.reference_error = reference.q_error;
-  bench.verdict = reference.verdict;
-  const auto note = [&](const std::string& sentence) { bench.notes.push_back(sentence); };
-
-  const auto series_row = [&](const char* method, const SteadyOptions& options, double asked) {
-    Row row{rod.name, method, asked, 0, 0, 0, 0, true};
-    SteadyState state;
-    time_row(row, [&] { state = solve_steady_state(rod.system, speed, options); });
-    if (state.status == SteadyStatus::singular) return;
-    row.size = state.num_harmonics;
-    row.error = error_of(at_angles(state.q, exact.cols()), exact);
-    bench.rows.push_back(row);
-  };
-  for (const int H : {1, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64})
-    series_row("harmonic balance, given harmonics", {.tolerance = 1e-14, .num_harmonics = H}, 0);
-  for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12})
-    series_row("harmonic balance, automatic", {.tolerance = tolerance}, tolerance);
-
-  for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
-    for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13}) {
-      Row row{rod.name, std::string("shooting, ") + to_string(integrator), tolerance};
-      ShootingResult result;
-      time_row(row, [&] {
-        result =
-            solve_by_shooting(system, {.integrator = integrator, .time_limit = time_limit, .single_run = tolerance});
-      });
-      if (result.orbit.q.size() == 0) {
-        note(fmt::format("{} at {:.0e}: {}", row.method, tolerance, result.message));
-        continue;
-      }
-      row.size = result.steps;
-      row.error = error_of(result.orbit.q, exact);
-      bench.rows.push_back(row);
-    }
-  }
-  if (bench.verdict == Verdict::unstable) {
-    note("marching: the motion is unstable, no integration from rest settles on the periodic state");
-    return bench;
-  }
-  for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
-    for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
-      Row row{rod.name, std::string("marching, ") + to_string(integrator), tolerance};
-      MarchingResult result;
-      time_row(row, [&] {
-        result = march_from_rest(system, {.tolerance = tolerance,
-                                          .integrator_tolerance = tolerance / 10,
-                                          .integrator = integrator,
-                                          .time_limit = time_limit,
-                                          .growth_rate = reference.growth_rate});
-      });
-      if (result.status != ShootingStatus::converged) {
-        note(fmt::format("{} at {:.0e}: {}", row.method, tolerance,
-                         result.message.empty() ? to_string(result.status) : result.message));
-        continue;
-      }
-      row.size = result.steps;
-      row.error = error_of(result.orbit.q, exact);
-      bench.rows.push_back(row);
-    }
-  }
-  for (const FixedStep method : {FixedStep::newmark, FixedStep::runge_kutta}) {
-    const char* name = method == FixedStep::newmark ? "marching, Newmark" : "marching, Runge-Kutta 4";
-    // The transient is followed down to about the error of the smallest step.
-    const double settled = method == FixedStep::newmark ? 1e-7 : 1e-11;
-    for (int steps = 128; steps <= (1 << 20); steps *= 4) {
-      Row row{rod.name, name};
-      MarchingResult result;
-      time_row(row, [&] { result = march_fixed_step(system, method, steps, settled, 100000, time_limit); });
-      if (result.status == ShootingStatus::time_limit) {
-        note(fmt::format("{} with {} steps a turn: {}", name, steps, result.message));
-        break;
-      }
-      if (result.status != ShootingStatus::converged) {
-        note(fmt::format("{} with {} steps a turn: {}", name, steps, result.message));
-        continue;
-      }
-      row.size = result.steps;
-      row.error = error_of(result.orbit.q, exact);
-      bench.rows.push_back(row);
-    }
-  }
-  return bench;
-}
-
-const Row* fastest(const std::vector<Row>& rows, double error, bool harmonic_balance) {
-  const Row* best = nullptr;
-  for (const Row& row : rows)
-    if (row.harmonic_balance == harmonic_balance && row.error <= error &&
-        (best == nullptr || row.seconds < best->seconds))
-      best = &row;
-  return best;
-}
-
-std::string ratio_sentence(const RodBench& bench, double error) {
-  const Row* series = fastest(bench.rows, error, true);
-  const Row* integration = fastest(bench.rows, error, false);
-  if (series == nullptr && integration == nullptr) return fmt::format("at {:.0e}: no method reaches it", error);
-  if (series == nullptr)
-    return fmt::format("at {:.0e}: only {} reaches it, in {:.3g} s", error, integration->method, integration->seconds);
-  if (integration == nullptr)
-    return fmt::format("at {:.0e}: only harmonic balance reaches it, in {:.3g} s", error, series->seconds);
-  const double ratio = integration->seconds / series->seconds;
-  return fmt::format("at {:.0e}: harmonic balance {:.3g} s, the fastest integration ({}) {:.3g} s, {:.3g} times as {}",
-                     error, series->seconds, integration->method, integration->seconds, ratio >= 1 ? ratio : 1 / ratio,
-                     ratio >= 1 ? "long" : "fast");
-}
 
 constexpr double accuracies[] = {1e-3, 1e-6, 1e-9, 1e-12};
 
@@ -240,14 +65,21 @@ std::string bench_text(const SceneModel& model, double speed, const std::vector<
   return fmt::to_string(text);
 }
 
+// A name between the quotes of bench.csv.
+std::string csv_name(std::string name) {
+  std::replace(name.begin(), name.end(), '"', '\'');
+  return name;
+}
+
 std::string bench_csv(const SceneModel& model, double speed, const std::vector<RodBench>& benches) {
-  std::string text = "scene,speed,rod,method,asked tolerance,harmonics or steps,error,seconds min,seconds median\n";
-  std::string scene = scene_name(model.scene);
-  std::replace(scene.begin(), scene.end(), '"', '\'');
+  std::string text = fmt::format(
+      "scene,speed [rad/{}],rod,method,asked tolerance,harmonics or steps,error,seconds min,seconds median\n",
+      model.scene.units.time);
+  const std::string scene = csv_name(scene_name(model.scene));
   for (const RodBench& bench : benches)
     for (const Row& row : bench.rows)
-      text += fmt::format("\"{}\",{},\"{}\",\"{}\",{},{},{},{},{}\n", scene, speed, row.rod, row.method, row.asked,
-                          row.size, row.error, row.seconds, row.median_seconds);
+      text += fmt::format("\"{}\",{},\"{}\",\"{}\",{},{},{},{},{}\n", scene, speed, csv_name(row.rod), row.method,
+                          row.asked, row.size, row.error, row.seconds, row.median_seconds);
   return text;
 }
 
@@ -279,8 +111,8 @@ Json bench_json(const SceneModel& model, double speed, const std::vector<RodBenc
   return json;
 }
 
-// One CSV per method, so that gnuplot joins its points.
-Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench, OutputFolder& folder) {
+// The rows of `bench` begin at `first_row` of bench.csv, those of each method stand together.
+Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench, std::size_t first_row) {
   Figure figure;
   figure.name = file_name("bench_" + bench.name);
   figure.width = 1050;
@@ -289,21 +121,19 @@ Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench
       "set ylabel 'max |error of q| / max |q|'\nset yrange [1e-16:10]\nset key outside right top\nplot ",
       quoted(fmt::format("{}, {}, {}: error against run time", scene_name(model.scene), bench.name,
                          speed_text(speed, model.scene))));
-  std::vector<std::string> methods;
-  for (const Row& row : bench.rows)
-    if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    std::string csv = "seconds,error\n";
-    for (const Row& row : bench.rows)
-      if (row.method == methods[m] && std::isfinite(row.error))
-        csv += fmt::format("{},{}\n", row.seconds, std::max(row.error, 1e-16));
-    const std::string name = file_name("bench_" + bench.name + "_" + methods[m]) + ".csv";
-    folder.write(name, csv);
-    figure.commands += fmt::format("{}'{}' using 1:2 with linespoints lt {} ps 0.7 title {}", m == 0 ? "" : ", ", name,
-                                   m + 1, tools::quoted(methods[m]));
+  std::size_t m = 0;
+  for (std::size_t begin = 0, end = 0; begin < bench.rows.size(); begin = end, ++m) {
+    const std::string& method = bench.rows[begin].method;
+    while (end < bench.rows.size() && bench.rows[end].method == method) ++end;
+    figure.commands += fmt::format(
+        "'bench.csv' every ::{}::{} using 8:($7 > 1e-16 ? $7 : 1e-16) with linespoints {} ps 0.7 title {}, ",
+        first_row + begin, first_row + end - 1, m < 7 ? fmt::format("lt {}", m + 1) : "lt 7 lc rgb '#888888' pt 8",
+        quoted(method));
   }
+  figure.commands += fmt::format("{} with lines lt 7 lc rgb '#888888' dt 2 title 'error of the reference'\n",
+                                 std::max(bench.reference_error, 1e-16));
   figure.commands +=
-      "\nunset logscale xy\nset format xy '%g'\nset yrange [*:*]\nunset title\nunset xlabel\nunset ylabel\nset key "
+      "unset logscale xy\nset format xy '%g'\nset yrange [*:*]\nunset title\nunset xlabel\nunset ylabel\nset key "
       "default\n";
   return figure;
 }
@@ -328,20 +158,27 @@ int run_bench(const BenchFlags& flags) {
   const SceneModel model = make_model(std::move(scene), options);
   const double geometry = seconds_since(start);
   std::vector<RodBench> benches;
+  const auto num_rods =
+      std::count_if(model.rods.begin(), model.rods.end(), [](const RodModel& rod) { return rod.reported; });
+  std::optional<Progress> progress(std::in_place, "cases", static_cast<std::size_t>(num_rods) * bench_cases());
   for (const RodModel& rod : model.rods) {
     if (!rod.reported) continue;
     const TimeDomainSystem system = model.linkage() != nullptr
                                         ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
                                         : time_domain_system(rod.system, speed);
-    benches.push_back(bench_rod(rod, system, time_limit));
+    benches.push_back(bench_rod(rod, system, {options.steady_method, time_limit}, *progress));
   }
+  progress.reset();
   const Json document = bench_json(model, speed, benches, geometry);
   if (folder) {
     folder->write("bench.json", document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
     folder->write("bench.csv", bench_csv(model, speed, benches));
     std::vector<Figure> figures;
-    for (const RodBench& bench : benches)
-      if (!bench.rows.empty()) figures.push_back(bench_figure(model, speed, bench, *folder));
+    std::size_t row = 0;
+    for (const RodBench& bench : benches) {
+      if (!bench.rows.empty()) figures.push_back(bench_figure(model, speed, bench, row));
+      row += bench.rows.size();
+    }
     draw_figures(figures, *folder, options.plots);
     folder->commit();
   }
@@ -362,6 +199,10 @@ void add_bench_command(CLI::App& app, int& status) {
   add_scene_flags(*command, flags->common);
   add_analysis_flags(*command, flags->common);
   command->add_option("--time-limit", flags->time_limit, "seconds for each case; default 5")->type_name("SECONDS");
+  command->footer(
+      "Every method runs on one thread at its own list of tolerances, on the periodic state: --tol, --only, "
+      "--threads,\n"
+      "--stability-method and --stats change nothing.");
   command->callback([flags, &status] { status = run_bench(*flags); });
 }
 

@@ -1,7 +1,5 @@
 #include "tools/cross_check.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -41,10 +39,10 @@ double distance(std::complex<double> a, std::complex<double> b, double Omega) {
 
 // Growth rates, then every exponent that one path lists against the nearest of the other; the worst by excess over its
 // allowance. Either list may leave out exponents: harmonic balance those that it did not resolve, shooting those below
-// its last. One that is missing there has no partner.
+// `complete_above`. One that is missing there has no partner.
 Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting, Eigen::Index num_modes,
                              double Omega) {
-  Comparison worst{std::abs(stability.growth_rate - shooting.growth_rate),
+  Comparison worst{"exponents", std::abs(stability.growth_rate - shooting.growth_rate),
                    stability.growth_error + shooting.growth_error + 1e-12 * (Omega + std::abs(shooting.growth_rate))};
   const auto compare = [&](const std::vector<Exponent>& mine, const std::vector<Exponent>& others, double above) {
     if (others.empty()) return;
@@ -53,32 +51,36 @@ Comparison compare_exponents(const Stability& stability, const ShootingResult& s
       const auto nearest = std::min_element(others.begin(), others.end(), [&](const Exponent& a, const Exponent& b) {
         return distance(a.value, e.value, Omega) - a.error < distance(b.value, e.value, Omega) - b.error;
       });
-      const Comparison here{distance(nearest->value, e.value, Omega),
+      const Comparison here{"exponents", distance(nearest->value, e.value, Omega),
                             nearest->error + e.error + 1e-12 * (Omega + std::abs(e.value.real()))};
       if (!(here.difference - here.allowed <= worst.difference - worst.allowed)) worst = here;
     }
   };
-  const double lowest = shooting.exponents.empty() ? INFINITY
-                        : shooting.some_below      ? shooting.exponents.back().value.real()
-                                                   : -INFINITY;
+  const double lowest = shooting.exponents.empty() ? INFINITY : shooting.complete_above;
   compare(stability.exponents, shooting.exponents, lowest);
   if (static_cast<Eigen::Index>(stability.exponents.size()) == 2 * num_modes)
     compare(shooting.exponents, stability.exponents, -INFINITY);
   return worst;
 }
 
-void compare_states(RodCheck& rod, const Body* link) {
+// Largest factors by which an error of the series grows when it is differentiated once and twice: the harmonics left
+// out decay at least by e from H to 2H, and then sum n^k e^{-n/H} beyond H is 2H and 5H^2 times the sum for k = 0.
+double once(double H) { return 2 * H; }
+double twice(double H) { return 5 * H * H; }
+
+double harmonics(const SteadyState& steady) { return std::max(1.0, static_cast<double>(steady.num_harmonics)); }
+
+void compare_states(RodCheck& rod, bool deflection) {
   const PeriodicOrbit& orbit = rod.shooting.orbit;
   const FourierSeries& series = rod.steady.q;
   const Eigen::Index N = orbit.q.cols();
   const Eigen::MatrixXd q = samples(series, N), q1 = samples(fourier::derivative(series), N);
-  const double H = static_cast<double>(std::max<Eigen::Index>(1, series.num_harmonics()));
   const double rounding = rounding_of_models(rod.steady), bound = rod.steady.error_bound;
-  rod.q = {relative(q - orbit.q, orbit.q), bound + rod.shooting.q_error + rounding};
-  // An error of the series grows by its highest harmonic at most when differentiated.
+  rod.q = {"q / max |q|", relative(q - orbit.q, orbit.q), bound + rod.shooting.q_error + rounding};
   const double q_over_q1 = largest(orbit.q1) > 0 ? largest(orbit.q) / largest(orbit.q1) : 1;
-  rod.q1 = {relative(q1 - orbit.q1, orbit.q1), H * q_over_q1 * (bound + rounding) + rod.shooting.q1_error + rounding};
-  if (link != nullptr) {
+  rod.q1 = {"q' / max |q'|", relative(q1 - orbit.q1, orbit.q1),
+            once(harmonics(rod.steady)) * q_over_q1 * (bound + rounding) + rod.shooting.q1_error + rounding};
+  if (deflection) {
     constexpr int num_x = 33;
     Eigen::MatrixXd shapes(num_x, orbit.q.rows());
     for (Eigen::Index i = 0; i < shapes.cols(); ++i)
@@ -88,33 +90,19 @@ void compare_states(RodCheck& rod, const Body* link) {
     // Errors of the modes may add up.
     const double modes = static_cast<double>(orbit.q.rows());
     const double q_over_w = largest(w) > 0 ? largest(orbit.q) / largest(w) : 1;
-    rod.deflection = Comparison{relative(shapes * (q - orbit.q), w), modes * q_over_w * rod.q.allowed};
+    rod.deflection = Comparison{"w / max |w|", relative(shapes * (q - orbit.q), w), modes * q_over_w * rod.q.allowed};
   }
   if (rod.marching && rod.marching->status == ShootingStatus::converged) {
     const Eigen::MatrixXd& marched = rod.marching->orbit.q;
-    rod.marched = Comparison{relative(samples(series, marched.cols()) - marched, marched),
+    rod.marched = Comparison{"q by marching / max |q|", relative(samples(series, marched.cols()) - marched, marched),
                              bound + rod.marching->q_error + rounding};
   }
 }
 
-void judge(RodCheck& rod) {
-  const auto require = [&](bool agrees, const std::string& sentence) {
-    if (!agrees) rod.disagreements.push_back(rod.name + ": " + sentence);
-  };
-  const auto within = [](const Comparison& c) {
-    return fmt::format("differs by {:.2e}, allowed {:.2e}", c.difference, c.allowed);
-  };
-  require(rod.q.agrees(), "q " + within(rod.q));
-  require(rod.q1.agrees(), "q' " + within(rod.q1));
-  if (rod.deflection) require(rod.deflection->agrees(), "the deflection " + within(*rod.deflection));
-  if (rod.marched) require(rod.marched->agrees(), "q by marching " + within(*rod.marched));
-  require(rod.exponents.agrees(), "an exponent " + within(rod.exponents));
-  const bool opposite = (rod.stability.verdict == Verdict::stable && rod.shooting.verdict == Verdict::unstable) ||
-                        (rod.stability.verdict == Verdict::unstable && rod.shooting.verdict == Verdict::stable);
-  rod.verdicts_agree = !opposite;
-  require(rod.verdicts_agree, fmt::format("harmonic balance says {}, time integration {}",
-                                          to_string(rod.stability.verdict), to_string(rod.shooting.verdict)));
-  rod.agrees = rod.disagreements.empty();
+// Part of the allowance that is used; NaN counts as all of it.
+double share(const Comparison& c) {
+  const double part = c.difference / std::max(c.allowed, 1e-300);
+  return std::isnan(part) ? INFINITY : part;
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -164,14 +152,14 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
     Eigen::VectorXd effect = Eigen::VectorXd::Zero(n);
     for (std::size_t r = 0; r < rods.size(); ++r) {
       const RodCheck& rod = rods[r];
-      const double H = static_cast<double>(rod.steady.num_harmonics);
+      const double H = harmonics(rod.steady);
       const double error = (rod.steady.error_bound + rounding_of_models(rod.steady)) * largest(rod.shooting.orbit.q);
       const Eigen::Index I = rod.shooting.orbit.q.rows();
       for (Eigen::Index i = 0; i < I; ++i) {
         const Eigen::VectorXd unit = error * Eigen::VectorXd::Unit(I, i), none = Eigen::VectorXd::Zero(I);
         for (const LinkDeflection& wrong :
-             {LinkDeflection{links[r], unit, none, none}, LinkDeflection{links[r], none, H * unit, none},
-              LinkDeflection{links[r], none, none, H * H * unit}})
+             {LinkDeflection{links[r], unit, none, none}, LinkDeflection{links[r], none, once(H) * unit, none},
+              LinkDeflection{links[r], none, none, twice(H) * unit}})
           effect += (joint_forces_at(linkage, speed, tau, {wrong}) - rigid).cwiseAbs();
       }
     }
@@ -182,16 +170,17 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
   JointCheck check;
   const double force = std::max(size.head(n - 1).maxCoeff(), 1e-300);
   const double torque = std::max(size(n - 1), 1e-300);
-  double worst = -INFINITY;
+  double worst = -1;
   for (Eigen::Index k = 0; k < n; ++k) {
     const bool is_torque = k == n - 1;
     const double scale = is_torque ? torque : force;
     const double arm = is_torque ? force * linkage.crank.body.length / torque : 1;
-    const Comparison here{difference(k) / scale, (difference_factor * own(k) + bar(k)) / scale + 1e-12 * std::max(1.0, arm)};
+    const Comparison here{is_torque ? "torque / largest" : "forces / largest", difference(k) / scale,
+                          (difference_factor * own(k) + bar(k)) / scale + 1e-12 * std::max(1.0, arm)};
     if (is_torque) {
       check.torque = here;
-    } else if (!(here.difference - here.allowed <= worst)) {
-      worst = here.difference - here.allowed;
+    } else if (!(share(here) <= worst)) {
+      worst = share(here);
       check.forces = here;
       check.worst = labels[static_cast<std::size_t>(k)].joint;
     }
@@ -199,44 +188,84 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
   return check;
 }
 
-bool SpeedCheck::agrees() const {
-  const bool rods_agree =
-      std::all_of(rods.begin(), rods.end(), [](const RodCheck& rod) { return rod.agrees || !rod.compared; });
-  return rods_agree && (!joints || (joints->forces.agrees() && joints->torque.agrees()));
+std::vector<Comparison> RodCheck::comparisons() const {
+  std::vector<Comparison> made;
+  if (!compared()) return made;
+  made = {q, q1};
+  for (const std::optional<Comparison>* optional : {&deflection, &marched, &exponents})
+    if (*optional) made.push_back(**optional);
+  return made;
 }
+
+bool RodCheck::opposite_verdicts() const {
+  if (!compared() || !stability) return false;
+  const Verdict a = stability->verdict, b = shooting.verdict;
+  return (a == Verdict::stable && b == Verdict::unstable) || (a == Verdict::unstable && b == Verdict::stable);
+}
+
+bool RodCheck::agrees() const {
+  const std::vector<Comparison> made = comparisons();
+  return !opposite_verdicts() && std::all_of(made.begin(), made.end(), [](const Comparison& c) { return c.agrees(); });
+}
+
+bool SpeedCheck::agrees() const {
+  return std::all_of(rods.begin(), rods.end(), [](const RodCheck& rod) { return rod.agrees(); }) &&
+         (!joints || joints->agrees());
+}
+
+std::optional<WorstCase> worst_case(const std::vector<SpeedCheck>& checks) {
+  std::optional<WorstCase> worst;
+  const auto look_at = [&](double speed, const std::string& where, const Comparison& comparison) {
+    if (!worst || !(share(comparison) <= share(worst->comparison))) worst = WorstCase{speed, where, comparison};
+  };
+  for (const SpeedCheck& check : checks) {
+    for (const RodCheck& rod : check.rods)
+      for (const Comparison& comparison : rod.comparisons()) look_at(check.speed, rod.name, comparison);
+    if (check.joints) {
+      look_at(check.speed, check.joints->worst, check.joints->forces);
+      look_at(check.speed, "crank", check.joints->torque);
+    }
+  }
+  return worst;
+}
+
+double shooting_tolerance(const Settings& settings) { return std::max(settings.tolerance, 1e-9); }
 
 SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& settings, const CheckOptions& options) {
   SpeedCheck check;
   check.speed = speed;
   Settings wanted = settings;
-  wanted.only.steady = wanted.only.stability = true;
+  wanted.only.steady = true;
   wanted.only.shape = false;
   const auto start = std::chrono::steady_clock::now();
   SpeedResult series = analyse(model, speed, wanted);
   check.seconds_harmonic_balance = seconds_since(start);
   check.shortfalls = series.shortfalls;
 
-  bool complete = true;
+  bool complete = true;  // joint forces need every rod
   std::vector<int> links;
   for (std::size_t r = 0; r < series.rods.size(); ++r) {
     RodResult& result = series.rods[r];
-    if (!result.reported) {  // joint forces need every rod: not compared then
+    if (!result.reported) {
       complete = false;
       continue;
     }
     RodCheck rod;
     rod.name = result.name;
     rod.steady = std::move(*result.steady);
-    rod.stability = *result.stability;
+    rod.stability = std::move(result.stability);
     const TimeDomainSystem system = model.linkage() != nullptr
                                         ? time_domain_rod(*model.linkage(), result.link, result.num_modes, speed)
                                         : time_domain_system(model.rods[r].system, speed);
     ShootingOptions shooting;
-    shooting.tolerance = std::max(settings.tolerance, 1e-9);
+    shooting.tolerance = shooting_tolerance(settings);
     shooting.integrator = options.integrator;
     shooting.time_limit = options.time_limit;
+    if (options.begin)
+      shooting.begin = [&](Integrator integrator, double seconds) { options.begin(rod.name, integrator, seconds); };
     rod.shooting = solve_by_shooting(system, shooting);
     check.seconds_shooting += rod.shooting.seconds;
+    const bool unstable = rod.shooting.verdict == Verdict::unstable;
     if (options.march) {
       MarchingOptions marching;
       marching.tolerance = shooting.tolerance;
@@ -245,23 +274,27 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
       marching.growth_rate = rod.shooting.verdict == Verdict::undecided ? 0 : rod.shooting.growth_rate;
       rod.marching = march_from_rest(system, marching);
       check.seconds_marching += rod.marching->seconds;
-      if (rod.marching->status != ShootingStatus::converged)
+      // That an unstable motion is never reached from rest is no shortfall of the integration.
+      if (rod.marching->status != ShootingStatus::converged && !unstable)
         check.shortfalls.push_back(rod.name + ": marching: " + rod.marching->message);
     }
 
-    const bool both_singular =
-        rod.steady.status == SteadyStatus::singular && rod.shooting.status == ShootingStatus::singular;
-    if (rod.shooting.status != ShootingStatus::converged && !both_singular)
+    const bool singular = rod.steady.status == SteadyStatus::singular;
+    rod.both_singular = singular && rod.shooting.status == ShootingStatus::singular;
+    if (rod.both_singular)
+      rod.not_compared = "neither path finds a unique periodic solution: they agree";
+    else if (rod.shooting.orbit.q.size() == 0 || rod.shooting.coarser.q.size() == 0)
+      rod.not_compared =
+          std::string("time integration: ") + to_string(rod.shooting.status) + ", " + rod.shooting.message;
+    else if (singular)
+      rod.not_compared = "harmonic balance finds no unique periodic solution";
+    if (rod.shooting.status != ShootingStatus::converged && !rod.both_singular)
       check.shortfalls.push_back(rod.name + ": time integration: " + rod.shooting.message);
-    rod.compared = rod.steady.status != SteadyStatus::singular && rod.shooting.orbit.q.size() > 0 &&
-                   rod.shooting.coarser.q.size() > 0;
-    if (rod.compared) {
-      compare_states(rod, model.linkage() != nullptr ? body_at(*model.linkage(), result.link) : nullptr);
-      rod.exponents = compare_exponents(rod.stability, rod.shooting, result.num_modes, speed);
-      judge(rod);
+    if (rod.compared()) {
+      compare_states(rod, model.linkage() != nullptr && settings.only.shape);
+      if (rod.stability) rod.exponents = compare_exponents(*rod.stability, rod.shooting, result.num_modes, speed);
     } else {
       complete = false;
-      rod.agrees = both_singular;
     }
     links.push_back(result.link);
     check.rods.push_back(std::move(rod));

@@ -66,22 +66,26 @@ TEST_P(EveryIntegrator, CallsThePrincipalTongueUnstable) {
   }
 }
 
-// The error that a result claims covers its difference to a far tighter run.
+// The error that a result claims covers its difference to a far tighter run; also where the turn is so short that the
+// multipliers are near 1 and errors of the integration are amplified by 1e4.
 TEST_P(EveryIntegrator, ItsErrorBarCoversTheTrueError) {
-  const TimeDomainSystem system = time_domain_system(mathieu(0.02), 1.7);
-  ShootingOptions tight;
-  tight.integrator = Integrator::collocation;
-  tight.tolerance = 1e-13;
-  const ShootingResult reference = solve_by_shooting(system, tight);
-  for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
-    ShootingOptions options;
-    options.integrator = GetParam();
-    options.tolerance = tolerance;
-    const ShootingResult result = solve_by_shooting(system, options);
-    const double size = reference.orbit.q.cwiseAbs().maxCoeff();
-    const double error = (result.orbit.q - reference.orbit.q).cwiseAbs().maxCoeff() / size;
-    EXPECT_LE(error, result.q_error + reference.q_error) << tolerance;
-    EXPECT_LE(std::abs(result.growth_rate - reference.growth_rate), result.growth_error + reference.growth_error);
+  for (const auto& [damping, Omega] : {std::pair{0.02, 1.7}, {0.1, 10.0}, {0.1, 100.0}}) {
+    const TimeDomainSystem system = time_domain_system(mathieu(damping), Omega);
+    ShootingOptions tight;
+    tight.integrator = Integrator::collocation;
+    tight.tolerance = 1e-13;
+    const ShootingResult reference = solve_by_shooting(system, tight);
+    for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-8, 1e-9}) {
+      ShootingOptions options;
+      options.integrator = GetParam();
+      options.tolerance = tolerance;
+      const ShootingResult result = solve_by_shooting(system, options);
+      const double size = reference.orbit.q.cwiseAbs().maxCoeff();
+      const double error = (result.orbit.q - reference.orbit.q).cwiseAbs().maxCoeff() / size;
+      EXPECT_LE(error, result.q_error + reference.q_error) << tolerance << " at " << Omega;
+      EXPECT_LE(std::abs(result.growth_rate - reference.growth_rate), result.growth_error + reference.growth_error)
+          << tolerance << " at " << Omega;
+    }
   }
 }
 
@@ -92,6 +96,26 @@ INSTANTIATE_TEST_SUITE_P(Shooting, EveryIntegrator,
                                   : parameter.param == Integrator::bdf ? "Bdf"
                                                                        : "Collocation";
                          });
+
+// x'' + 0.1 x' + 1.2 x = cos t: x = Re e^{it}/(0.2 + 0.1 i), exponents -0.05 +- i sqrt(1.2 - 0.05^2).
+TEST(Shooting, CollocationKeepsThirteenDigits) {
+  HillSystem oscillator = mathieu(0.1);
+  oscillator.stiffness[0] = series({1.2});
+  ShootingOptions options;
+  options.integrator = Integrator::collocation;
+  const ShootingResult result = solve_by_shooting(time_domain_system(oscillator, 1), options);
+  const std::complex<double> amplitude = 1.0 / std::complex<double>(0.2, 0.1);
+  const Eigen::Index N = result.orbit.q.cols();
+  for (Eigen::Index j = 0; j < N; ++j) {
+    const std::complex<double> x =
+        amplitude * std::polar(1.0, 2 * pi * static_cast<double>(j) / static_cast<double>(N));
+    EXPECT_NEAR(result.orbit.q(0, j), x.real(), 1e-13 * std::abs(amplitude));
+    EXPECT_NEAR(result.orbit.q1(0, j), -x.imag(), 1e-13 * std::abs(amplitude));
+  }
+  EXPECT_LE(result.q_error, 5e-13);
+  EXPECT_NEAR(result.growth_rate, -0.05, 1e-14);
+  EXPECT_LE(result.growth_error, 1e-13);
+}
 
 // The published six-link numbers, every mode; peaks of 128 samples lie below the true peaks by less than their
 // spacing's curvature allows, so the Fourier coefficients of the samples are compared instead.
@@ -183,9 +207,31 @@ TEST(Marching, FromRestSettlesOnThePeriodicSolution) {
   EXPECT_NEAR(result.orbit.q1(0, 0), 2.71750522, 5 * result.q_error);
 }
 
+// Many turns to one oscillation: the state changes little in a turn though it is far from periodic, and now and then
+// hardly at all.
+TEST(Marching, ItsErrorBarCoversTheTrueErrorOfASlowTransient) {
+  const TimeDomainSystem system = time_domain_system(mathieu(0.1), 10);
+  ShootingOptions tight;
+  tight.integrator = Integrator::collocation;
+  const ShootingResult reference = solve_by_shooting(system, tight);
+  const double size = reference.orbit.q.cwiseAbs().maxCoeff();
+  for (const Integrator integrator : {Integrator::adams, Integrator::bdf})
+    for (const double growth_rate : {-0.05, 0.0})  // known, not known
+      for (const double tolerance : {1e-3, 1e-5, 1e-6}) {
+        const MarchingResult result =
+            march_from_rest(system, {.tolerance = tolerance, .integrator = integrator, .growth_rate = growth_rate});
+        ASSERT_EQ(result.status, ShootingStatus::converged) << result.message;
+        EXPECT_LE((result.orbit.q - reference.orbit.q).cwiseAbs().maxCoeff(), result.q_error * size)
+            << tolerance << " growth rate " << growth_rate;
+      }
+}
+
 TEST(Marching, OfAnUnstableMotionSaysThatItNeverSettles) {
   const TimeDomainSystem system = time_domain_system(mathieu(0.1), 2.15);
   EXPECT_EQ(march_from_rest(system, {.growth_rate = 0.04}).status, ShootingStatus::not_reached);
+  const MarchingResult unknown = march_from_rest(system, {.tolerance = 1e-6});
+  EXPECT_EQ(unknown.status, ShootingStatus::not_reached);
+  EXPECT_NE(unknown.message.find("grows"), std::string::npos) << unknown.message;
 }
 
 TEST(FloquetProduct, KeepsMultipliersFarBelowUnderflowAndFarAboveOverflow) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "run_command.hpp"
+#include "tools/bench_rod.hpp"
 
 namespace {
 
@@ -54,6 +55,26 @@ TEST_F(Bench, WritesTheTableAndAPicture) {
   for (const char* name : {"bench.csv", "bench_AB.svg", "bench_AB.png"}) {
     EXPECT_GT(fs::file_size(folder_ / "out" / name), 1000u) << name;
   }
+  EXPECT_EQ(num_entries(folder_ / "out"), 5u);  // bench.json and plots.gp beside
+  // Every method's points are joined by a line.
+  const std::string picture = read(folder_ / "out" / "bench_AB.svg");
+  for (const char* method : {"harmonic balance, automatic", "shooting, CVODE BDF", "marching, Newmark", "reference"})
+    EXPECT_NE(picture.find(method), std::string::npos) << method;
+}
+
+// What is not known to an accuracy is not said to be reached.
+TEST(RatioSentence, CountsTheErrorOfTheReference) {
+  using namespace hb::tools;
+  RodBench bench;
+  bench.reference_error = 6e-7;
+  bench.rows = {{"rod", "harmonic balance, automatic", 1e-6, 8, 5e-7, 1e-4, 1e-4, true},
+                {"rod", "shooting, CVODE Adams", 1e-6, 100, 3e-7, 2e-3, 2e-3, false}};
+  EXPECT_NE(ratio_sentence(bench, 1e-7).find("not known"), std::string::npos) << ratio_sentence(bench, 1e-7);
+  EXPECT_NE(ratio_sentence(bench, 1e-6).find("only shooting"), std::string::npos) << ratio_sentence(bench, 1e-6);
+  EXPECT_NE(ratio_sentence(bench, 1e-3).find("20 times as long"), std::string::npos) << ratio_sentence(bench, 1e-3);
+  bench.rows[1].seconds = 1e-5;
+  EXPECT_NE(ratio_sentence(bench, 1e-3).find("shorter by a factor of 10"), std::string::npos)
+      << ratio_sentence(bench, 1e-3);
 }
 
 TEST_F(Bench, LeavesNothingBehindWhenInterrupted) {
