@@ -208,7 +208,8 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                                                             {"propagation", StabilityMethod::propagation}});
   }
   if (flags.out) {
-    if (flags.out->empty()) refuse("--out", "", "a folder");
+    // "--out --json" names no folder.
+    if (flags.out->empty() || flags.out->front() == '-') refuse("--out", *flags.out, "a folder (-x as ./-x)");
     result.out = *flags.out;
   }
   result.json = flags.json;

@@ -60,7 +60,7 @@ int run(int argc, char** argv) {
     return status;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+    if (argc > 1 && app.get_subcommands().empty()) {
       fmt::print(stderr, "hb: {}\n", unknown_command(app, argv[1]));
       return exit_wrong_input;
     }

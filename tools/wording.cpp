@@ -46,11 +46,11 @@ int trusted_digits(double value, double error) {
 }
 
 std::string with_error(double value, double error) {
-  return fmt::format("{:.{}g} +/- {:.1e}", value, trusted_digits(value, error), error);
+  return fmt::format("{:.{}g} +/- {:.1e}", value + 0.0, trusted_digits(value, error), error);
 }
 
 std::string verdict_sentence(const Stability& stability, double speed, const Units& units) {
-  const double growth = stability.growth_rate;
+  const double growth = stability.growth_rate + 0.0;  // no -0
   const double turn = 2 * std::numbers::pi / speed;
   switch (stability.verdict) {
     case Verdict::stable: {

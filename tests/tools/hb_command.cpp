@@ -175,6 +175,7 @@ constexpr WrongFlag wrong_flags[] = {
     {"--rpm 300 --rpm 400", "--rpm", "--help"},
     {"--rpm", "--rpm", "--help"},
     {"--frequency 3", "--frequency", "--help"},
+    {"--rpm 300 --out --json", "--out: found \"--json\"", "a folder"},
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, WrongFlags, testing::ValuesIn(wrong_flags));
