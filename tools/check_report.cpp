@@ -57,7 +57,8 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const Ou
         rod.marching->message.empty() ? "" : rod.marching->message + "; ", rod.marching->turns, rod.marching->steps,
         rod.marching->seconds);
   if (!rod.compared()) {
-    add(text, "  not compared             {}\n", rod.not_compared);
+    const bool said = shooting.orbit.q.size() == 0 && !rod.both_singular;
+    add(text, "  not compared{}\n", said ? "" : "             " + rod.not_compared);
     return;
   }
   add(text, "  {:<24} {:>10}  {:>10}\n", "", "difference", "allowed");
@@ -131,12 +132,14 @@ void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck
 
 void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedCheck>& checks) {
   const OutputUnits units = output_units(model.scene);
-  bool agree = true, complete = true;
+  bool agree = true, complete = true, any = false;
   for (const SpeedCheck& check : checks) {
     const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
     agree = agree && check.agrees();
     for (const RodCheck& rod : check.rods) {
-      complete = complete && (rod.compared() || rod.both_singular);
+      const bool known = rod.compared() || rod.both_singular;
+      complete = complete && known;
+      any = any || known;
       for (const Comparison& c : rod.comparisons())
         if (!c.agrees()) add(text, "DISAGREES: {}{}: {}\n", at, rod.name, differs(c, units));
       if (rod.opposite_verdicts())
@@ -152,6 +155,7 @@ void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedChe
   add(text, "{}\n",
       !agree     ? "The paths DISAGREE."
       : complete ? "The paths agree within the sum of their error bars."
+      : !any     ? "Nothing could be compared."
                  : "Not everything could be compared; what could agrees within the sum of the error bars.");
 }
 

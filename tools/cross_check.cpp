@@ -284,8 +284,7 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
     if (rod.both_singular)
       rod.not_compared = "neither path finds a unique periodic solution: they agree";
     else if (rod.shooting.orbit.q.size() == 0 || rod.shooting.coarser.q.size() == 0)
-      rod.not_compared =
-          std::string("time integration: ") + to_string(rod.shooting.status) + ", " + rod.shooting.message;
+      rod.not_compared = "time integration: " + rod.shooting.message;
     else if (singular)
       rod.not_compared = "harmonic balance finds no unique periodic solution";
     if (rod.shooting.status != ShootingStatus::converged && !rod.both_singular)
