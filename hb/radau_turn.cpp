@@ -269,7 +269,13 @@ struct Turn {
 
 }  // namespace
 
-Index radau_cells(Index least) { return lanes * fourier::fast_length((std::max<Index>(least, 1) + lanes - 1) / lanes); }
+// 4, 8, 12, 16, 24, 32, 48, ...
+Index radau_cells(Index least) {
+  Index cells = lanes;
+  while (cells < least) cells *= 2;
+  const Index less = cells / 4 * 3;
+  return less >= least && less % lanes == 0 ? less : cells;
+}
 
 TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
   Turn turn(alpha, beta, num_modes, num_cells);

@@ -82,9 +82,9 @@ Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leadin
   const double fastest = std::sqrt(fastest2);
   const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
 
-  // Eight stages resolve two harmonics a cell.
+  // Eight stages resolve three harmonics a cell.
   Index cells =
-      radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 1) / 2));
+      radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3));
   const Index most = std::max<Index>(512, 12 * cells);
   Exponents result;
   std::optional<TurnExponents> coarse;
@@ -165,23 +165,31 @@ void name_modes(Exponents& exponents, const ScaledSystem& system, const std::vec
   }
 }
 
-// Exponents of the modes kept by one reduction.
+// Of one mode by its phase function; empty if that does not settle.
+std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance) {
+  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+  const double wanted =
+      std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
+  const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted);
+  if (!pair) return std::nullopt;
+  Exponents result;
+  for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
+  result.converged = true;
+  return result;
+}
+
+// Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
+// propagation always settles.
 Exponents of_reduction(const ReducedSystem& reduced, double tolerance, bool leading_only = false) {
-  if (reduced.num_modes == 1) {
-    const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
-    if (frequency > 3) {
-      const double wanted =
-          std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
-      if (const auto pair =
-              phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted)) {
-        Exponents result;
-        for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
-        result.converged = true;
-        return result;
-      }
-    }
-  }
-  return propagated(reduced, tolerance, leading_only);
+  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+  const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
+  constexpr double fast = 25;
+  if (phase_may_settle && frequency > fast)
+    if (std::optional<Exponents> result = by_phase(reduced, tolerance)) return *std::move(result);
+  Exponents result = propagated(reduced, tolerance, leading_only);
+  if (phase_may_settle && !(frequency > fast) && !result.converged)
+    if (std::optional<Exponents> better = by_phase(reduced, tolerance)) return *std::move(better);
+  return result;
 }
 
 struct Search {

@@ -30,6 +30,8 @@ struct Axis {
 // Cells of the first mesh per axis at least, and the finest division of an axis for thin or curved boundaries.
 constexpr int first_cells = 24;
 constexpr int finest_cells = 8192;
+// Of exponents that only tell what lies where; boundaries take the asked one.
+constexpr double rough_tolerance = 1e-9;
 
 int floor_power(int n) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(n, 1)))); }
 
@@ -84,7 +86,11 @@ class Mesh {
  public:
   Mesh(const MapSystemAt& at, Axis x, Axis y, const MapOptions& options)
       : at_(at), x_(std::move(x)), y_(std::move(y)), options_(options), search_(options.search) {
+    search_.stability.tolerance = std::max(options.search.stability.tolerance, rough_tolerance);
+    at_nodes_ = search_.stability;
     search_.stability.leading_only = true;
+    located_ = search_;
+    located_.stability.tolerance = options.search.stability.tolerance;
   }
 
   void build() {
@@ -183,7 +189,7 @@ class Mesh {
         nodes_.size() - evaluated_nodes_,
         [this](std::size_t k) {
           const Node& node = nodes_[evaluated_nodes_ + k];
-          return sample(x_.at(node.i), y_.at(node.j), options_.search.stability);
+          return sample(x_.at(node.i), y_.at(node.j), at_nodes_);
         },
         [](auto& visit, Sample& sample) {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
@@ -305,7 +311,7 @@ class Mesh {
   }
 
   StabilityBoundary located(const SystemAt& along, const StabilitySample& p, const StabilitySample& q) const {
-    StabilityBoundary boundary = locate_boundary(along, p, q, search_);
+    StabilityBoundary boundary = locate_boundary(along, p, q, located_);
     // At the boundary itself rounding may hide that the exponent is locked: a little inside it shows.
     const StabilitySample& unstable = is_unstable(p) ? p : q;
     if (boundary.kind == BoundaryKind::complex) {
@@ -677,7 +683,8 @@ class Mesh {
   const MapSystemAt& at_;
   const Axis x_, y_;
   const MapOptions& options_;
-  SweepOptions search_;
+  SweepOptions search_, located_;  // for what lies between two places; for where exactly
+  StabilityOptions at_nodes_;
   int num_modes_ = 0;
   mutable std::atomic<std::size_t> samples_ = 0;
   std::vector<Node> nodes_;

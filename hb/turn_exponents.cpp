@@ -149,6 +149,36 @@ struct BlockProduct {
   double log_bound = 0;  // log of the product of the norms
 };
 
+// value 2^exponent: products over a turn neither overflow nor vanish.
+struct Size {
+  double value = 1;
+  int exponent = 0;
+
+  void normalise() {
+    int e = 0;
+    value = std::frexp(value, &e);
+    exponent += e;
+  }
+  double log() const { return std::log(std::max(value, 1e-300)) + exponent * std::numbers::ln2; }
+};
+
+// A product so far, of size near 1 but for a power of two kept apart.
+template <class Square>
+struct Product {
+  Square M;
+  int exponent = 0;
+
+  void normalise() {
+    const double size = M.cwiseAbs().maxCoeff();
+    if (size < 1e100 && size > 1e-100) return;
+    int e = 0;
+    std::frexp(std::max(size, 1e-300), &e);
+    M *= std::ldexp(1.0, -e);
+    exponent += e;
+  }
+  Size size() const { return {std::max(M.norm(), 1e-300), exponent}; }
+};
+
 // A cell map known to `cell_error` of its own size, block or not, changes the product by
 // sum_i |behind_i| |Phi_i| |before_i|. A leading subspace that has not quite come back is a change of the last cell.
 template <int size, int most = size>
@@ -157,32 +187,29 @@ BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell
   const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
   const auto block = [&](Index i) { return sweep.R.block<size, size>(begin, n * i + begin, p, p); };
   const auto whole = [&](Index i) { return sweep.R.middleCols(n * i, n).norm(); };
-  BlockProduct result;
-  std::vector<double> before(std::size_t(N) + 1, 0);
-  Square product = Square::Identity(p, p);
+  std::vector<Size> before(std::size_t(N) + 1);
+  before[0].value = std::sqrt(double(p));
+  Product<Square> product{Square::Identity(p, p)};
   for (Index i = 0; i < N; ++i) {
-    product = block(i).lazyProduct(product).eval();
-    const double norm = std::max(product.norm(), 1e-300);
-    product /= norm;
-    result.log_size += std::log(norm);
-    before[std::size_t(i) + 1] = result.log_size;
+    product.M = block(i).lazyProduct(product.M).eval();
+    product.normalise();
+    before[std::size_t(i) + 1] = product.size();
   }
-  Square behind = Square::Identity(p, p);
-  double log_behind = 0;
+  const Size total = before[std::size_t(N)];
+  Product<Square> behind{Square::Identity(p, p)};
+  Size bound;
+  double change = 0;
   for (Index i = N - 1; i >= 0; --i) {
-    const bool last = i == N - 1;
-    const double norm = whole(i);
-    const double term =
-        std::exp(std::min(before[std::size_t(i)] + log_behind + std::log(norm) - result.log_size, 600.0));
-    result.change += (cell_error + (last ? sweep.closing : 0)) * term;
-    result.log_bound += std::log(block(i).norm() + (cell_error + (last ? sweep.closing : 0)) * norm);
-    behind = behind.lazyProduct(block(i)).eval();
-    const double size_behind = std::max(behind.norm(), 1e-300);
-    behind /= size_behind;
-    log_behind += std::log(size_behind);
+    const double norm = whole(i), error = cell_error + (i == N - 1 ? sweep.closing : 0);
+    const Size b = behind.size(), &a = before[std::size_t(i)];
+    const double term = a.value * (norm / total.value) * b.value;
+    change += error * std::min(std::ldexp(term, a.exponent + b.exponent - total.exponent), 1e200);
+    bound.value *= block(i).norm() + error * norm;
+    bound.normalise();
+    behind.M = behind.M.lazyProduct(block(i)).eval();
+    behind.normalise();
   }
-  result.M = sweep.turned.block(begin, begin, p, p) * product;
-  return result;
+  return {sweep.turned.block(begin, begin, p, p) * (product.M / total.value), total.log(), change, bound.log()};
 }
 
 template <int size>

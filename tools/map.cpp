@@ -249,7 +249,7 @@ int run_map(const MapFlags& flags) {
   if (options.out) folder.emplace(*options.out);
   MapOptions search;
   search.search.stability.method = options.stability_method;
-  search.search.stability.tolerance = std::clamp(0.1 * options.tolerance, 1e-13, 1e-9);
+  search.search.stability.tolerance = std::clamp(options.tolerance, 1e-13, 1e-9);
   search.search.tolerance = std::clamp(0.1 * options.tolerance, 1e-14, 1e-6);
 
   const ScenePlane plane = plane_with({});

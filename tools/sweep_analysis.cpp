@@ -16,7 +16,7 @@ namespace {
 
 // Peaks and boundaries are looked for on values more accurate than the points themselves need.
 constexpr double refined_steady_tolerance = 1e-12, rough_steady_tolerance = 1e-5;
-constexpr double refined_stability_tolerance = 1e-11;
+constexpr double refined_stability_tolerance = 1e-10;
 constexpr double peak_tolerance = 5e-11;  // relative
 // A peak this far from n = omega/Omega, in orders, is not named after that mode.
 constexpr double most_detuning = 0.3;
