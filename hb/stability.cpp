@@ -12,10 +12,9 @@
 
 #include "hb/constant_coefficients.hpp"
 #include "hb/hill_exponents.hpp"
-#include "hb/radau_turn.hpp"
-#include "hb/scalar_hill.hpp"
+#include "hb/independent_parts.hpp"
+#include "hb/reduced_exponents.hpp"
 #include "hb/slaving.hpp"
-#include "hb/turn_exponents.hpp"
 
 namespace hb {
 
@@ -29,103 +28,6 @@ using cplx = std::complex<double>;
 constexpr double eps = 2.220446049250313e-16;
 // Above, slaving each mode on its own is tried before all are propagated.
 constexpr Index most_modes_propagated = 10;
-
-// Exponents per radian of crank angle (s = lambda/Omega) with their bars.
-struct Exponents {
-  std::vector<cplx> s;
-  std::vector<double> error;
-  std::vector<Index> mode;  // see Exponent
-  std::vector<double> frequency;
-  double others_below = -HUGE_VAL;  // upper bound on Re s of those of the group that are not listed
-  bool converged = false;  // the leading one is as accurate as asked
-
-  void add(cplx value, double bar) {
-    s.push_back(value);
-    error.push_back(bar);
-  }
-  void append(const Exponents& other) {
-    s.insert(s.end(), other.s.begin(), other.s.end());
-    error.insert(error.end(), other.error.begin(), other.error.end());
-    mode.insert(mode.end(), other.mode.begin(), other.mode.end());
-    frequency.insert(frequency.end(), other.frequency.begin(), other.frequency.end());
-    others_below = std::max(others_below, other.others_below);
-  }
-};
-
-// Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
-double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
-
-// Harmonics of alpha and beta that the cells of a propagation have to resolve: the others together, each averaged over
-// its own short period, move no exponent by more than `negligible`.
-Index resolved_harmonics(const ReducedSystem& reduced, double negligible) {
-  Index k = std::max(reduced.alpha.num_harmonics(), reduced.beta.num_harmonics());
-  for (double sum = 0; k > 0; --k) {
-    if (k < reduced.alpha.c.cols()) sum += 2 * reduced.alpha.c.col(k).cwiseAbs().maxCoeff() / double(k);
-    if (k < reduced.beta.c.cols()) sum += 2 * reduced.beta.c.col(k).cwiseAbs().maxCoeff();
-    if (!(sum <= negligible)) break;
-  }
-  return k;
-}
-
-// Exponents of a reduced system by propagation with growing numbers of cells.
-Exponents propagated(const ReducedSystem& reduced, double tolerance, bool leading_only) {
-  const Index m = reduced.num_modes;
-  // Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
-  VectorXd W(m);
-  for (Index i = 0; i < m; ++i) W(i) = std::max(1.0, std::sqrt(std::abs(reduced.alpha.c(i + m * i, 0))));
-  double fastest2 = 1;
-  for (Index i = 0; i < m; ++i) {
-    double row = 0;
-    for (Index j = 0; j < m; ++j) row += fourier::wiener_norm(reduced.alpha, i + m * j) / (W(i) * W(j)) * W(i) * W(i);
-    fastest2 = std::max(fastest2, row);
-  }
-  const double fastest = std::sqrt(fastest2);
-  const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
-
-  // Eight stages resolve three harmonics a cell.
-  Index cells =
-      radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3));
-  const Index most = std::max<Index>(512, 12 * cells);
-  Exponents result;
-  std::optional<TurnExponents> coarse;
-  // Effect on the real part of the mean damping, which the discriminant takes as given.
-  const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
-  while (cells <= most && cells * m * m * m < Index(2e8)) {
-    // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
-    // tested on strongly damped systems.
-    const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
-    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only,
-                                        coarse ? coarse->subspaces : MatrixXd());
-    if (coarse) {
-      result.s = fine.s;
-      result.others_below = fine.others_below;
-      result.error.assign(fine.s.size(), HUGE_VAL);
-      for (std::size_t i = 0; i < fine.s.size(); ++i) {
-        // The nearest coarse exponent; angles modulo 1.
-        double nearest = HUGE_VAL;
-        for (const cplx other : coarse->s) {
-          double turn = std::abs(fine.s[i].imag() - other.imag());
-          turn = std::min(turn, std::abs(1 - turn));
-          nearest = std::min(nearest, std::hypot(fine.s[i].real() - other.real(), turn));
-        }
-        // Order 15 would make the finer one 75 times nearer at least; nothing of that is claimed.
-        result.error[i] = nearest + fine.error[i] + damping_error;
-      }
-      if (result.s.empty()) break;
-      const double integration = result.error[0] - fine.error[0];
-      result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
-      if (result.converged || integration <= fine.error[0]) break;
-    }
-    coarse = std::move(fine);
-    cells = radau_cells(cells + 1);
-  }
-  if (result.s.empty() && coarse) {
-    result.s = coarse->s;
-    result.error.assign(coarse->s.size(), HUGE_VAL);
-    result.others_below = coarse->others_below;
-  }
-  return result;
-}
 
 // |Im s + k| nearest to `near`.
 double unfolded(double s, double near) {
@@ -165,33 +67,6 @@ void name_modes(Exponents& exponents, const ScaledSystem& system, const std::vec
   }
 }
 
-// Of one mode by its phase function; empty if that does not settle.
-std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance) {
-  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
-  const double wanted =
-      std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
-  const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted);
-  if (!pair) return std::nullopt;
-  Exponents result;
-  for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
-  result.converged = true;
-  return result;
-}
-
-// Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
-// propagation always settles.
-Exponents of_reduction(const ReducedSystem& reduced, double tolerance, bool leading_only = false) {
-  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
-  const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
-  constexpr double fast = 25;
-  if (phase_may_settle && frequency > fast)
-    if (std::optional<Exponents> result = by_phase(reduced, tolerance)) return *std::move(result);
-  Exponents result = propagated(reduced, tolerance, leading_only);
-  if (phase_may_settle && !(frequency > fast) && !result.converged)
-    if (std::optional<Exponents> better = by_phase(reduced, tolerance)) return *std::move(better);
-  return result;
-}
-
 struct Search {
   Exponents exponents;
   StabilityMethod method = StabilityMethod::automatic;
@@ -204,7 +79,7 @@ Search propagate_all(const ScaledSystem& system, double tolerance, bool leading_
   std::vector<Index> all(std::size_t(system.num_modes()));
   std::iota(all.begin(), all.end(), Index(0));
   Search search;
-  search.exponents = propagated(slave_to(system, all), tolerance, leading_only);
+  search.exponents = propagated_exponents(slave_to(system, all), tolerance, leading_only);
   name_modes(search.exponents, system, all);
   search.method = StabilityMethod::propagation;
   search.evidence = "all modes propagated over a turn by Radau IIA";
@@ -278,7 +153,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
     const ReducedSystem reduced = slave_to(system, one, sufficient(system, one, tolerance));
-    if (reduced.converged) alone[std::size_t(g)] = of_reduction(reduced, tolerance);
+    if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
     name_modes(alone[std::size_t(g)], system, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty())
       starts[std::size_t(g)] = reduced.start;
@@ -290,7 +165,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
     while (!too_many(together, I)) {
       const ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
       if (reduced.converged) {
-        search.exponents = of_reduction(reduced, tolerance);
+        search.exponents = reduced_exponents(reduced, tolerance);
         name_modes(search.exponents, system, together);
         start_together = reduced.start;
         break;
@@ -364,7 +239,7 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
     const ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
     if (reduced.converged) {
       Search search;
-      search.exponents = of_reduction(reduced, tolerance, true);
+      search.exponents = reduced_exponents(reduced, tolerance, true);
       name_modes(search.exponents, system, together);
       double growth = -HUGE_VAL;
       for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
@@ -392,6 +267,14 @@ double folded(double s) {
   return f <= -0.5 ? f + 1 : f;
 }
 
+// Real part descending, then imaginary part ascending.
+void sort(std::vector<Exponent>& exponents) {
+  std::stable_sort(exponents.begin(), exponents.end(), [](const Exponent& a, const Exponent& b) {
+    if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
+    return a.value.imag() < b.value.imag();
+  });
+}
+
 Stability finished(const ScaledSystem& system, const Search& search, double tolerance) {
   const double Omega = system.speed;
   Stability result;
@@ -411,10 +294,7 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
                                   int(search.exponents.mode[i]),
                                   Omega * search.exponents.frequency[i]});
   }
-  std::stable_sort(result.exponents.begin(), result.exponents.end(), [](const Exponent& a, const Exponent& b) {
-    if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
-    return a.value.imag() < b.value.imag();
-  });
+  sort(result.exponents);
   const bool known = search.complete && std::isfinite(growth);
   const double bar = known ? std::max(upper - growth, growth - lower) : HUGE_VAL;
   result.growth_rate = Omega * growth;
@@ -425,9 +305,8 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
   return result;
 }
 
-}  // namespace
-
-Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options) {
+// Modes that feel each other, or a constant K.
+Stability of_group(const ScaledSystem& system, const StabilityOptions& options) {
   Search search;
   if (system.K.num_harmonics() == 0) {
     const TurnExponents roots = constant_exponents(system);
@@ -463,6 +342,53 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
     }
   }
   return result;
+}
+
+// Of groups that do not feel each other.
+Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<int>>& groups, StabilityOptions options) {
+  options.keep = {};
+  Stability whole;
+  whole.growth_rate = -HUGE_VAL;
+  whole.converged = true;
+  double upper = -HUGE_VAL, lower = -HUGE_VAL;
+  for (const std::vector<int>& modes : groups) {
+    const Stability part = analyse_stability(group_of(system, modes), options);
+    for (Exponent e : part.exponents) {
+      e.mode = modes[static_cast<std::size_t>(e.mode)];
+      whole.exponents.push_back(e);
+    }
+    upper = std::max(upper, part.growth_rate + part.growth_error);
+    lower = std::max(lower, part.growth_rate - part.growth_error);
+    whole.converged = whole.converged && part.converged;
+    if (!(part.growth_rate > whole.growth_rate)) continue;
+    whole.growth_rate = part.growth_rate;
+    whole.method = part.method;
+    whole.evidence = part.evidence;
+  }
+  sort(whole.exponents);
+  whole.evidence =
+      fmt::format("{} groups of modes that do not feel each other; the leading one: {}", groups.size(), whole.evidence);
+  whole.growth_error = std::max(upper - whole.growth_rate, whole.growth_rate - lower);
+  if (std::isnan(whole.growth_error)) whole.growth_error = HUGE_VAL;
+  if (upper < 0) whole.verdict = Verdict::stable;
+  if (lower > 0) whole.verdict = Verdict::unstable;
+  return whole;
+}
+
+}  // namespace
+
+Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options) {
+  if (system.K.num_harmonics() == 0) return of_group(system, options);
+  const Index g = common_divisor(system);
+  if (g > 1) {
+    Stability result = analyse_stability(with_period_divided(system, g), options);
+    for (Exponent& e : result.exponents) e.value.imag(system.speed * folded(e.value.imag() / system.speed));
+    sort(result.exponents);
+    result.evidence += fmt::format("; K repeats {} times a turn", g);
+    return result;
+  }
+  const std::vector<std::vector<int>> groups = independent_groups(system);
+  return groups.size() == 1 ? of_group(system, options) : of_groups(system, groups, options);
 }
 
 Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options) {

@@ -1,0 +1,125 @@
+#include "hb/reduced_exponents.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "hb/scalar_hill.hpp"
+#include "hb/turn_exponents.hpp"
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+constexpr double eps = 2.220446049250313e-16;
+
+// Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
+double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
+
+// Harmonics of alpha and beta that the cells of a propagation have to resolve: the others together, each averaged over
+// its own short period, move no exponent by more than `negligible`.
+Index resolved_harmonics(const ReducedSystem& reduced, double negligible) {
+  Index k = std::max(reduced.alpha.num_harmonics(), reduced.beta.num_harmonics());
+  for (double sum = 0; k > 0; --k) {
+    if (k < reduced.alpha.c.cols()) sum += 2 * reduced.alpha.c.col(k).cwiseAbs().maxCoeff() / double(k);
+    if (k < reduced.beta.c.cols()) sum += 2 * reduced.beta.c.col(k).cwiseAbs().maxCoeff();
+    if (!(sum <= negligible)) break;
+  }
+  return k;
+}
+
+// Of one mode by its phase function; empty if that does not settle.
+std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance) {
+  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+  const double wanted =
+      std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
+  const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted);
+  if (!pair) return std::nullopt;
+  Exponents result;
+  for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
+  result.converged = true;
+  return result;
+}
+
+}  // namespace
+
+// Exponents of a reduced system by propagation with growing numbers of cells.
+Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+  const Index m = reduced.num_modes;
+  // Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
+  VectorXd W(m);
+  for (Index i = 0; i < m; ++i) W(i) = std::max(1.0, std::sqrt(std::abs(reduced.alpha.c(i + m * i, 0))));
+  double fastest2 = 1;
+  for (Index i = 0; i < m; ++i) {
+    double row = 0;
+    for (Index j = 0; j < m; ++j) row += fourier::wiener_norm(reduced.alpha, i + m * j) / (W(i) * W(j)) * W(i) * W(i);
+    fastest2 = std::max(fastest2, row);
+  }
+  const double fastest = std::sqrt(fastest2);
+  const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
+
+  // Eight stages resolve three harmonics a cell.
+  Index cells =
+      radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3));
+  const Index most = std::max<Index>(512, 12 * cells);
+  Exponents result;
+  std::optional<TurnExponents> coarse;
+  // Effect on the real part of the mean damping, which the discriminant takes as given.
+  const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
+  while (cells <= most && cells * m * m * m < Index(2e8)) {
+    // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
+    // tested on strongly damped systems.
+    const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
+    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only,
+                                        coarse ? coarse->subspaces : MatrixXd());
+    if (coarse) {
+      result.s = fine.s;
+      result.others_below = fine.others_below;
+      result.error.assign(fine.s.size(), HUGE_VAL);
+      for (std::size_t i = 0; i < fine.s.size(); ++i) {
+        // The nearest coarse exponent; angles modulo 1.
+        double nearest = HUGE_VAL;
+        for (const cplx other : coarse->s) {
+          double turn = std::abs(fine.s[i].imag() - other.imag());
+          turn = std::min(turn, std::abs(1 - turn));
+          nearest = std::min(nearest, std::hypot(fine.s[i].real() - other.real(), turn));
+        }
+        // Order 15 would make the finer one 75 times nearer at least; nothing of that is claimed.
+        result.error[i] = nearest + fine.error[i] + damping_error;
+      }
+      if (result.s.empty()) break;
+      const double integration = result.error[0] - fine.error[0];
+      result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
+      if (result.converged || integration <= fine.error[0]) break;
+    }
+    coarse = std::move(fine);
+    cells = radau_cells(cells + 1);
+  }
+  if (result.s.empty() && coarse) {
+    result.s = coarse->s;
+    result.error.assign(coarse->s.size(), HUGE_VAL);
+    result.others_below = coarse->others_below;
+  }
+  return result;
+}
+
+// Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
+// propagation always settles.
+Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+  const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
+  constexpr double fast = 25;
+  if (phase_may_settle && frequency > fast)
+    if (std::optional<Exponents> result = by_phase(reduced, tolerance)) return *std::move(result);
+  Exponents result = propagated_exponents(reduced, tolerance, leading_only);
+  if (phase_may_settle && !(frequency > fast) && !result.converged)
+    if (std::optional<Exponents> better = by_phase(reduced, tolerance)) return *std::move(better);
+  return result;
+}
+
+}  // namespace hb
