@@ -74,7 +74,7 @@ std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& re
         "set key default\n",
         num_rows,
         scene_title(model, result,
-                    fmt::format("joint forces of {}: {}\nelasticity changes them by {:.3g} N at most", literal(name),
+                    fmt::format("joint forces of {}: {}\nelasticity changes them by {:.4g} N at most", literal(name),
                                 literal(force_frames(own_frames)), change * output_units(model.scene).force)),
         turn_axis, turn_label(model), panels);
     figures.push_back(std::move(figure));
@@ -92,7 +92,7 @@ Figure torque_figure(const SceneModel& model, const SpeedResult& result, const s
       "plot '{}' using 1:2 with lines lt 1 title 'elastic', '' using 1:3 with lines lt 2 dashtype 2 title 'rigid'\n"
       "unset title\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset xtics autofreq\nset key default\n",
       scene_title(model, result,
-                  fmt::format("driving torque; elasticity changes it by {:.3g} N m at most",
+                  fmt::format("driving torque; elasticity changes it by {:.4g} N m at most",
                               largest_change(result.forces->torque, result.forces->torque_rigid) *
                                   output_units(model.scene).moment)),
       turn_axis, turn_label(model), csv);
