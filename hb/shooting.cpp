@@ -300,11 +300,20 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
     };
     result.q_error = error(result.orbit.q, result.coarser.q, fine.x_sensitivity);
     result.q1_error = error(result.orbit.q1, result.coarser.q1, fine.v_sensitivity);
-    // Exponents on which two accuracies disagree grossly are those of modes that were not resolved.
+    // Exponents on which two accuracies disagree grossly are those of modes that were not resolved. Their growth, which
+    // comes before their phase, is compared rank by rank; of one that dies within a segment only that is known.
     const auto resolved = [&](const Exponent& e) { return e.error <= 1e-3 * (Omega + std::abs(e.value.real())); };
     while (result.exponents.size() > 1 && !resolved(result.exponents.back())) {
-      const Exponent& last = result.exponents.back();
-      result.complete_above = std::max(result.complete_above, last.value.real() + last.error);
+      const std::size_t rank = result.exponents.size() - 1;
+      const LogMultiplier& last = fine.multipliers.values[rank];
+      const double other =
+          rank < coarse.multipliers.values.size() ? coarse.multipliers.values[rank].value.real() : last.value.real();
+      const double slower = std::max(last.value.real(), other);
+      const bool dies = slower < -2.0 * plan.num_segments;
+      const double growth = dies ? slower / 2
+                                 : last.value.real() + difference_factor * std::abs(last.value.real() - other) +
+                                       map_error * last.amplification;
+      result.complete_above = std::max(result.complete_above, growth * Omega / turn);
       result.exponents.pop_back();
       result.some_below = true;
     }
