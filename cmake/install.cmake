@@ -20,4 +20,7 @@ install(FILES ${PROJECT_BINARY_DIR}/hb-config.cmake ${PROJECT_BINARY_DIR}/hb-con
 if(TARGET hb_command)
   install(TARGETS hb_command)
 endif()
+if(TARGET hb_mpi)
+  install(TARGETS hb_mpi)
+endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

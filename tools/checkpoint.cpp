@@ -86,7 +86,8 @@ Checkpoint::Checkpoint(std::filesystem::path file, std::uint64_t key, bool resum
     if (!bytes.empty()) {
       if (bytes.size() < header || std::memcmp(bytes.data(), magic, sizeof(magic)) != 0 ||
           value_at<std::uint64_t>(bytes, sizeof(magic)) != key) {
-        throw UsageError(fmt::format("--resume: {} belongs to another task, allowed: parts of {}", file_.string(), what));
+        throw UsageError(
+            fmt::format("--resume: {} belongs to another task, allowed: parts of {}", file_.string(), what));
       }
       std::size_t at = header;
       while (bytes.size() - at >= sizeof(Head)) {

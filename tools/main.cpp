@@ -1,12 +1,15 @@
 // The `hb` command: registers the subcommands and turns exceptions into sentences and exit codes.
 #include <fmt/core.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
 #include <vector>
@@ -15,6 +18,10 @@
 #include "lib/scene_keys.hpp"
 #include "tools/command.hpp"
 #include "tools/linkage_analysis.hpp"
+#include "tools/ranks.hpp"
+#ifdef HB_WITH_MPI
+#include "tools/mpi_ranks.hpp"
+#endif
 
 namespace {
 
@@ -76,6 +83,10 @@ int run(int argc, char** argv) {
     return say(exit_wrong_input, error.what());
   } catch (const OutputError& error) {
     return say(exit_wrong_input, error.what());
+  } catch (const ShareDone&) {
+    return exit_ok;
+  } catch (const OtherRankFailed&) {
+    return exit_failed;
   } catch (const std::bad_alloc&) {
     return say(exit_failed, "out of memory");
   } catch (const std::exception& error) {
@@ -86,7 +97,38 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
+#ifdef HB_WITH_MPI
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const hb::tools::MpiRanks ranks(argc, argv);
+  hb::tools::set_ranks(ranks);
+  // The first rank speaks for all.
+  if (!ranks.first() && (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))) return 1;
+  const std::string command = argc > 1 ? argv[1] : "";
+  const bool shared = ranks.size() == 1 || command == "sweep" || command == "map";
+  const int status = shared ? flush_output(run(argc, argv))
+                            : say(hb::tools::exit_wrong_input,
+                                  fmt::format("found {} processes for \"{}\", allowed: several for sweep and map only",
+                                              ranks.size(), command)
+                                      .c_str());
+  if (status == hb::tools::exit_wrong_input || status == hb::tools::exit_failed) ranks.end_all(status);
+  return status;
+}
+
+#else
+
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
+  // Under mpirun the program with MPI beside this one takes over; alone, nobody waits for MPI to be loaded.
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr) {
+    std::error_code error;
+    const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+    const std::string with_mpi = (self.parent_path() / "hb_mpi").string();
+    execv(with_mpi.c_str(), argv);
+    return say(hb::tools::exit_wrong_input, "found mpirun, but this hb was built without MPI");
+  }
   return flush_output(run(argc, argv));
 }
+
+#endif

@@ -19,6 +19,7 @@
 #include "tools/output_folder.hpp"
 #include "tools/parallel_for.hpp"
 #include "tools/parameter_range.hpp"
+#include "tools/ranks.hpp"
 #include "tools/shared_work.hpp"
 
 namespace hb::tools {
@@ -246,7 +247,7 @@ int run_map(const MapFlags& flags) {
   };
 
   std::optional<OutputFolder> folder;
-  if (options.out) folder.emplace(*options.out);
+  if (options.out && ranks().first()) folder.emplace(*options.out);
   MapOptions search;
   search.search.stability.method = options.stability_method;
   search.search.stability.tolerance = std::clamp(options.tolerance, 1e-13, 1e-9);

@@ -7,6 +7,7 @@ packages=(
   libeigen3-dev libfftw3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
   libsundials-dev libnlopt-dev libnlopt-cxx-dev
   libgtest-dev libbenchmark-dev
+  libopenmpi-dev openmpi-bin
   gnuplot-nox fonts-dejavu-core
 )
 

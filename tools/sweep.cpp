@@ -12,6 +12,7 @@
 #include "tools/json_output.hpp"
 #include "tools/output_folder.hpp"
 #include "tools/parameter_range.hpp"
+#include "tools/ranks.hpp"
 #include "tools/shared_work.hpp"
 #include "tools/sweep_analysis.hpp"
 #include "tools/sweep_figures.hpp"
@@ -115,7 +116,7 @@ int run_sweep_command(const SweepFlags& flags) {
   Settings options = settings(flags, scene);
   AxisAndSpeed asked = axis_of(flags, scene);
   std::optional<OutputFolder> folder;
-  if (options.out) folder.emplace(*options.out);
+  if (options.out && ranks().first()) folder.emplace(*options.out);
 
   const SweepScene sweep_scene(std::move(source), set, options, std::move(asked.axis), asked.speed, asked.rpm);
   SweepResult result;
