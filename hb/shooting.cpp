@@ -403,6 +403,15 @@ double measured_decay(const std::vector<double>& changes) {
   return std::pow(changes.back() / changes[half], 1 / static_cast<double>(n - 1 - half));
 }
 
+// The envelope is no smaller than half of what it was when the transient was a hundred times larger: what is left are
+// the integrator's own errors, which differ from turn to turn.
+bool stagnates(const std::vector<double>& envelopes, double decay) {
+  if (!(decay > 0 && decay < 1)) return false;
+  const double turns = std::max(2.0, std::ceil(std::log(0.01) / std::log(decay)));
+  if (!(turns < static_cast<double>(envelopes.size()))) return false;
+  return envelopes.back() >= envelopes[envelopes.size() - 1 - static_cast<std::size_t>(turns)] / 2;
+}
+
 }  // namespace
 
 MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOptions& options) {
@@ -446,7 +455,7 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
   for (int j = 0; j < num_outputs; ++j) outputs[static_cast<std::size_t>(j)] = turn * (j + 1) / num_outputs;
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(n, 1), states(n, num_outputs), before;
   const Eigen::VectorXd load = Eigen::VectorXd::Ones(1);
-  std::vector<double> changes;
+  std::vector<double> changes, envelopes;
   double envelope = 0;
   result.status = ShootingStatus::time_limit;
   while (true) {
@@ -472,10 +481,11 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
     // A transient that oscillates passes through small changes: the envelope of the changes shrinks by the decay. What
     // is left sums to envelope/(1 - decay), and so do the errors of the turns.
     envelope = std::max(envelope * result.decay_per_turn, result.change);
+    envelopes.push_back(envelope);
     const double turns_kept = 1 / (1 - result.decay_per_turn);
     result.q_error =
         turns_kept * (envelope + error_per_step(result.integrator, tolerance) * static_cast<double>(trajectory.steps));
-    if (envelope * turns_kept <= options.tolerance) {
+    if (envelope * turns_kept <= options.tolerance || stagnates(envelopes, result.decay_per_turn)) {
       result.status = ShootingStatus::converged;
       break;
     }

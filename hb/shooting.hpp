@@ -78,6 +78,7 @@ struct MarchingOptions {
 };
 
 struct MarchingResult {
+  // converged: settled, to the tolerance or as far as the integrator's own errors let it; q_error says how far
   ShootingStatus status = ShootingStatus::failed;
   std::string message;
   PeriodicOrbit orbit;  // of the last turn

@@ -226,6 +226,17 @@ TEST(Marching, ItsErrorBarCoversTheTrueErrorOfASlowTransient) {
       }
 }
 
+// CVODE's own errors keep the state from repeating to the tolerance: it settles all the same, and its error bar says
+// so.
+TEST(Marching, SettlesWhereTheIntegratorIsLooserThanTheToleranceAsked) {
+  const TimeDomainSystem system = time_domain_system(mathieu(0.1), 1);
+  const MarchingResult result = march_from_rest(
+      system, {.tolerance = 1e-9, .integrator_tolerance = 1e-5, .time_limit = 10, .growth_rate = -0.05});
+  ASSERT_EQ(result.status, ShootingStatus::converged) << result.message;
+  EXPECT_NEAR(result.orbit.q(0, 0), 4.65595993, 4.7 * result.q_error);
+  EXPECT_GT(result.q_error, 1e-9);
+}
+
 TEST(Marching, OfAnUnstableMotionSaysThatItNeverSettles) {
   const TimeDomainSystem system = time_domain_system(mathieu(0.1), 2.15);
   EXPECT_EQ(march_from_rest(system, {.growth_rate = 0.04}).status, ShootingStatus::not_reached);
