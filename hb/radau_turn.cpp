@@ -109,9 +109,23 @@ const MatrixXd& stage_basis(Index num_cells, Index H) {
   return kept.emplace(key, std::move(basis)).first->second;
 }
 
-// Nodes x components: the series at all stage angles as one matrix product.
+// Nodes x components: the series at all stage angles, as one matrix product; where the basis would be large, by one
+// Fourier transform per stage of the series shifted by that stage's angle.
 MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
   const Index H = series.num_harmonics();
+  constexpr Index largest_basis = Index(1) << 18;  // numbers, 2 MB
+  if ((2 * H + 1) * num_cells * stages > largest_basis) {
+    const Index multiple = (2 * H + num_cells) / num_cells;  // num_cells * multiple >= 2 H + 1
+    MatrixXd values(num_cells * stages, series.num_components());
+    for (int i = 0; i < stages; ++i) {
+      FourierSeries shifted = series;
+      for (Index k = 1; k <= H; ++k)
+        shifted.c.col(k) *= std::polar(1.0, double(k) * radau().c(i) * two_pi / double(num_cells));
+      const MatrixXd fine = fourier::synthesise(shifted, num_cells * multiple);
+      for (Index n = 0; n < num_cells; ++n) values.row(i * num_cells + n) = fine.col(n * multiple).transpose();
+    }
+    return values;
+  }
   MatrixXd coefficients(2 * H + 1, series.num_components());
   coefficients.row(0) = series.c.col(0).real().transpose();
   for (Index k = 1; k <= H; ++k) {

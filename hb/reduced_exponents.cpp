@@ -67,6 +67,10 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   Index cells =
       radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3));
   const Index most = std::max<Index>(512, 12 * cells);
+  // The other exponents are wanted too, but for so much work only.
+  constexpr double further_tolerance = 1e-9;
+  constexpr Index most_further = 4;
+  Index enough = 0;  // cells for the leading one
   Exponents result;
   std::optional<TurnExponents> coarse;
   // Effect on the real part of the mean damping, which the discriminant takes as given.
@@ -93,9 +97,14 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
         result.error[i] = nearest + fine.error[i] + damping_error;
       }
       if (result.s.empty()) break;
-      const double integration = result.error[0] - fine.error[0];
+      // At rounding more cells gain nothing.
+      const auto at_rounding = [&](std::size_t i) { return result.error[i] <= 2 * fine.error[i]; };
       result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
-      if (result.converged || integration <= fine.error[0]) break;
+      bool done = result.converged || at_rounding(0);
+      if (done && enough == 0) enough = cells;
+      for (std::size_t i = 1; i < fine.s.size() && !leading_only && cells < most_further * enough; ++i)
+        done = done && (at_rounding(i) || result.error[i] <= further_tolerance * std::max(std::abs(fine.s[i]), 1.0));
+      if (done) break;
     }
     coarse = std::move(fine);
     cells = radau_cells(cells + 1);

@@ -288,13 +288,14 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
     growth = std::max(growth, s.real());
     upper = std::max(upper, s.real() + error);
     lower = std::max(lower, s.real() - error);
-    if (error <= 1e-6 * std::max(std::abs(s), 1.0))
-      result.exponents.push_back({{Omega * s.real(), Omega * folded(s.imag())},
-                                  Omega * error,
-                                  int(search.exponents.mode[i]),
-                                  Omega * search.exponents.frequency[i]});
+    (error <= 1e-6 * std::max(std::abs(s), 1.0) ? result.exponents : result.uncertain)
+        .push_back({{Omega * s.real(), Omega * folded(s.imag())},
+                    Omega * error,
+                    int(search.exponents.mode[i]),
+                    Omega * search.exponents.frequency[i]});
   }
   sort(result.exponents);
+  sort(result.uncertain);
   const bool known = search.complete && std::isfinite(growth);
   const double bar = known ? std::max(upper - growth, growth - lower) : HUGE_VAL;
   result.growth_rate = Omega * growth;
@@ -332,6 +333,9 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   search = by_slaving(system, options.tolerance);
   Stability result = finished(system, search, options.tolerance);
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
+  // Beyond about a second's work the fastest modes turn so often that propagation is less accurate than what is there.
+  const double cells = 0.8 * std::sqrt(system.mean_diagonal().cwiseAbs().maxCoeff());
+  if (search.complete && cells * std::pow(double(system.num_modes()), 3) > 1e6) return result;
   if (!search.complete || result.verdict == Verdict::undecided || !result.converged) {
     Stability second = finished(system, propagate_all(system, std::min(options.tolerance, 1e-11)), options.tolerance);
     if (!(second.growth_error >= result.growth_error)) {
@@ -353,10 +357,14 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
   double upper = -HUGE_VAL, lower = -HUGE_VAL;
   for (const std::vector<int>& modes : groups) {
     const Stability part = analyse_stability(group_of(system, modes), options);
-    for (Exponent e : part.exponents) {
-      e.mode = modes[static_cast<std::size_t>(e.mode)];
-      whole.exponents.push_back(e);
-    }
+    const auto add = [&](const std::vector<Exponent>& from, std::vector<Exponent>& to) {
+      for (Exponent e : from) {
+        e.mode = modes[static_cast<std::size_t>(e.mode)];
+        to.push_back(e);
+      }
+    };
+    add(part.exponents, whole.exponents);
+    add(part.uncertain, whole.uncertain);
     upper = std::max(upper, part.growth_rate + part.growth_error);
     lower = std::max(lower, part.growth_rate - part.growth_error);
     whole.converged = whole.converged && part.converged;
@@ -366,6 +374,7 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
     whole.evidence = part.evidence;
   }
   sort(whole.exponents);
+  sort(whole.uncertain);
   whole.evidence =
       fmt::format("{} groups of modes that do not feel each other; the leading one: {}", groups.size(), whole.evidence);
   whole.growth_error = std::max(upper - whole.growth_rate, whole.growth_rate - lower);
@@ -382,8 +391,10 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
   const Index g = common_divisor(system);
   if (g > 1) {
     Stability result = analyse_stability(with_period_divided(system, g), options);
-    for (Exponent& e : result.exponents) e.value.imag(system.speed * folded(e.value.imag() / system.speed));
-    sort(result.exponents);
+    for (std::vector<Exponent>* list : {&result.exponents, &result.uncertain}) {
+      for (Exponent& e : *list) e.value.imag(system.speed * folded(e.value.imag() / system.speed));
+      sort(*list);
+    }
     result.evidence += fmt::format("; K repeats {} times a turn", g);
     return result;
   }

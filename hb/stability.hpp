@@ -41,6 +41,7 @@ struct Exponent {
 
 struct Stability {
   std::vector<Exponent> exponents;  // real part descending, then imaginary part ascending; those resolved (up to 2I)
+  std::vector<Exponent> uncertain;  // the others that were found, their bars beyond 1e-6 of themselves or of Omega
   double growth_rate = 0;           // max Re lambda, 1/time
   double growth_error = 0;          // bound on its error
   Verdict verdict = Verdict::undecided;

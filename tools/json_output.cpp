@@ -61,6 +61,9 @@ void add_stability(Json& json, const RodResult& rod) {
   json["exponents"] = std::move(exponents);
   json["exponent_errors"] = std::move(errors);
   json["exponents_unresolved"] = unresolved_exponents(rod);
+  Json& uncertain = json["exponents_uncertain"] = Json::array();
+  for (const Exponent& exponent : stability.uncertain)
+    uncertain.push_back({{"exponent", pair(exponent.value)}, {"error", exponent.error}});
   json["growth_rate"] = stability.growth_rate + 0.0;
   json["exponent_error"] = stability.growth_error;
   json["verdict"] = to_string(stability.verdict);

@@ -196,6 +196,10 @@ double cut_error(const Body& link, const RodCoefficients& rod, double speed, con
   return safety * ((w - w_finer).cwiseAbs().maxCoeff() / scale);
 }
 
+void require_resolved(const Scene& scene, const LinkageCoefficients& coefficients) {
+  if (!coefficients.resolved) refuse_unresolved(scene, coefficients);
+}
+
 SceneModel make_model(Scene scene, const Settings& settings) {
   SceneModel model;
   model.scene = std::move(scene);
@@ -242,7 +246,7 @@ SceneModel make_model(Scene scene, const Settings& settings) {
 
   if (const Linkage* linkage = model.linkage(); linkage && !model.rods.empty()) {
     model.coefficients = linkage_coefficients(*linkage);
-    if (!model.coefficients.resolved) refuse_unresolved(model.scene, model.coefficients);
+    require_resolved(model.scene, model.coefficients);
     model.stages.push_back(
         {"coefficients of the geometry", watch.seconds(),
          fmt::format("{} crank angles, tail {:.1e}", model.coefficients.num_samples, model.coefficients.tail)});

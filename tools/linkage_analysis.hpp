@@ -72,6 +72,9 @@ class UnresolvedLinkage : public ObstructedLinkage {
   using ObstructedLinkage::ObstructedLinkage;
 };
 
+// Throws UnresolvedLinkage where the turn is not resolved.
+void require_resolved(const Scene& scene, const LinkageCoefficients& coefficients);
+
 // Throws UsageError for a name in settings.rods that is not an elastic link, and UnresolvedLinkage.
 [[nodiscard]] SceneModel make_model(Scene scene, const Settings& settings);
 

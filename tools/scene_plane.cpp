@@ -11,6 +11,7 @@
 
 #include "lib/rod.hpp"
 #include "tools/command.hpp"
+#include "tools/linkage_analysis.hpp"
 
 namespace hb::tools {
 namespace {
@@ -83,8 +84,10 @@ VectorXd scales(const VectorXd& v, const Layout& layout) {
     for (Index k = 0; k < I; ++k) {
       for (Index i = 0; i < I; ++i) {
         const double geometric = std::sqrt(own(i + I * i) * own(k + I * k));
-        scale.segment(start, n * columns).reshaped(n, columns).row(i + I * k).setConstant(
-            std::max(geometric, own(i + I * k)));
+        scale.segment(start, n * columns)
+            .reshaped(n, columns)
+            .row(i + I * k)
+            .setConstant(std::max(geometric, own(i + I * k)));
       }
     }
   };
@@ -133,9 +136,7 @@ struct Box {
     const double width = high[axis] - low[axis];
     return width > 0 ? ((v - low[axis]) - (high[axis] - v)) / width : 0;
   }
-  double value(std::size_t axis, double t) const {
-    return 0.5 * ((1 - t) * low[axis] + (1 + t) * high[axis]);
-  }
+  double value(std::size_t axis, double t) const { return 0.5 * ((1 - t) * low[axis] + (1 + t) * high[axis]); }
   bool contains(double u, double v) const { return u >= low[0] && u <= high[0] && v >= low[1] && v <= high[1]; }
 };
 
@@ -143,7 +144,7 @@ struct Box {
 struct Patch {
   Box box;
   std::array<Index, 2> degree{};
-  std::vector<Layout> layouts;         // per rod
+  std::vector<Layout> layouts;  // per rod
   std::vector<MatrixXd> coefficients;  // per rod: numbers x products of Chebyshev polynomials, first axis fastest
   std::vector<Patch> parts;
 
@@ -159,7 +160,7 @@ struct ScenePlane::Implementation {
   PlaneOptions options;
   std::optional<Scene> corner;
   std::vector<std::string> names;  // of all rods asked for
-  std::array<bool, 2> varies{};    // the axis is a scene number
+  std::array<bool, 2> varies{};  // the axis is a scene number
   Patch root;
   std::size_t id = 0;
   std::atomic<std::size_t> computed = 0;
@@ -183,6 +184,7 @@ struct ScenePlane::Implementation {
     if (const auto* hill = std::get_if<HillSystem>(&scene.model)) return {*hill};
     const Linkage& linkage = std::get<Linkage>(scene.model);
     const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+    require_resolved(scene, coefficients);
     std::vector<HillSystem> systems;
     for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
       if (!asked(body_name(linkage, coefficients.links[r]))) continue;
@@ -331,8 +333,8 @@ struct ScenePlane::Implementation {
 
 ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y,
                        PlaneOptions options)
-    : self_(new Implementation{std::move(source), std::move(overrides), {std::move(x), std::move(y)},
-                               std::move(options), {}, {}, {}, {}}) {
+    : self_(new Implementation{
+          std::move(source), std::move(overrides), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
   static std::atomic<std::size_t> next_id = 1;
   Implementation& s = *self_;
   s.id = next_id++;
@@ -402,8 +404,8 @@ std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double
   const double u = s.varies[0] ? x : 0, v = s.varies[1] ? y : 0;
   const Patch* patch = &s.root;
   while (!patch->parts.empty()) {
-    const auto part = std::find_if(patch->parts.begin(), patch->parts.end(),
-                                   [&](const Patch& p) { return p.box.contains(u, v); });
+    const auto part =
+        std::find_if(patch->parts.begin(), patch->parts.end(), [&](const Patch& p) { return p.box.contains(u, v); });
     if (part == patch->parts.end()) break;
     patch = &*part;
   }
@@ -423,7 +425,7 @@ std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double
 std::optional<ScenePlane::Absence> ScenePlane::absence(double x, double y) const {
   const double u = self_->varies[0] ? x : 0, v = self_->varies[1] ? y : 0;
   try {
-    (void)self_->source.with(self_->overrides_at(u, v));
+    (void)self_->systems_from_scene(u, v);
   } catch (const ObstructedLinkage& error) {
     return Absence{error.what(), error.dyad};
   } catch (const SceneError& error) {

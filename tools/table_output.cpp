@@ -50,28 +50,34 @@ void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, 
       units.length, peak.crank_angle * degrees_per_radian);
 }
 
-void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene) {
-  const Stability& stability = *rod.stability;
-  const OutputUnits units = output_units(scene);
+// The first few; of a conjugate pair the first stands for both.
+void add_exponents(Text& text, const std::vector<Exponent>& exponents, const char* mark) {
   std::size_t next = 0;
-  for (std::size_t shown = 0; next < stability.exponents.size() && shown < max_exponents_shown; ++shown) {
-    if (shown == 0)
-      add(text, "  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate), "real part",
-          "imaginary part", "error");
-    // Of a conjugate pair the first stands for both.
-    const Exponent& exponent = stability.exponents[next++];
-    const bool pair = next < stability.exponents.size() && exponent.value.imag() != 0 &&
-                      stability.exponents[next].value == std::conj(exponent.value);
+  for (std::size_t shown = 0; next < exponents.size() && shown < max_exponents_shown; ++shown) {
+    const Exponent& exponent = exponents[next++];
+    const bool pair =
+        next < exponents.size() && exponent.value.imag() != 0 && exponents[next].value == std::conj(exponent.value);
     if (pair) ++next;
     const double re = exponent.value.real() + 0.0, im = exponent.value.imag() + 0.0;
     const auto digits = [&](double value) { return trusted_digits(value, exponent.error); };
-    add(text, "  {:<16}  {:>18}  {:>18}  {:>8.1e}\n", "", fmt::format("{:.{}g}", re, digits(re)),
+    add(text, "  {:>16}  {:>18}  {:>18}  {:>8.1e}\n", mark, fmt::format("{:.{}g}", re, digits(re)),
         fmt::format("{}{:.{}g}", pair ? "+-" : "", pair ? std::abs(im) : im, digits(im)), exponent.error);
   }
-  if (next < stability.exponents.size())
-    add(text, "    ... {} more (--json has all)\n", stability.exponents.size() - next);
-  if (const Eigen::Index missing = unresolved_exponents(rod); missing > 0)
-    add(text, "    {} of {} not resolved to a part in 10^6 and not listed\n", missing, 2 * rod.num_modes);
+  if (next < exponents.size()) add(text, "    ... {} more (--json has all)\n", exponents.size() - next);
+}
+
+void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene) {
+  const Stability& stability = *rod.stability;
+  const OutputUnits units = output_units(scene);
+  if (!stability.exponents.empty() || !stability.uncertain.empty())
+    add(text, "  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate), "real part",
+        "imaginary part", "error");
+  add_exponents(text, stability.exponents, "");
+  if (const Eigen::Index missing = unresolved_exponents(rod); missing > 0) {
+    add(text, "    {} of {} not resolved to a part in 10^6{}\n", missing, 2 * rod.num_modes,
+        stability.uncertain.empty() ? "" : ":");
+    add_exponents(text, stability.uncertain, "?");
+  }
   add(text, "  growth rate       {} {}{}\n", with_error(stability.growth_rate, stability.growth_error), units.rate,
       stability.converged ? "" : "  NOT REACHED");
   add(text, "  {}\n", verdict_sentence(stability, speed, scene.units));

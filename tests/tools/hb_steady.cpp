@@ -276,6 +276,9 @@ TEST_F(Steady, ListsEveryExponentOrSaysHowManyAreMissing) {
       const Json& rod = found["rods"][name];
       EXPECT_EQ(rod["exponents"].size() + rod["exponents_unresolved"].get<std::size_t>(), 20u) << rpm << name;
       EXPECT_EQ(rod["exponents"].size(), rod["exponent_errors"].size());
+      EXPECT_LE(rod["exponents_uncertain"].size(), rod["exponents_unresolved"].get<std::size_t>()) << rpm << name;
+      for (const Json& exponent : rod["exponents_uncertain"])
+        EXPECT_GT(exponent["error"], 1e-6 * found["omega"].get<double>()) << rpm << name;
     }
   }
 }
