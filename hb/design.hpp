@@ -70,6 +70,7 @@ struct DesignResult {
   int num_missing = 0;  // trials where there was no design
   int num_gradients = 0;  // that the problem gave
   std::string evidence;  // one sentence: what was done
+  bool out_of_analyses = false;  // as many as allowed were done
 };
 
 // Throws std::invalid_argument naming a wrong field, and when no trial at all has values.

@@ -28,6 +28,8 @@ constexpr double difference_step = 1e-4;
 // Residual of the first-order conditions at which the best design counts as a minimum (a choice: no direction is left
 // in which the goal falls by more than this part of its steepest slope).
 constexpr double stationary_residual = 1e-3;
+// Known designs asked for in a row.
+constexpr int most_revisits = 2000;
 
 bool usable(const std::optional<DesignValues>& values) {
   return values && std::isfinite(values->goal) && values->conditions.allFinite();
@@ -81,7 +83,12 @@ std::vector<double> DesignSearch::place(const VectorXd& x) const {
 
 const std::optional<DesignValues>& DesignSearch::at(const std::vector<double>& u) {
   const auto known = seen_.find(u);
-  if (known != seen_.end()) return known->second;
+  if (known != seen_.end()) {
+    // An algorithm that comes back to known designs only is not getting anywhere.
+    if (++revisits_ > most_revisits) throw OutOfEvaluations();
+    return known->second;
+  }
+  revisits_ = 0;
   if (left() <= 0) throw OutOfEvaluations();
   const VectorXd x = design(u);
   std::optional<DesignValues> found = problem_.evaluate(x);
@@ -184,7 +191,8 @@ DesignResult DesignSearch::finish(bool converged) {
   result_.status = !feasible() ? DesignStatus::infeasible : converged ? DesignStatus::optimal : DesignStatus::stopped;
   for (const auto& [what, analyses] : said_)
     result_.evidence += fmt::format("{}{} ({} analyses)", result_.evidence.empty() ? "" : ", then ", what, analyses);
-  if (left() <= 0) result_.evidence += ", stopped by the number of analyses";
+  result_.out_of_analyses = left() <= 0;
+  if (result_.out_of_analyses) result_.evidence += ", stopped by the number of analyses";
   return std::move(result_);
 }
 

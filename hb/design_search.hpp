@@ -78,6 +78,7 @@ class DesignSearch {
   std::map<std::vector<double>, std::optional<DesignValues>> seen_;
   std::map<std::vector<double>, Eigen::MatrixXd> slopes_;  // rows: goal, conditions; columns: u_i
   std::optional<double> scale_;
+  int revisits_ = 0;
   double worst_goal_, worst_violation_ = 0;
   std::optional<Best> best_;
   std::vector<std::pair<std::string, int>> said_;

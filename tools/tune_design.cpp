@@ -173,17 +173,22 @@ void DesignAnalysis::find_instabilities() {
   SweepOptions options;
   options.stability.method = settings_.stability_method;
   options.stability.leading_only = true;
-  const auto look = [&](std::size_t r, double speed) {
-    const ScaledSystem system = system_at(r, speed);
-    return Known{{speed, speed, leading_stability(system, settings_)}, mean_modes(system)};
-  };
+  StabilityOptions all_exponents;
+  all_exponents.method = settings_.stability_method;
   parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
     const double speed = nodes_[k]->speed;
     for (std::size_t r = 0; r < num_rods; ++r) {
-      known[k].push_back(look(r, speed));
+      known[k].push_back({{speed, speed, analyse_stability(system_at(r, speed), all_exponents)}, {}});
       nodes_[k]->growth.push_back(growth_of(known[k].back().sample.stability) - shift_at(speed));
     }
   });
+  for (std::size_t r = 0; r < num_rods; ++r) {
+    std::vector<TrackedPlace> places;
+    for (const auto& node : known)
+      places.push_back({node[r].sample.x, node[r].sample.speed, &node[r].sample.stability});
+    const auto tracks = track_modes(places, static_cast<int>(model_.rods[r].system.num_modes()));
+    for (std::size_t k = 0; k < num_nodes; ++k) known[k][r].modes = tracks[k];
+  }
   // Narrow bands that lie between two nodes.
   std::vector<std::vector<double>> found(num_nodes);
   parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
@@ -201,7 +206,7 @@ void DesignAnalysis::find_instabilities() {
       auto sample = std::make_unique<Sample>();
       sample->speed = speed;
       for (std::size_t r = 0; r < num_rods; ++r)
-        sample->growth.push_back(growth_of(look(r, speed).sample.stability) - shift_at(speed));
+        sample->growth.push_back(growth_of(leading_stability(system_at(r, speed), settings_)) - shift_at(speed));
       more.push_back(std::move(sample));
     }
   }

@@ -99,7 +99,9 @@ std::string shortfall(const TuneResult& result) {
     std::string names;
     for (const TuneCondition& condition : result.conditions)
       if (!condition.met) names += (names.empty() ? "" : ", ") + condition.keep.text;
-    return fmt::format("no design within the bounds meets all conditions; at the nearest one not met: {}", names);
+    return fmt::format(
+        "no design that meets all conditions was found within the bounds{}; at the nearest one not met: {}",
+        result.design.out_of_analyses ? " by the analyses allowed" : "", names);
   }
   if (!result.verified) return "the worst cases found on more speeds differ from those of the search";
   if (result.design.status == DesignStatus::stopped)
