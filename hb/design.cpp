@@ -124,7 +124,7 @@ bool penalised_search(Search& search, nlopt::algorithm algorithm, const char* na
   if (budget > 0) opt.set_maxeval(budget);
   opt.set_xtol_abs(search.options().tolerance);
   opt.set_initial_step(0.1);
-  if (algorithm == nlopt::G_MLSL_LDS) {
+  if (algorithm == nlopt::G_MLSL) {
     nlopt::srand(static_cast<unsigned long>(search.options().seed));
     nlopt::opt inner(nlopt::LN_BOBYQA, static_cast<unsigned>(n));
     inner.set_xtol_abs(1e-3);
@@ -206,7 +206,7 @@ bool search_all(Search& search, DesignAlgorithm algorithm) {
       penalised_search(search, nlopt::GN_DIRECT_L_NOSCAL, "DIRECT-L on a penalty", global);
       break;
     case DesignAlgorithm::mlsl:
-      penalised_search(search, nlopt::G_MLSL_LDS, "MLSL on a penalty", global);
+      penalised_search(search, nlopt::G_MLSL, "MLSL on a penalty", global);
       break;
     default:
       break;

@@ -78,6 +78,14 @@ const char* status_word(DesignStatus status) {
 // What the goal gains when the bound is relaxed by a hundredth of the condition's unit.
 double gain(const TuneCondition& condition) { return 0.01 * condition.multiplier; }
 
+// The first-order conditions hold: the slopes of goal and conditions balance. Where several rods or speeds are worst at
+// once the goal has a kink, its slopes belong to one side, and neither they nor the multipliers say what a change
+// gains.
+bool smooth(const TuneResult& result) {
+  constexpr double largest_residual = 0.02;
+  return result.sensitivity && result.sensitivity->residual <= largest_residual;
+}
+
 std::string bound_text(const Keep& keep, const Units& units) {
   const std::string unit = unit_of(keep.metric.kind, units);
   return fmt::format("{} {:g}{}{}", keep.at_least ? ">=" : "<=", keep.bound, unit.empty() ? "" : " ", unit);
@@ -149,13 +157,18 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
                         !condition.met     ? fmt::format("NOT MET: {:.7g}", condition.value)
                         : condition.active ? "active"
                                            : "met with room");
-    if (condition.met && condition.active && condition.multiplier > 0)
+    if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
       text += fmt::format(": relaxed by 1 % of its unit, the goal gains {:.3g}{}{} ({:.3g} %)", gain(condition),
                           result.goal_unit.empty() ? "" : " ", result.goal_unit,
                           100 * gain(condition) / std::abs(result.goal_after));
     text += "\n";
   }
 
+  if (result.sensitivity && !smooth(result))
+    text += fmt::format(
+        "the goal has a kink here (several worst cases at once, or the search ended early: {:.1g} of its slope is left "
+        "over): changes below hold to one side, and gains are not given\n",
+        result.sensitivity->residual);
   if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
     text += "\n1 % more of      changes the goal by\n";
     for (std::size_t i = 0; i < task.variables.size(); ++i) {
@@ -225,9 +238,10 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                           {"bound", condition.keep.bound},
                           {"met", condition.met},
                           {"active", condition.active},
-                          {"multiplier", condition.multiplier},
-                          {"gain_of_1_percent", gain(condition)}});
+                          {"multiplier", smooth(result) ? Json(condition.multiplier) : Json()},
+                          {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
   }
+  if (result.sensitivity) json["slope_left_over"] = number(result.sensitivity->residual);
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
   json["analyses"] = result.design.trials.size();
