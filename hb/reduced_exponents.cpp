@@ -64,8 +64,9 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
 
   // Eight stages resolve three harmonics a cell.
-  Index cells =
-      radau_cells(std::max(Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3));
+  constexpr Index fewest_cells = 12;
+  Index cells = radau_cells(std::max(
+      {fewest_cells, Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3}));
   const Index most = std::max<Index>(512, 12 * cells);
   // The other exponents are wanted too, but for so much work only.
   constexpr double further_tolerance = 1e-9;
