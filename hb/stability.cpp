@@ -390,7 +390,9 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
   if (system.K.num_harmonics() == 0) return of_group(system, options);
   const Index g = common_divisor(system);
   if (g > 1) {
-    Stability result = analyse_stability(with_period_divided(system, g), options);
+    StabilityOptions shorter = options;
+    shorter.tolerance /= double(g);  // relative to the speed, which is g times as high there
+    Stability result = analyse_stability(with_period_divided(system, g), shorter);
     for (std::vector<Exponent>* list : {&result.exponents, &result.uncertain}) {
       for (Exponent& e : *list) e.value.imag(system.speed * folded(e.value.imag() / system.speed));
       sort(*list);
