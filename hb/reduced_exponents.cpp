@@ -4,6 +4,7 @@
 #include <numbers>
 #include <optional>
 
+#include "hb/mathieu_determinant.hpp"
 #include "hb/scalar_hill.hpp"
 #include "hb/turn_exponents.hpp"
 
@@ -42,6 +43,22 @@ std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance
   if (!pair) return std::nullopt;
   Exponents result;
   for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
+  result.converged = true;
+  return result;
+}
+
+// Of one mode with a single harmonic and constant damping by Hill's determinant; empty if that misses the tolerance.
+std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tolerance) {
+  if (reduced.num_modes != 1 || reduced.alpha.num_harmonics() != 1 || reduced.beta.num_harmonics() != 0)
+    return std::nullopt;
+  const auto pair = mathieu_exponents({.w2 = reduced.alpha.c(0, 0).real(),
+                                       .q = std::abs(reduced.alpha.c(0, 1)),
+                                       .b = reduced.beta.c(0, 0).real(),
+                                       .stiffness_error = reduced.alpha_error,
+                                       .damping_error = reduced.beta_error});
+  if (!pair || !(pair->error[0] <= allowed(tolerance, pair->s[0]))) return std::nullopt;
+  Exponents result;
+  for (std::size_t i : {0, 1}) result.add(pair->s[i], pair->error[i]);
   result.converged = true;
   return result;
 }
@@ -121,6 +138,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
 // Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
 // propagation always settles.
 Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+  if (std::optional<Exponents> result = by_determinant(reduced, tolerance)) return *std::move(result);
   const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
   const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
   constexpr double fast = 25;

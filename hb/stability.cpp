@@ -11,6 +11,7 @@
 #include <span>
 
 #include "hb/constant_coefficients.hpp"
+#include "hb/hill_determinant.hpp"
 #include "hb/hill_exponents.hpp"
 #include "hb/independent_parts.hpp"
 #include "hb/reduced_exponents.hpp"
@@ -186,7 +187,7 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
         together.size(), I - Index(together.size()));
   } else {
     search.evidence = fmt::format("{} modes, each with the others slaved to it, their exponents from {}", I,
-                                  "the phase function or one turn's propagation");
+                                  "the phase function, Hill's determinant or one turn's propagation");
     search.exponents.converged = true;
   }
   MatrixXd states(2 * I, 2 * I);
@@ -213,6 +214,31 @@ Search by_hill(const ScaledSystem& system) {
   search.method = StabilityMethod::hill;
   search.evidence = "each exponent by Newton's method on the Hill equations, in a window centred on its mode";
   search.complete = hill.start.cols() == 2 * system.num_modes() && spans(system, hill.start);
+  return search;
+}
+
+Search by_determinant(const ScaledSystem& system) {
+  Search search;
+  search.method = StabilityMethod::determinant;
+  if (!system.diagonal_damping) {
+    search.evidence = "Hill's determinant was not taken: the damping is not diagonal";
+    return search;
+  }
+  const HillDeterminant determinant(system);
+  search.exponents = determinant.exponents();
+  std::vector<Index> all(std::size_t(system.num_modes()));
+  std::iota(all.begin(), all.end(), Index(0));
+  name_modes(search.exponents, system, all);
+  // How many lie to the right of zero is known from the winding of the determinant as well, if none lies too near.
+  const std::optional<int> growing = determinant.exponents_above(0);
+  int found = 0, unclear = search.exponents.others_below >= 0 ? 1 : 0;
+  for (std::size_t i = 0; i < search.exponents.s.size(); ++i) {
+    const double growth = search.exponents.s[i].real(), bar = search.exponents.error[i];
+    (growth > bar ? found : unclear) += growth >= -bar ? 1 : 0;
+  }
+  search.complete = !search.exponents.s.empty() && (!growing || unclear > 0 || *growing == found);
+  search.evidence = growing ? fmt::format("zeros of Hill's determinant on a circle; {} growing by its winding", *growing)
+                            : "zeros of Hill's determinant on a circle";
   return search;
 }
 
@@ -323,6 +349,8 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
     return finished(system, search, options.tolerance);
   }
   if (options.method == StabilityMethod::hill) return finished(system, by_hill(system), options.tolerance);
+  if (options.method == StabilityMethod::determinant)
+    return finished(system, by_determinant(system), options.tolerance);
   if (options.method == StabilityMethod::propagation)
     return finished(system, propagate_all(system, options.tolerance), options.tolerance);
   if (options.leading_only && system.num_modes() > 1)
@@ -430,6 +458,8 @@ const char* to_string(StabilityMethod method) {
       return "slaving";
     case StabilityMethod::propagation:
       return "propagation";
+    case StabilityMethod::determinant:
+      return "determinant";
   }
   return "";
 }

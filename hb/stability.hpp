@@ -17,6 +17,7 @@ enum class StabilityMethod {
   hill,         // each exponent by Hill iteration in a window centred on its mode
   slaving,      // fast modes slaved to the slow ones exactly; the slow ones propagated over a turn
   propagation,  // the whole system propagated by Radau IIA
+  determinant,  // zeros of Hill's determinant near the leading exponent, their number checked by its winding
 };
 
 struct StabilityOptions {

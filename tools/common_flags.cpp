@@ -153,7 +153,7 @@ void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
   add("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm", "W");
   add("--threads", flags.threads, "number of threads, 1 or more", "N");
   add("--steady-method", flags.steady_method, "automatic, direct or iterative", "METHOD");
-  add("--stability-method", flags.stability_method, "automatic, hill, slaving or propagation", "METHOD");
+  add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation or determinant", "METHOD");
 }
 
 std::vector<Override> overrides(const CommonFlags& flags) {
@@ -205,7 +205,8 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                                                            {{"automatic", StabilityMethod::automatic},
                                                             {"hill", StabilityMethod::hill},
                                                             {"slaving", StabilityMethod::slaving},
-                                                            {"propagation", StabilityMethod::propagation}});
+                                                            {"propagation", StabilityMethod::propagation},
+                                                            {"determinant", StabilityMethod::determinant}});
   }
   if (flags.out) {
     // "--out --json" names no folder.
