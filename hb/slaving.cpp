@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hb/anderson.hpp"
+#include "hb/growth_bound.hpp"
 
 namespace hb {
 
@@ -170,57 +171,21 @@ class Iteration {
  private:
   // What the split leaves for y = x_F - A x_S - C x_S':
   //     y1' = y2 + (C K_SF) y1,   y2' = -(K_FF - R K_SF) y1 - G_F y2.
-  // Per mode: adiabatic amplitude (sqrt(W) y1, (y2 + g y1)/sqrt(W)), W^2 = K_jj - b^2/4, g = b/2 + W'/(2W), which
-  // grows at most by -b/2 + |W''/(2W) - 3/4 (W'/W)^2|/(2W); overdamped: amplitudes along the two mean roots. Couplings
-  // enter by the norms of their 2x2 blocks. Growth <= mean over the turn of the largest row.
   double others_below() const {
     if (!diagonal_damping_) return HUGE_VAL;
-    MatrixXd own(N_, n_), in(N_, n_), out(N_, n_), slope(N_, n_);
-    for (Index j = 0; j < n_; ++j) {
-      const double b = G_(F_[j], F_[j]);
-      ArrayXd k = K(F_[j], F_[j]);
-      for (Index s = 0; s < m_; ++s) k -= R_.col(j + n_ * s).array() * K(S_[s], F_[j]);
-      const ArrayXd W2 = k - b * b / 4;
-      if (W2.minCoeff() > 1e-3 * std::abs(W2.mean())) {
-        const FourierSeries L = fourier::analyse((0.5 * W2.log()).matrix().transpose());  // ln W
-        const ArrayXd W = W2.sqrt();
-        const ArrayXd L1 = fourier::synthesise(fourier::derivative(L), N_).row(0).transpose();
-        const ArrayXd L2 = fourier::synthesise(fourier::derivative(L, 2), N_).row(0).transpose();
-        own.col(j) = -b / 2 + (0.5 * L2 - 0.25 * L1.square()).abs() / (2 * W);
-        in.col(j) = W.rsqrt();
-        out.col(j) = W.rsqrt();
-        slope.col(j) = W.sqrt() + (b / 2 + L1 / 2).abs() * W.rsqrt();
-      } else if (W2.mean() < 0) {
-        const double mean = k.mean(), root = std::sqrt(b * b / 4 - mean);
-        const double r2 = -b / 2 - root, r1 = b > 0 ? mean / r2 : -b / 2 + root;
-        const ArrayXd d = (k - mean) / (2 * root);
-        own.col(j) = (r1 - d).max(r2 + d);
-        in.col(j).setConstant(std::sqrt(2 / root));
-        out.col(j).setConstant(1 / std::sqrt(2 * root));
-        slope.col(j).setConstant(std::max(std::abs(r1), std::abs(r2)) / std::sqrt(2 * root));
-      } else {
-        return HUGE_VAL;
-      }
-    }
-    ArrayXd largest = ArrayXd::Constant(N_, -HUGE_VAL);
-    for (Index j = 0; j < n_; ++j) {
-      ArrayXd row = own.col(j).array();
-      for (Index i = 0; i < n_; ++i) {
-        ArrayXd k = i == j ? ArrayXd(ArrayXd::Zero(N_)) : ArrayXd(K(F_[j], F_[i]));
-        ArrayXd nu = ArrayXd::Zero(N_);
+    SampledSystem rest{MatrixXd(N_, n_ * n_), MatrixXd::Zero(N_, n_ * n_), VectorXd(n_)};
+    for (Index i = 0; i < n_; ++i) {
+      rest.damping(i) = G_(F_[i], F_[i]);
+      for (Index j = 0; j < n_; ++j) {
+        auto k = rest.stiffness.col(j + n_ * i).array();
+        k = K(F_[j], F_[i]);
         for (Index s = 0; s < m_; ++s) {
-          if (i != j) k -= R_.col(j + n_ * s).array() * K(S_[s], F_[i]);
-          nu += C_.col(j + n_ * s).array() * K(S_[s], F_[i]);
+          k -= R_.col(j + n_ * s).array() * K(S_[s], F_[i]);
+          rest.cross.col(j + n_ * i).array() += C_.col(j + n_ * s).array() * K(S_[s], F_[i]);
         }
-        row += (k.abs() * out.col(j).array() + nu.abs() * slope.col(j).array()) * in.col(i).array();
       }
-      largest = largest.max(row);
     }
-    // The function has kinks: allow for the quadrature by the difference to half the nodes.
-    double half = 0;
-    for (Index t = 0; t < N_; t += 2) half += largest(t);
-    half /= double((N_ + 1) / 2);
-    return largest.mean() + 2 * std::abs(largest.mean() - half) + 1e-9 * largest.abs().maxCoeff();
+    return growth_bound(rest);
   }
 
   // At tau = 0: x_F = A x_S + C x_S', x_F' = P x_S + R x_S'.

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "hb/constant_coefficients.hpp"
+#include "hb/growth_bound.hpp"
 #include "hb/hill_determinant.hpp"
 #include "hb/hill_exponents.hpp"
 #include "hb/independent_parts.hpp"
@@ -332,6 +333,21 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
   return result;
 }
 
+// Between the mean of all exponents, -tr G/(2I) (Liouville), and the logarithmic norm's bound.
+Stability by_bound(const ScaledSystem& system) {
+  const double Omega = system.speed, upper = growth_bound(system);
+  const double lower = -system.G.trace() / (2 * double(system.num_modes()));
+  Stability result;
+  result.method = StabilityMethod::bound;
+  result.evidence = std::isfinite(upper) ? "closed-form bounds on the growth rate; no exponent was computed"
+                                         : "closed-form bounds on the growth rate do not exist here";
+  result.growth_rate = Omega * (std::isfinite(upper) ? (upper + lower) / 2 : lower);
+  result.growth_error = Omega * (std::isfinite(upper) ? (upper - lower) / 2 + 8 * eps * std::abs(lower) : HUGE_VAL);
+  if (upper < 0) result.verdict = Verdict::stable;
+  result.converged = result.verdict != Verdict::undecided;
+  return result;
+}
+
 // Modes that feel each other, or a constant K.
 Stability of_group(const ScaledSystem& system, const StabilityOptions& options) {
   Search search;
@@ -347,6 +363,10 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
     search.evidence = "constant coefficients: roots of the characteristic equation";
     search.complete = true;
     return finished(system, search, options.tolerance);
+  }
+  if (options.method == StabilityMethod::bound || options.verdict_only) {
+    const Stability bounds = by_bound(system);
+    if (options.method == StabilityMethod::bound || bounds.verdict == Verdict::stable) return bounds;
   }
   if (options.method == StabilityMethod::hill) return finished(system, by_hill(system), options.tolerance);
   if (options.method == StabilityMethod::determinant)
@@ -458,6 +478,8 @@ const char* to_string(StabilityMethod method) {
       return "slaving";
     case StabilityMethod::propagation:
       return "propagation";
+    case StabilityMethod::bound:
+      return "bound";
     case StabilityMethod::determinant:
       return "determinant";
   }

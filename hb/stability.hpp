@@ -17,6 +17,7 @@ enum class StabilityMethod {
   hill,         // each exponent by Hill iteration in a window centred on its mode
   slaving,      // fast modes slaved to the slow ones exactly; the slow ones propagated over a turn
   propagation,  // the whole system propagated by Radau IIA
+  bound,  // no exponent: closed-form bounds on the growth rate, which prove stability where damping dominates
   determinant,  // zeros of Hill's determinant near the leading exponent, their number checked by its winding
 };
 
@@ -25,6 +26,8 @@ struct StabilityOptions {
   StabilityMethod method = StabilityMethod::automatic;
   // Growth rate and verdict only: exponents that a bound shows to lie below the leading ones are not computed.
   bool leading_only = false;
+  // The verdict alone: where closed-form bounds prove stability, growth_rate +- growth_error is all that is known.
+  bool verdict_only = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};
 };
@@ -46,7 +49,7 @@ struct Stability {
   double growth_rate = 0;           // max Re lambda, 1/time
   double growth_error = 0;          // bound on its error
   Verdict verdict = Verdict::undecided;
-  bool converged = false;           // growth_error within what was asked
+  bool converged = false;           // growth_error within what was asked; for bounds: they decide
   StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
   std::vector<int> kept;            // modes that the leading exponents were found with, the others slaved to them
   std::string evidence;             // one sentence: what was done

@@ -45,7 +45,7 @@ std::variant<int, AutoModes> modes_flag(const std::string& text) {
   return integer_flag("--modes", text, 1, max_modes, fmt::format("an integer 1 to {}, or auto", max_modes));
 }
 
-Only only_flag(const std::string& text) {
+Only only_flag(const std::string& text, bool verdict_allowed) {
   Only only{false, false, false, false};
   for (const std::string& part : list_flag("--only", text)) {
     if (part == "steady") {
@@ -56,10 +56,17 @@ Only only_flag(const std::string& text) {
       only.reactions = true;
     } else if (part == "shape") {
       only.shape = true;
+    } else if (part == "verdict" && verdict_allowed) {
+      only.verdict = true;
     } else {
-      refuse("--only", part, "steady, stability, reactions, shape, several joined by commas");
+      refuse("--only", part,
+             fmt::format("steady, stability, {}reactions, shape, several joined by commas",
+                         verdict_allowed ? "verdict, " : ""));
     }
   }
+  // Exponents asked for beside it contain the verdict.
+  only.verdict = only.verdict && !only.stability;
+  only.stability = only.stability || only.verdict;
   return only;
 }
 
@@ -137,7 +144,8 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
   app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
 }
 
-void add_bound_flag(CLI::App& app, CommonFlags& flags) {
+void add_single_speed_flags(CLI::App& app, CommonFlags& flags) {
+  flags.single_speed = true;
   add_value(app, "--bound", flags.bound, "error bound: estimated, or proved where a proof is found", "KIND");
 }
 
@@ -153,7 +161,7 @@ void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
   add("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm", "W");
   add("--threads", flags.threads, "number of threads, 1 or more", "N");
   add("--steady-method", flags.steady_method, "automatic, direct or iterative", "METHOD");
-  add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation or determinant", "METHOD");
+  add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation, determinant or bound", "METHOD");
 }
 
 std::vector<Override> overrides(const CommonFlags& flags) {
@@ -182,7 +190,7 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                          ? scene.analysis.tolerance
                          : number_flag("--tol", flags.tolerance, 1e-14, 0.1, "a number from 1e-14 to 0.1");
   if (!flags.rods.empty()) result.rods = list_flag("--rods", flags.rods);
-  if (!flags.only.empty()) result.only = only_flag(flags.only);
+  if (!flags.only.empty()) result.only = only_flag(flags.only, flags.single_speed);
   if (hill && !result.only.steady && !result.only.stability) {
     refuse("--only", flags.only, "steady, stability: a [hill] scene has no joints and no shape");
   }
@@ -206,7 +214,8 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                                                             {"hill", StabilityMethod::hill},
                                                             {"slaving", StabilityMethod::slaving},
                                                             {"propagation", StabilityMethod::propagation},
-                                                            {"determinant", StabilityMethod::determinant}});
+                                                            {"determinant", StabilityMethod::determinant},
+                                                            {"bound", StabilityMethod::bound}});
   }
   if (flags.out) {
     // "--out --json" names no folder.

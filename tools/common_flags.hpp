@@ -24,6 +24,7 @@ struct CommonFlags {
   std::optional<std::string> out;
   std::vector<std::string> set;
   bool json = false, no_plots = false, stats = false;
+  bool single_speed = false;  // the command looks at one speed: --only verdict is allowed
 };
 
 // What is asked for; only that is computed.
@@ -32,6 +33,7 @@ struct Only {
   bool stability = true;  // exponents and verdict
   bool reactions = true;  // joint forces and driving torque
   bool shape = true;  // deflection and bending moment
+  bool verdict = false;  // of stability the verdict alone, from bounds where they prove it
 };
 
 struct Settings {
@@ -51,8 +53,8 @@ struct Settings {
 void add_scene_flags(CLI::App& app, CommonFlags& flags);
 // --modes, --tol, --rods, --only, --rpm, --omega, --threads, --steady-method, --stability-method.
 void add_analysis_flags(CLI::App& app, CommonFlags& flags);
-// --bound: for single speeds.
-void add_bound_flag(CLI::App& app, CommonFlags& flags);
+// --bound, and --only verdict: for single speeds.
+void add_single_speed_flags(CLI::App& app, CommonFlags& flags);
 
 // --set as overrides; throws UsageError unless each is PATH=VALUE.
 [[nodiscard]] std::vector<Override> overrides(const CommonFlags& flags);

@@ -65,6 +65,7 @@ void add_stability(Json& json, const RodResult& rod) {
   for (const Exponent& exponent : stability.uncertain)
     uncertain.push_back({{"exponent", pair(exponent.value)}, {"error", exponent.error}});
   json["growth_rate"] = stability.growth_rate + 0.0;
+  if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
   json["exponent_error"] = stability.growth_error;
   json["verdict"] = to_string(stability.verdict);
   json["stability_method"] = to_string(stability.method);

@@ -61,6 +61,7 @@ StabilityOptions stability_options(const Settings& settings) {
   StabilityOptions options;
   options.method = settings.stability_method;
   options.tolerance = std::max(options.tolerance, 10 * settings.tolerance);
+  options.verdict_only = settings.only.verdict;
   return options;
 }
 
@@ -69,30 +70,57 @@ std::string steady_note(const SteadyState& state, Eigen::Index num_modes) {
                      method_text(state.method), state.iterations);
 }
 
-// Steady state, and the error of its cut where asked; in auto mode the number of modes grows until that error is
-// within the tolerance or `max_auto_modes` is reached.
+// The rod's system with another number of modes than it was made for.
+HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Index num_modes) {
+  if (num_modes == rod.system.num_modes()) return rod.system;
+  if (num_modes == rod.finer.num_modes()) return rod.finer;
+  return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
+}
+
+// Modes that the growth rate needs: as many as leave it within the tolerance when there are more.
+Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
+                              RodResult& result, std::vector<Stage>& stages) {
+  // As for the deflection; the growth rate settles like I^-4 or faster.
+  constexpr double safety = 2;
+  StabilityOptions options = stability_options(settings);
+  options.leading_only = true;
+  options.verdict_only = false;
+  Stopwatch watch;
+  Eigen::Index I = rod.system.num_modes();
+  Stability coarse = analyse_stability(system_with(model, rod, I), speed, options);
+  while (true) {
+    const Eigen::Index more = comparison_modes(I);
+    const Stability fine = analyse_stability(system_with(model, rod, more), speed, options);
+    const double scale = std::max(std::abs(fine.growth_rate), speed);
+    const double change = std::abs(fine.growth_rate - coarse.growth_rate);
+    result.growth_modes_error = (safety * change + coarse.growth_error + fine.growth_error) / scale;
+    // A change within the bars says nothing more.
+    const bool settled = *result.growth_modes_error <= settings.tolerance || change <= coarse.growth_error;
+    if (settled || I == max_auto_modes) break;
+    I = std::min(more, max_auto_modes);
+    coarse = I == more ? fine : analyse_stability(system_with(model, rod, I), speed, options);
+  }
+  stages.push_back({"modes for the growth rate of " + rod.name, watch.seconds(), fmt::format("{} modes", I)});
+  return I;
+}
+
+// Steady state with I modes, and the error of its cut where asked; in auto mode the number of modes grows until that
+// error is within the tolerance or `max_auto_modes` is reached.
 void solve_steady(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings, bool with_cut,
-                  RodResult& result, std::vector<Stage>& stages) {
+                  Eigen::Index I, RodResult& result, std::vector<Stage>& stages) {
   const SteadyOptions options = steady_options(settings);
   const bool grows = is_auto(settings) && rod.link >= 0;
   Stopwatch watch;
-  SteadyState state = solve_steady_state(rod.system, speed, options);
-  Eigen::Index I = rod.system.num_modes();
+  SteadyState state = solve_steady_state(system_with(model, rod, I), speed, options);
   stages.push_back({"steady state of " + rod.name, watch.seconds(), steady_note(state, I)});
 
   if (rod.link >= 0 && (with_cut || grows)) {
     const Body& link = link_of(model, rod);
     const RodCoefficients& coefficients = coefficients_of(model, rod);
-    HillSystem finer_system;
     while (state.status != SteadyStatus::singular) {
       Stopwatch finer_watch;
       const Eigen::Index more = comparison_modes(I);
-      const HillSystem* finer = &rod.finer;
-      if (finer->num_modes() != more) {
-        finer_system = ritz_system(link, coefficients, more);
-        finer = &finer_system;
-      }
-      SteadyState finer_state = solve_steady_state(*finer, speed, options);
+      SteadyState finer_state = solve_steady_state(system_with(model, rod, more), speed, options);
       if (finer_state.status == SteadyStatus::singular) break;
       result.modes_error = cut_error(link, coefficients, speed, state.q, finer_state.q);
       result.more_modes = finer_state.q;
@@ -100,7 +128,7 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
       if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
       I = std::min(more, max_auto_modes);
       state =
-          I == more ? std::move(finer_state) : solve_steady_state(ritz_system(link, coefficients, I), speed, options);
+          I == more ? std::move(finer_state) : solve_steady_state(system_with(model, rod, I), speed, options);
     }
   }
   result.num_modes = I;
@@ -113,12 +141,7 @@ FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, 
                                   const RodResult& result) {
   SteadyOptions options = steady_options(settings);
   options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
-  const HillSystem& system = rod.system;
-  const SteadyState state =
-      result.num_modes == system.num_modes()
-          ? solve_steady_state(system, speed, options)
-          : solve_steady_state(ritz_system(link_of(model, rod), coefficients_of(model, rod), result.num_modes), speed,
-                               options);
+  const SteadyState state = solve_steady_state(system_with(model, rod, result.num_modes), speed, options);
   return state.status == SteadyStatus::singular ? result.steady->q : state.q;
 }
 
@@ -162,6 +185,11 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
   if (is_auto(settings) && rod.modes_error && !(*rod.modes_error <= settings.tolerance)) {
     sentences.push_back(fmt::format("{}: with {} modes the error of the cut is {:.1e}, above the tolerance {:.1e}",
                                     rod.name, rod.num_modes, *rod.modes_error, settings.tolerance));
+  }
+  if (rod.growth_modes_error && !(*rod.growth_modes_error <= settings.tolerance)) {
+    sentences.push_back(fmt::format("{}: with {} modes the growth rate's error of the cut is {:.1e} of the larger of "
+                                    "itself and the speed, above the tolerance {:.1e}",
+                                    rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
   }
   if (computed.stability && rod.stability && !rod.stability->converged) {
     const double relative = stability_options(settings).tolerance;
@@ -280,8 +308,10 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     entry.reported = rod.reported;
     entry.num_modes = rod.system.num_modes();
     const bool shows_cut = rod.reported && wants_modes_error(only);
+    if (auto_modes && rod.link >= 0 && rod.reported && only.stability && !only.verdict)
+      entry.num_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
     if (only.steady || only.shape || only.reactions || auto_modes) {
-      solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry, stages);
+      solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry.num_modes, entry, stages);
       if (!shows_cut) entry.modes_error.reset();
     } else {
       stages.push_back({"steady state of " + rod.name, 0, "not asked for", true});
@@ -301,11 +331,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     } else {
       const StabilityOptions options = stability_options(settings);
       Stopwatch watch;
-      const bool same = entry.num_modes == rod.system.num_modes();
-      entry.stability =
-          same ? analyse_stability(rod.system, speed, options)
-               : analyse_stability(ritz_system(link_of(model, rod), coefficients_of(model, rod), entry.num_modes),
-                                   speed, options);
+      entry.stability = analyse_stability(system_with(model, rod, entry.num_modes), speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});
     }
     for (std::string& sentence : shortfalls_of(entry, only, settings)) result.shortfalls.push_back(std::move(sentence));

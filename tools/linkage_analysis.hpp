@@ -51,6 +51,9 @@ struct RodResult {
   std::vector<Extremum> max_abs;  // of each q_i over the turn
   // Estimated max |error of w| / max |w| over rod and turn from cutting the Ritz series, quasi-static tail included.
   std::optional<double> modes_error;
+  // With modes = "auto": estimated error of the growth rate from cutting the Ritz series, relative to the larger of
+  // itself and the speed.
+  std::optional<double> growth_modes_error;
   std::optional<RodShape> shape;
   std::optional<Stability> stability;
   FourierSeries more_modes;  // the steady state with more modes, where the error of the cut was looked at
@@ -85,8 +88,9 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
   return rod.modes_error && !(*rod.modes_error <= 0.01);
 }
 
-// Exponents that were not resolved and are not listed, of 2I.
+// Exponents that were looked for, not resolved and not listed, of 2I.
 [[nodiscard]] inline Eigen::Index unresolved_exponents(const RodResult& rod) {
+  if (rod.stability->method == StabilityMethod::bound) return 0;
   return 2 * rod.num_modes - static_cast<Eigen::Index>(rod.stability->exponents.size());
 }
 

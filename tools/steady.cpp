@@ -92,7 +92,7 @@ void add_steady_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<CommonFlags>();
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags);
-  add_bound_flag(*command, *flags);
+  add_single_speed_flags(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }
 

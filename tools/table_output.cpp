@@ -80,6 +80,8 @@ void add_stability(Text& text, const RodResult& rod, double speed, const Scene& 
   }
   add(text, "  growth rate       {} {}{}\n", with_error(stability.growth_rate, stability.growth_error), units.rate,
       stability.converged ? "" : "  NOT REACHED");
+  if (rod.growth_modes_error)
+    add(text, "  its cut           {:.1e} of the larger of itself and the speed, estimated\n", *rod.growth_modes_error);
   add(text, "  {}\n", verdict_sentence(stability, speed, scene.units));
 }
 

@@ -54,11 +54,11 @@ std::string verdict_sentence(const Stability& stability, double speed, const Uni
   const double turn = 2 * std::numbers::pi / speed;
   switch (stability.verdict) {
     case Verdict::stable: {
-      const double halving = std::numbers::ln2 / -growth;
+      const double slowest = growth + stability.growth_error, halving = std::numbers::ln2 / -slowest;
       return fmt::format(
           "stable: every disturbance dies out, in the long run at least as fast as exp({:.4g} t): halved in "
           "{:.3g} {} ({:.3g} turns)",
-          growth, halving, units.time, halving / turn);
+          slowest, halving, units.time, halving / turn);
     }
     case Verdict::unstable: {
       const double tenfold = std::numbers::ln10 / growth;

@@ -40,6 +40,31 @@ double largest(const Json& coefficients) {
 
 double reference_tolerance(double value) { return 1e-9 * std::abs(value); }
 
+TEST_F(Steady, VerdictAloneIsProvedWithoutExponentsAndItsIntervalHoldsTheGrowthRate) {
+  const std::string six_link = "steady " + scene("six_link") + " --rpm 300 --rods AB --only ";
+  const Json verdict = document(six_link + "verdict")["rods"]["AB"], full = document(six_link + "stability")["rods"]["AB"];
+  EXPECT_EQ(verdict["verdict"], "stable");
+  EXPECT_EQ(verdict["stability_method"], "bound");
+  EXPECT_TRUE(verdict["exponents"].empty());
+  const double off = verdict["growth_rate"].get<double>() - full["growth_rate"].get<double>();
+  EXPECT_LE(std::abs(off), verdict["exponent_error"].get<double>());
+  // At 2400 rpm nothing is proved: exponents decide.
+  EXPECT_EQ(document("steady " + scene("six_link") + " --rpm 2400 --rods AB --only verdict")["rods"]["AB"]["verdict"],
+            "unstable");
+  EXPECT_EQ(hb("sweep " + scene("six_link") + " --rpm 300:400:50 --only verdict").status, 2);
+}
+
+TEST_F(Steady, EveryStabilityMethodGivesTheSameAnswer) {
+  const std::string mathieu = "steady " + scene("mathieu") + " --only stability --tol 1e-8 --stability-method ";
+  const Json automatic = document(mathieu + "automatic")["rods"]["system"];
+  for (const std::string method : {"hill", "slaving", "propagation", "determinant"}) {
+    const Json found = document(mathieu + method)["rods"]["system"];
+    EXPECT_EQ(found["verdict"], automatic["verdict"]) << method;
+    EXPECT_EQ(found["stability_method"], method);
+    EXPECT_NEAR(found["growth_rate"], automatic["growth_rate"], 1e-8) << method;
+  }
+}
+
 TEST_F(Steady, GivesTheReferenceValuesOfTheSixLinkMechanism) {
   const Json reference = Json::parse(read(HB_SOURCE_DIR "/tests/reference/six_link.json"));
   for (const Json& expected : reference["cases"]) {

@@ -54,6 +54,36 @@ TEST_P(ModesError, CoversTheTrueErrorOfTheCut) {
   }
 }
 
+// modes = "auto": with the modes that it takes, deflection and growth rate are those of 60 within what was asked.
+TEST_P(ModesError, AutomaticModesAreEnoughForDeflectionAndGrowth) {
+  const auto [scene, speed] = GetParam();
+  const hb::Scene read = hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene);
+  const auto full = solve(scene, 60, speed);
+  const auto& linkage = std::get<hb::Linkage>(read.model);
+  const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
+  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+    hb::tools::Settings settings;
+    settings.modes = hb::AutoModes{};
+    settings.tolerance = tolerance;
+    settings.only = {.steady = true, .stability = true, .reactions = false, .shape = false};
+    const auto result = hb::tools::analyse(hb::tools::make_model(read, settings), speed, settings);
+    for (std::size_t r = 0; r < result.rods.size(); ++r) {
+      const RodResult& rod = result.rods[r];
+      const hb::Stability exact =
+          hb::analyse_stability(hb::ritz_system(*hb::body_at(linkage, rod.link), coefficients.rods[r], 60), speed,
+                                {.leading_only = true});
+      ASSERT_TRUE(rod.growth_modes_error.has_value());
+      EXPECT_LE(*rod.growth_modes_error, tolerance) << rod.name;
+      const double scale = std::max(std::abs(exact.growth_rate), speed);
+      EXPECT_LE(std::abs(rod.stability->growth_rate - exact.growth_rate),
+                *rod.growth_modes_error * scale + rod.stability->growth_error + exact.growth_error)
+          << rod.name << ", " << rod.num_modes << " modes for " << tolerance;
+      EXPECT_LE(true_error(scene, r, speed, rod, full.rods[r]), tolerance)
+          << rod.name << ", " << rod.num_modes << " modes";
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, ModesError,
                          testing::Values(Case{"six_link.toml", 31.4}, Case{"six_link.toml", 157.0},
                                          Case{"six_link.toml", 314.0}, Case{"six_link_4500.toml", 31.4},
