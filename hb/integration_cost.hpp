@@ -20,6 +20,10 @@ struct FrozenSpectrum {
 // Cells between `num_outputs` equally spaced outputs that resolve the slow modes.
 [[nodiscard]] int collocation_cells(const FrozenSpectrum& spectrum, int num_outputs);
 
+// Work of a step of `num_columns` solutions side by side, in seconds of one core of about 10 GFlop/s: counted, the same
+// on every machine and in every run, so that methods are compared by it.
+[[nodiscard]] double work_per_step(Integrator method, Eigen::Index num_modes, Eigen::Index num_columns);
+
 // Seconds per step of `num_columns` solutions side by side, measured now.
 [[nodiscard]] double seconds_per_step(ScaledMotion& motion, Integrator method, Eigen::Index num_columns);
 

@@ -77,28 +77,37 @@ HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Inde
   return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
 }
 
-// Modes that the growth rate needs: as many as leave it within the tolerance when there are more.
+// Modes that the growth rate needs: as many as leave it within the tolerance when there are more, to `max_auto_modes`.
 Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
                               RodResult& result, std::vector<Stage>& stages) {
-  // As for the deflection; the growth rate settles like I^-4 or faster.
+  // As for the deflection; usually the growth rate settles like I^-4 or faster.
   constexpr double safety = 2;
   StabilityOptions options = stability_options(settings);
+  options.tolerance = std::clamp(0.01 * settings.tolerance, 1e-12, options.tolerance);
   options.leading_only = true;
-  options.verdict_only = false;
   Stopwatch watch;
+  const auto growth = [&](Eigen::Index modes) {
+    return analyse_stability(system_with(model, rod, modes), speed, options);
+  };
   Eigen::Index I = rod.system.num_modes();
-  Stability coarse = analyse_stability(system_with(model, rod, I), speed, options);
+  Stability coarse = growth(I);
+  double previous = HUGE_VAL;
   while (true) {
     const Eigen::Index more = comparison_modes(I);
-    const Stability fine = analyse_stability(system_with(model, rod, more), speed, options);
+    Stability fine = growth(more);
+    const double change = std::abs(fine.growth_rate - coarse.growth_rate), bars = fine.growth_error + coarse.growth_error;
+    // Changes that do not shrink are carried on, in proportion to the number of the mode: every mode that is added may
+    // be damped less than the one before it.
+    const bool shrinks = change <= previous / 2 && previous < HUGE_VAL;
+    const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
+    const double steps =
+        shrinks ? 1 : std::max(1.0, (square(max_auto_modes) - square(I)) / (square(more) - square(I)));
     const double scale = std::max(std::abs(fine.growth_rate), speed);
-    const double change = std::abs(fine.growth_rate - coarse.growth_rate);
-    result.growth_modes_error = (safety * change + coarse.growth_error + fine.growth_error) / scale;
-    // A change within the bars says nothing more.
-    const bool settled = *result.growth_modes_error <= settings.tolerance || change <= coarse.growth_error;
-    if (settled || I == max_auto_modes) break;
+    result.growth_modes_error = (safety * steps * change + bars) / scale;
+    if (*result.growth_modes_error <= settings.tolerance || I == max_auto_modes) break;
     I = std::min(more, max_auto_modes);
-    coarse = I == more ? fine : analyse_stability(system_with(model, rod, I), speed, options);
+    coarse = I == more ? std::move(fine) : growth(I);
+    previous = change;
   }
   stages.push_back({"modes for the growth rate of " + rod.name, watch.seconds(), fmt::format("{} modes", I)});
   return I;

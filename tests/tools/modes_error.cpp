@@ -73,7 +73,10 @@ TEST_P(ModesError, AutomaticModesAreEnoughForDeflectionAndGrowth) {
           hb::analyse_stability(hb::ritz_system(*hb::body_at(linkage, rod.link), coefficients.rods[r], 60), speed,
                                 {.leading_only = true});
       ASSERT_TRUE(rod.growth_modes_error.has_value());
-      EXPECT_LE(*rod.growth_modes_error, tolerance) << rod.name;
+      // Rotary inertia damps every higher mode of the rocker less: its growth rate has no limit below 60 modes, and
+      // the estimate says so.
+      const bool settles = rod.name != "rocker" || tolerance > 1e-3;
+      EXPECT_EQ(*rod.growth_modes_error <= tolerance, settles) << rod.name << ", " << rod.num_modes << " modes";
       const double scale = std::max(std::abs(exact.growth_rate), speed);
       EXPECT_LE(std::abs(rod.stability->growth_rate - exact.growth_rate),
                 *rod.growth_modes_error * scale + rod.stability->growth_error + exact.growth_error)
