@@ -161,11 +161,16 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
       }
     }
   }
+  // Locked to the crank a mode's frequency is known up to a multiple of half the speed: the line breaks where that
+  // changes.
+  constexpr double jump = 0.25;  // of the speed
   for (int mode = 0; mode < shown; ++mode) {
-    add(fmt::format("'{}' using 1:{}:(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines linewidth 3 "
-                    "linecolor palette notitle",
-                    csv.name, frequency(mode), frequency(mode) + 1, scale, scale, frequency(mode) + 1, -scale, -scale,
-                    frequency(mode) + 1));
+    text += fmt::format("before{} = NaN\n", mode);
+    add(fmt::format("'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
+                    "jumps ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
+                    "linewidth 3 linecolor palette notitle",
+                    csv.name, frequency(mode), mode, jump, factor, constant, mode, frequency(mode) + 1, scale, scale,
+                    frequency(mode) + 1, -scale, -scale, frequency(mode) + 1));
     // Named where it is first seen inside the picture.
     for (Eigen::Index k = 0; k < csv.rows.rows(); ++k) {
       const double y = csv.rows(k, frequency(mode) - 1), x = csv.rows(k, 0);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "run_command.hpp"
@@ -169,6 +170,29 @@ TEST_F(Map, WritesGridCurvesAndPictures) {
   std::size_t rows = 0;
   while (std::getline(grid, line)) rows += !line.empty() && line[0] != '#' && line[0] != 'o';
   EXPECT_EQ(rows, 96u);
+}
+
+TEST_F(Map, AFullDiskIsAnErrorThatLeavesNoPartOfAResultAndLosesNoWork) {
+  const std::string arguments =
+      "map " + scene("mathieu") + " --x omega=1:3:61 --y " + swing + "=0:0.4:41 --out out --no-plots";
+  // A limit on the size of files acts on a write like a full disk; kilobytes.
+  for (const char* limit : {"ulimit -f 1;", "ulimit -f 40;"}) {
+    const CommandResult result = hb(arguments, limit);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
+    for (const char* file : {"map_grid.csv", "map_boundaries.csv"}) EXPECT_FALSE(fs::exists(folder_ / "out" / file));
+  }
+  EXPECT_EQ(hb(arguments).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "map_grid.csv"));
+}
+
+TEST_F(Map, AFolderThatCannotBeIsRefusedBeforeTheWork) {
+  std::ofstream(folder_ / "file") << "not a folder";
+  const CommandResult result =
+      hb("map " + scene("mathieu") + " --x omega=1:3:3 --y " + swing + "=0:0.4:3 --out file/out --no-plots");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("file/out"), std::string::npos) << result.err;
+  EXPECT_EQ(num_entries(folder_), 1u);
 }
 
 TEST_F(Map, RefusesWrongRangesAndParameters) {
