@@ -177,6 +177,10 @@ void validate(const DesignProblem& problem, const DesignOptions& options) {
   if (!problem.evaluate) throw std::invalid_argument("evaluate: found nothing, allowed a function");
   if (!(options.tolerance > 0))
     throw std::invalid_argument(fmt::format("tolerance: found {}, allowed > 0", options.tolerance));
+  if (options.algorithm == DesignAlgorithm::bobyqa && (n < 2 || problem.num_conditions > 0))
+    throw std::invalid_argument(fmt::format(
+        "algorithm: found bobyqa for {} variables and {} conditions, allowed 2 variables or more and no conditions", n,
+        problem.num_conditions));
   if (options.max_evaluations < 1)
     throw std::invalid_argument(fmt::format("max_evaluations: found {}, allowed >= 1", options.max_evaluations));
 }
@@ -200,33 +204,29 @@ bool search_all(Search& search, DesignAlgorithm algorithm) {
   const int n = static_cast<int>(search.size());
   (void)search.at(search.start());
   const int global = std::min(search.left() / 3, 20 + 40 * n);
-  switch (algorithm) {
-    case DesignAlgorithm::automatic:
-    case DesignAlgorithm::direct:
+  if (!search.options().only_local) {
+    if (algorithm == DesignAlgorithm::automatic || algorithm == DesignAlgorithm::direct)
       penalised_search(search, nlopt::GN_DIRECT_L_NOSCAL, "DIRECT-L on a penalty", global);
-      break;
-    case DesignAlgorithm::mlsl:
-      penalised_search(search, nlopt::G_MLSL, "MLSL on a penalty", global);
-      break;
-    default:
-      break;
+    if (algorithm == DesignAlgorithm::mlsl) penalised_search(search, nlopt::G_MLSL, "MLSL on a penalty", global);
   }
-  if (!search.feasible() && search.num_conditions() > 0) restore(search);
+  // All but MMA find back from a small violation by themselves.
+  constexpr double small = 1e-2;
+  const double tolerated = algorithm == DesignAlgorithm::mma ? 0 : small;
+  if (search.num_conditions() > 0 && search.least_violation() > tolerated) restore(search);
   switch (algorithm) {
     case DesignAlgorithm::bobyqa:
-      // BOBYQA needs two variables, and stops at the penalty's kinks.
-      if (n > 1) penalised_search(search, nlopt::LN_BOBYQA, "BOBYQA on a penalty", 0);
-      return settle(search, nlopt::LN_COBYLA, "COBYLA");
+      return settle(search, nlopt::LN_BOBYQA, "BOBYQA");
     case DesignAlgorithm::slsqp:
       return settle(search, nlopt::LD_SLSQP, "SLSQP");
     case DesignAlgorithm::mma:
       return settle(search, nlopt::LD_MMA, "MMA");
     case DesignAlgorithm::automatic:
       // Derivatives see the smooth part around, COBYLA the kinks.
-      if (search.feasible()) {
+      if (search.least_violation() <= small) {
         local(search, nlopt::LD_SLSQP, "SLSQP", 0.05);
         if (search.stationary()) return true;
       }
+      if (search.num_conditions() > 0 && !search.feasible()) restore(search);
       break;
     default:
       break;

@@ -37,7 +37,7 @@ enum class DesignAlgorithm {
   direct,  // global, deterministic: DIRECT-L on an exact penalty, then COBYLA
   mlsl,  // global, low-discrepancy starts, BOBYQA from each on an exact penalty, then COBYLA
   cobyla,  // local, linear models, no derivatives
-  bobyqa,  // local, quadratic models of an exact penalty, no derivatives
+  bobyqa,  // local, quadratic models, no derivatives; for two variables or more and no conditions
   slsqp,  // local, with derivatives
   mma,  // local, with derivatives
 };
@@ -47,6 +47,7 @@ struct DesignOptions {
   double tolerance = 1e-5;  // of each variable, relative to its bounds' distance (on its scale)
   int max_evaluations = 600;  // analyses, those of differences included, gradients not
   std::uint64_t seed = 1;  // of mlsl
+  bool only_local = false;  // from the start, without the global search of automatic, direct and mlsl
   std::function<void(int evaluations, bool feasible, double goal)> progress;  // best so far, after each analysis
 };
 

@@ -2,6 +2,7 @@
 // and slopes as NLopt wants them.
 #pragma once
 
+#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -36,6 +37,8 @@ class DesignSearch {
   int evaluations() const { return static_cast<int>(result_.trials.size()); }
   int left() const { return options_.max_evaluations - evaluations(); }
   bool feasible() const { return best_ && violation(best_->values) <= 0; }
+  // Of the best design so far.
+  double least_violation() const { return best_ ? violation(best_->values) : HUGE_VAL; }
   const DesignOptions& options() const { return options_; }
   std::vector<double> start() const { return place(problem_.start); }
   std::vector<double> best_place() const { return place(best_ ? best_->x : problem_.start); }

@@ -25,34 +25,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t resonant_modes = 2;
 constexpr double highest_order = 24;
 
-// The system of p in q = e^{-mt} p: its exponents are those of q plus m, so it is stable where q decays faster than
-// e^{-mt}.   M p'' + (B - 2 m M) p' + (C - m B + m^2 M) p
-HillSystem shifted(const HillSystem& system, double m) {
-  HillSystem result = system;
-  if (m == 0) return result;
-  const Eigen::MatrixXd &M = system.mass, &B = system.damping;
-  result.damping = B - 2 * m * M;
-  if (result.stiffness[0].c.size() == 0) result.stiffness[0] = FourierSeries(M.size(), 0);
-  const Eigen::MatrixXd added = m * m * M - m * B;
-  result.stiffness[0].c.col(0) +=
-      Eigen::Map<const Eigen::VectorXd>(added.data(), added.size()).cast<std::complex<double>>();
-  return result;
-}
-
-// Modes of the mean system; NaN where overdamped or not held up.
-std::vector<ModeState> mean_modes(const ScaledSystem& system) {
-  const Eigen::VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
-  std::vector<ModeState> modes;
-  for (Eigen::Index i = 0; i < w2.size(); ++i) {
-    const double square = w2(i) - b(i) * b(i) / 4;
-    ModeState mode;
-    mode.frequency = square > 0 ? std::sqrt(square) * system.speed : nan;
-    mode.growth = mode.growth_low = -b(i) / 2 * system.speed;
-    modes.push_back(mode);
-  }
-  return modes;
-}
-
 }  // namespace
 
 struct DesignAnalysis::Sample {
@@ -72,13 +44,8 @@ struct DesignAnalysis::Curve {
 };
 
 DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
-                               SectionHeights heights, double margin, bool per_turn)
-    : model_(model),
-      settings_(settings),
-      span_(span),
-      heights_(std::move(heights)),
-      margin_(margin),
-      per_turn_(per_turn) {
+                               SectionHeights heights, RequiredDecay required)
+    : model_(model), settings_(settings), span_(span), heights_(std::move(heights)), required_(required) {
   const int count = span.from == span.to ? 1 : std::max(2, span.num_nodes);
   for (int k = 0; k < count; ++k) {
     auto sample = std::make_unique<Sample>();
@@ -160,7 +127,6 @@ void DesignAnalysis::need_forces() {
 void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
   place_nodes();
-  const auto shift_at = [&](double speed) { return per_turn_ ? margin_ * speed / (2 * pi) : margin_; };
   const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
   struct Known {
     StabilitySample sample;
@@ -168,7 +134,7 @@ void DesignAnalysis::find_instabilities() {
   };
   std::vector<std::vector<Known>> known(num_nodes);
   const auto system_at = [&](std::size_t r, double speed) {
-    return scale_system(shifted(model_.rods[r].system, shift_at(speed)), speed);
+    return scale_system(shifted(model_.rods[r].system, required_.at(speed)), speed);
   };
   SweepOptions options;
   options.stability.method = settings_.stability_method;
@@ -179,7 +145,7 @@ void DesignAnalysis::find_instabilities() {
     const double speed = nodes_[k]->speed;
     for (std::size_t r = 0; r < num_rods; ++r) {
       known[k].push_back({{speed, speed, analyse_stability(system_at(r, speed), all_exponents)}, {}});
-      nodes_[k]->growth.push_back(growth_of(known[k].back().sample.stability) - shift_at(speed));
+      nodes_[k]->growth.push_back(growth_of(known[k].back().sample.stability) - required_.at(speed));
     }
   });
   for (std::size_t r = 0; r < num_rods; ++r) {
@@ -206,7 +172,7 @@ void DesignAnalysis::find_instabilities() {
       auto sample = std::make_unique<Sample>();
       sample->speed = speed;
       for (std::size_t r = 0; r < num_rods; ++r)
-        sample->growth.push_back(growth_of(leading_stability(system_at(r, speed), settings_)) - shift_at(speed));
+        sample->growth.push_back(growth_of(leading_stability(system_at(r, speed), settings_)) - required_.at(speed));
       more.push_back(std::move(sample));
     }
   }
@@ -316,7 +282,7 @@ MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>
   for (std::size_t c = 0; c < curves.size(); ++c) {
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       values[c].push_back(at_node(curves[c], k));
-      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where, curves[c].index, 1};
+      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where, curves[c].index};
       highest = std::max(highest, values[c].back());
       lowest = std::min(lowest, values[c].back());
     }

@@ -1,7 +1,9 @@
 // One design of a scene over a speed range: the worst case of every metric, found between the speeds sampled.
 #pragma once
 
+#include <algorithm>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,17 +14,10 @@
 
 namespace hb::tools {
 
-struct MetricValue {
-  double value = 0;  // in unit_of(kind); NaN where there is no periodic solution
-  std::optional<double> speed;  // where it is worst, rad per unit time
-  std::string where;  // rod or joint
-  std::size_t index = 0;  // of that rod in SceneModel::rods, of that joint in JointForces::joints
-  double factor = 1;  // from the scene's units
-};
-
-struct SpeedSpan {
-  double from = 0, to = 0;  // rad per unit time; equal: one speed
-  int num_nodes = 24;  // sampled before refinement
+// Decay that conditions ask for; the larger one counts.
+struct RequiredDecay {
+  double per_time = 0, per_turn = 0;
+  double at(double speed) const { return std::max(per_time, per_turn * speed / (2 * std::numbers::pi)); }
 };
 
 // Response and margin over the speeds sampled, for pictures.
@@ -35,10 +30,9 @@ struct DesignCurves {
 
 class DesignAnalysis {
  public:
-  // Keeps references to both.
-  // `margin`: bands are looked for that decay slower than this (1/time, or per turn), also where narrow.
+  // Keeps references to both. Bands that decay slower than required are looked for also where narrow.
   DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span, SectionHeights heights,
-                 double margin = 0, bool per_turn = false);
+                 RequiredDecay required = {});
   ~DesignAnalysis();
 
   // Throws UsageError for a name that the scene does not have.
@@ -63,8 +57,7 @@ class DesignAnalysis {
   const Settings& settings_;
   SpeedSpan span_;
   SectionHeights heights_;
-  double margin_;
-  bool per_turn_;
+  RequiredDecay required_;
   std::vector<std::unique_ptr<Sample>> nodes_;  // ascending speed
   bool placed_ = false;
 };

@@ -17,6 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+double positive_degrees(double angle) {
+  const double degrees = std::fmod(angle * degrees_per_radian, 360);
+  return degrees < 0 ? degrees + 360 : degrees;
+}
+
 std::string label(MetricKind kind) {
   switch (kind) {
     case MetricKind::deflection:
@@ -48,12 +53,20 @@ std::string label(const Metric& metric) {
          (metric.kind == MetricKind::clearance ? fmt::format(" of orders 1..{}", metric.orders) : "");
 }
 
+// "CD, 3000 rpm, 0.512 l, 123.45 deg"
 std::string place(const TuneTask& task, const MetricValue& value, const Units& units) {
   std::string text = value.where;
-  if (value.speed)
-    text +=
-        fmt::format("{}{:.6g} {}", text.empty() ? "" : ", ", *value.speed / task.speed_unit, speed_unit(task, units));
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (value.speed) add(fmt::format("{:.6g} {}", *value.speed / task.speed_unit, speed_unit(task, units)));
+  if (value.position) add(fmt::format("{:.4f} l", *value.position));
+  if (value.crank_angle) add(fmt::format("{:.2f} deg", positive_degrees(*value.crank_angle)));
   return text;
+}
+
+// Digits as far as the error allows and one more; the worst case is at least that where more speeds show more.
+std::string worst_text(const MetricValue& value, bool confirmed, MetricKind kind) {
+  return fmt::format("{}{:.{}g}", confirmed ? "" : better_large(kind) ? "<" : ">", value.value,
+                     std::min(trusted_digits(value.value, value.error) + 1, 10));
 }
 
 std::string at_bound(const TuneVariable& variable, double x) {
@@ -93,28 +106,41 @@ std::string bound_text(const Keep& keep, const Units& units) {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-Json metric_json(const TuneTask& task, const MetricValue& value) {
-  Json json = {{"value", number(value.value)}};
+Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed, const Units& units) {
+  Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
   if (!value.where.empty()) json["at"] = value.where;
   if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = *value.speed / task.speed_unit;
+  if (value.position) json["x_over_l"] = *value.position;
+  if (value.crank_angle) json["crank_angle"] = scene_angle(*value.crank_angle, units);
   return json;
+}
+
+std::string not_met(const TuneResult& result) {
+  std::string names;
+  for (const TuneCondition& condition : result.conditions)
+    if (!condition.met) names += (names.empty() ? "" : ", ") + condition.keep.text;
+  return names;
 }
 
 }  // namespace
 
 std::string shortfall(const TuneResult& result) {
-  if (result.design.status == DesignStatus::infeasible) {
-    std::string names;
-    for (const TuneCondition& condition : result.conditions)
-      if (!condition.met) names += (names.empty() ? "" : ", ") + condition.keep.text;
+  if (result.design.status == DesignStatus::infeasible)
     return fmt::format(
         "no design that meets all conditions was found within the bounds{}; at the nearest one not met: {}",
-        result.design.out_of_analyses ? " by the analyses allowed" : "", names);
-  }
-  if (!result.verified) return "the worst cases found on more speeds differ from those of the search";
+        result.design.out_of_analyses ? " by the analyses allowed" : "", not_met(result));
+  if (!result.agrees) return "the worst cases found on more speeds differ from those of the search";
+  if (!result.modes_suffice)
+    return fmt::format("the design found needs more modes for the tolerance than the {} of the search",
+                       result.num_modes);
+  if (!result.holds) return "with the errors of their values these conditions may not be met: " + not_met(result);
   if (result.design.status == DesignStatus::stopped)
     return "the analyses allowed ran out before the search had settled";
   return "";
+}
+
+const char* scene_file(const TuneResult& result) {
+  return result.design.status == DesignStatus::infeasible ? nearest_file : tuned_file;
 }
 
 std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene) {
@@ -141,20 +167,37 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
                           tied.factor * result.tuned[i], variable.path);
   }
 
-  text += fmt::format("\n{:<36}{:>13}{:>13}  {:<8}  {}\n", "worst case", "before", "after", "unit", "after: where");
+  text += fmt::format("\n{:<36}{:>15}{:>15}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
+  bool confirmed = true, unstable_before = false, unstable_after = false;
   for (const TuneRow& row : result.rows) {
-    text += fmt::format("{:<36}{:>13.7g}{:>13.7g}  {:<8}  {}\n", label(row.metric), row.before.value, row.after.value,
-                        unit_of(row.metric.kind, units), place(task, row.after, units));
-    if (row.metric.kind == MetricKind::margin && !(row.after.value > 0))
-      text += "  the tuned design is not stable over all these speeds: its response there would not be seen\n";
+    const MetricKind kind = row.metric.kind;
+    text += fmt::format("{:<36}{:>15}{:>15}{:>10}  {}\n", label(row.metric),
+                        worst_text(row.before, row.before_confirmed, kind),
+                        worst_text(row.after, row.after_confirmed, kind),
+                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, units));
+    confirmed = confirmed && row.before_confirmed && row.after_confirmed;
+    unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
+    unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
   }
-  text +=
-      fmt::format("{:<36}{:>13.7g}{:>13.7g}  {}\n", "goal", result.goal_before, result.goal_after, result.goal_unit);
+  text += fmt::format("{:<36}{:>15.7g}{:>15.7g}{:>10}  {}\n", "goal", result.goal_before, result.goal_after, "",
+                      result.goal_unit);
+  if (!confirmed) text += "  > or <: four times the speeds show a worse value; the worst case is at least that\n";
+  for (const bool after : {false, true})
+    if (after ? unstable_after : unstable_before)
+      text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
+                          after ? "after" : "before");
+
+  text += fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
+  for (const TuneRow& row : result.rows) {
+    const std::string before = place(task, row.before, units), after = place(task, row.after, units);
+    if (!before.empty() || !after.empty())
+      text += fmt::format("{:<36}{:<40}{}\n", label(row.metric), before, after);
+  }
 
   if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
   for (const TuneCondition& condition : result.conditions) {
     text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric), bound_text(condition.keep, units),
-                        !condition.met     ? fmt::format("NOT MET: {:.7g}", condition.value)
+                        !condition.met     ? fmt::format("NOT MET: {}", with_error(condition.value, condition.error))
                         : condition.active ? "active"
                                            : "met with room");
     if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
@@ -182,7 +225,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
           fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
   }
 
-  text += fmt::format("\n{} designs analysed: {}\n", result.design.trials.size(), result.design.evidence);
+  text += fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
+                      result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
+                      result.design.evidence, result.confirmations);
   if (result.counts.gradients > 0)
     text += fmt::format("{} gradients from adjoint solutions and Floquet vectors\n", result.counts.gradients);
   if (result.counts.not_closing > 0)
@@ -190,7 +235,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
   if (result.without_response > 0)
     text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
-  if (result.verified) text += "worst cases confirmed on four times the speeds\n";
+  text += fmt::format("{} modes of each rod\n", result.num_modes);
+  if (result.verified())
+    text += "confirmed on four times the speeds; the conditions hold with the estimated errors of their values\n";
   return text;
 }
 
@@ -199,7 +246,8 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
   json["over"] = {{task.in_rpm ? "rpm" : "omega", {task.span.from / task.speed_unit, task.span.to / task.speed_unit}}};
   json["status"] = status_word(result.design.status);
-  json["verified"] = result.verified;
+  json["verified"] = result.verified();
+  json["modes"] = result.num_modes;
   const std::string problem = shortfall(result);
   json["shortfall"] = problem.empty() ? Json() : Json(problem);
   json["goal"] = {
@@ -228,13 +276,14 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   for (const TuneRow& row : result.rows) {
     metrics.push_back({{"metric", row.metric.text},
                        {"unit", unit_of(row.metric.kind, units)},
-                       {"before", metric_json(task, row.before)},
-                       {"after", metric_json(task, row.after)}});
+                       {"before", metric_json(task, row.before, row.before_confirmed, units)},
+                       {"after", metric_json(task, row.after, row.after_confirmed, units)}});
   }
   Json& conditions = json["conditions"] = Json::array();
   for (const TuneCondition& condition : result.conditions) {
     conditions.push_back({{"condition", condition.keep.text},
                           {"value", number(condition.value)},
+                          {"error", number(condition.error)},
                           {"bound", condition.keep.bound},
                           {"met", condition.met},
                           {"active", condition.active},
@@ -244,7 +293,8 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   if (result.sensitivity) json["slope_left_over"] = number(result.sensitivity->residual);
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
-  json["analyses"] = result.design.trials.size();
+  json["analyses"] = result.design.trials.size() + static_cast<std::size_t>(result.confirmations);
+  json["confirmations"] = result.confirmations;
   json["gradients"] = result.counts.gradients;
   json["not_closing"] = result.counts.not_closing;
   json["refused"] = result.counts.refused;
@@ -284,8 +334,9 @@ std::string tuned_scene(const TuneTask& task, const TuneResult& result, const st
   namespace fs = std::filesystem;
   const std::string text = task.source.text_with(overrides_at(task, result.tuned));
   const fs::path from = fs::absolute(scene_file).parent_path(), to = fs::absolute(folder);
-  // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   std::string changed;
+  if (const std::string problem = shortfall(result); !problem.empty()) changed = "# NOT REACHED: " + problem + "\n";
+  // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t key = std::min(text.find("file", at), text.size());
     changed.append(text, at, key - at);
