@@ -44,8 +44,9 @@ struct DesignAnalysis::Curve {
 };
 
 DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
-                               SectionHeights heights, RequiredDecay required)
-    : model_(model), settings_(settings), span_(span), heights_(std::move(heights)), required_(required) {
+                               SectionHeights heights, std::vector<RequiredDecay> required)
+    : model_(model), settings_(settings), span_(span), heights_(std::move(heights)), required_(std::move(required)) {
+  required_.insert(required_.begin(), RequiredDecay{});
   const int count = span.from == span.to ? 1 : std::max(2, span.num_nodes);
   for (int k = 0; k < count; ++k) {
     auto sample = std::make_unique<Sample>();
@@ -128,51 +129,49 @@ void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
   place_nodes();
   const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
-  struct Known {
-    StabilitySample sample;
-    std::vector<ModeState> modes;
-  };
-  std::vector<std::vector<Known>> known(num_nodes);
-  const auto system_at = [&](std::size_t r, double speed) {
-    return scale_system(shifted(model_.rods[r].system, required_.at(speed)), speed);
-  };
+  StabilityOptions all_exponents;
+  all_exponents.method = settings_.stability_method;
+  std::vector<std::vector<Stability>> known(num_nodes);  // by node and rod
+  parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
+    for (const RodModel& rod : model_.rods) {
+      known[k].push_back(analyse_stability(scale_system(rod.system, nodes_[k]->speed), all_exponents));
+      nodes_[k]->growth.push_back(growth_of(known[k].back()));
+    }
+  });
+  // Narrow bands that lie between two nodes.
+  std::vector<std::vector<double>> found(num_nodes);
   SweepOptions options;
   options.stability.method = settings_.stability_method;
   options.stability.leading_only = true;
-  StabilityOptions all_exponents;
-  all_exponents.method = settings_.stability_method;
-  parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
-    const double speed = nodes_[k]->speed;
+  for (const RequiredDecay& required : required_) {
     for (std::size_t r = 0; r < num_rods; ++r) {
-      known[k].push_back({{speed, speed, analyse_stability(system_at(r, speed), all_exponents)}, {}});
-      nodes_[k]->growth.push_back(growth_of(known[k].back().sample.stability) - required_.at(speed));
+      const RodModel& rod = model_.rods[r];
+      if (!rod.reported) continue;
+      std::vector<StabilitySample> samples;
+      std::vector<TrackedPlace> places;
+      for (std::size_t k = 0; k < num_nodes; ++k) {
+        const double speed = nodes_[k]->speed;
+        samples.push_back({speed, speed, shifted(known[k][r], required.at(speed))});
+      }
+      for (const StabilitySample& sample : samples) places.push_back({sample.x, sample.speed, &sample.stability});
+      const auto modes = track_modes(places, static_cast<int>(rod.system.num_modes()));
+      const SystemAt at = [&](double speed) {
+        return std::optional<ScaledSystem>(scale_system(shifted(rod.system, required.at(speed)), speed));
+      };
+      parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
+        for (const StabilitySample& sample :
+             look_between(at, samples[k], samples[k + 1], modes[k], modes[k + 1], options))
+          found[k].push_back(sample.x);
+      });
     }
-  });
-  for (std::size_t r = 0; r < num_rods; ++r) {
-    std::vector<TrackedPlace> places;
-    for (const auto& node : known)
-      places.push_back({node[r].sample.x, node[r].sample.speed, &node[r].sample.stability});
-    const auto tracks = track_modes(places, static_cast<int>(model_.rods[r].system.num_modes()));
-    for (std::size_t k = 0; k < num_nodes; ++k) known[k][r].modes = tracks[k];
   }
-  // Narrow bands that lie between two nodes.
-  std::vector<std::vector<double>> found(num_nodes);
-  parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
-    for (std::size_t r = 0; r < num_rods; ++r) {
-      if (!model_.rods[r].reported) continue;
-      const Known &a = known[k][r], &b = known[k + 1][r];
-      const SystemAt at = [&](double speed) { return std::optional<ScaledSystem>(system_at(r, speed)); };
-      for (const StabilitySample& sample : look_between(at, a.sample, b.sample, a.modes, b.modes, options))
-        found[k].push_back(sample.x);
-    }
-  });
   std::vector<std::unique_ptr<Sample>> more;
   for (const std::vector<double>& speeds : found) {
     for (const double speed : speeds) {
       auto sample = std::make_unique<Sample>();
       sample->speed = speed;
-      for (std::size_t r = 0; r < num_rods; ++r)
-        sample->growth.push_back(growth_of(leading_stability(system_at(r, speed), settings_)) - required_.at(speed));
+      for (const RodModel& rod : model_.rods)
+        sample->growth.push_back(growth_of(leading_stability(scale_system(rod.system, speed), settings_)));
       more.push_back(std::move(sample));
     }
   }

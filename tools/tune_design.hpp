@@ -1,7 +1,6 @@
 // One design of a scene over a speed range: the worst case of every metric, found between the speeds sampled.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -14,10 +13,11 @@
 
 namespace hb::tools {
 
-// Decay that conditions ask for; the larger one counts.
+// Decay that a condition asks for, 1/time or per turn.
 struct RequiredDecay {
-  double per_time = 0, per_turn = 0;
-  double at(double speed) const { return std::max(per_time, per_turn * speed / (2 * std::numbers::pi)); }
+  double bound = 0;
+  bool per_turn = false;
+  double at(double speed) const { return per_turn ? bound * speed / (2 * std::numbers::pi) : bound; }
 };
 
 // Response and margin over the speeds sampled, for pictures.
@@ -30,9 +30,10 @@ struct DesignCurves {
 
 class DesignAnalysis {
  public:
-  // Keeps references to both. Bands that decay slower than required are looked for also where narrow.
+  // Keeps references to both. Bands of instability, and those that decay slower than required, are looked for also
+  // where narrow.
   DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span, SectionHeights heights,
-                 RequiredDecay required = {});
+                 std::vector<RequiredDecay> required = {});
   ~DesignAnalysis();
 
   // Throws UsageError for a name that the scene does not have.
@@ -57,7 +58,7 @@ class DesignAnalysis {
   const Settings& settings_;
   SpeedSpan span_;
   SectionHeights heights_;
-  RequiredDecay required_;
+  std::vector<RequiredDecay> required_;  // begins with none at all
   std::vector<std::unique_ptr<Sample>> nodes_;  // ascending speed
   bool placed_ = false;
 };

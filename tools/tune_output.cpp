@@ -63,10 +63,10 @@ std::string place(const TuneTask& task, const MetricValue& value, const Units& u
   return text;
 }
 
-// Digits as far as the error allows and one more; the worst case is at least that where more speeds show more.
+// Digits as far as the error allows and two more; the worst case is at least that where more speeds show more.
 std::string worst_text(const MetricValue& value, bool confirmed, MetricKind kind) {
   return fmt::format("{}{:.{}g}", confirmed ? "" : better_large(kind) ? "<" : ">", value.value,
-                     std::min(trusted_digits(value.value, value.error) + 1, 10));
+                     std::min(trusted_digits(value.value, value.error) + 2, 10));
 }
 
 std::string at_bound(const TuneVariable& variable, double x) {
@@ -207,7 +207,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
     text += "\n";
   }
 
-  if (result.sensitivity && !smooth(result))
+  if (result.sensitivity && !smooth(result) && result.design.status != DesignStatus::infeasible)
     text += fmt::format(
         "the goal has a kink here (several worst cases at once, or the search ended early: {:.1g} of its slope is left "
         "over): changes below hold to one side, and gains are not given\n",
@@ -236,8 +236,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (result.without_response > 0)
     text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
   text += fmt::format("{} modes of each rod\n", result.num_modes);
-  if (result.verified())
-    text += "confirmed on four times the speeds; the conditions hold with the estimated errors of their values\n";
+  if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
+  if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)
+    text += "conditions hold with the estimated errors of their values\n";
   return text;
 }
 

@@ -365,32 +365,25 @@ void close_start(TuneTask& task) {
     return false;
   };
   if (closes(start_of(task))) return;
-  // Of evenly spread designs (the additive recurrence of Roberts' generalised golden ratio) the nearest that closes.
+  // The first that closes of evenly spread designs: fractions of k/g, k/g^2, ... with g^(n+1) = g + 1 (M. Roberts'
+  // additive recurrence).
   constexpr int count = 400;
   const std::size_t n = task.variables.size();
-  double golden = 2;  // golden^(n+1) = golden + 1
-  for (int k = 0; k < 60; ++k) golden = std::pow(1 + golden, 1.0 / static_cast<double>(n + 1));
-  std::vector<std::pair<double, std::vector<double>>> designs;
-  for (int k = 1; k <= count; ++k) {
+  double g = 2;
+  for (int k = 0; k < 60; ++k) g = std::pow(1 + g, 1.0 / static_cast<double>(n + 1));
+  std::optional<std::vector<double>> found;
+  for (int k = 0; k < count && !found; ++k) {
     std::vector<double> x;
-    double distance = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const TuneVariable& variable = task.variables[i];
-      const double u = std::fmod(0.5 + k * std::pow(golden, -static_cast<double>(i + 1)), 1.0);
+    for (const TuneVariable& variable : task.variables) {
+      const double u = std::fmod(0.5 + k * std::pow(g, -static_cast<double>(x.size() + 1)), 1.0);
       x.push_back(variable.lower + u * (variable.upper - variable.lower));
-      distance = std::hypot(distance, (x[i] - variable.start) / (variable.upper - variable.lower));
     }
-    designs.emplace_back(distance, std::move(x));
-  }
-  std::ranges::sort(designs);
-  const auto found = std::ranges::find_if(designs, [&](const auto& design) {
     try {
-      return closes(design.second);
+      if (closes(x)) found = std::move(x);
     } catch (const SceneError&) {  // no possible scene
-      return false;
     }
-  });
-  if (found == designs.end())
+  }
+  if (!found)
     throw UsageError(fmt::format(
         "--vary: found no design within the bounds whose linkage closes, of {} looked at ({}); allowed: bounds with some",
         count, obstruction));
@@ -399,7 +392,7 @@ void close_start(TuneTask& task) {
     TuneVariable& variable = task.variables[i];
     if (is_speed(variable)) continue;
     if (!variable.moved_from) variable.moved_from = variable.start;
-    variable.start = found->second[i];
+    variable.start = (*found)[i];
     start += fmt::format("{}{} = {:.6g}", start.empty() ? "" : ", ", variable.path, variable.start);
   }
   fmt::print(stderr, "hb tune: the linkage does not close at the start; the search starts from {}, where it does\n",

@@ -97,6 +97,15 @@ HillSystem shifted(const HillSystem& system, double m) {
   return result;
 }
 
+Stability shifted(Stability stability, double m) {
+  for (Exponent& exponent : stability.exponents) exponent.value += m;
+  for (Exponent& exponent : stability.uncertain) exponent.value += m;
+  stability.growth_rate += m;
+  const double low = stability.growth_rate - stability.growth_error, high = growth_of(stability);
+  stability.verdict = high < 0 ? Verdict::stable : low > 0 ? Verdict::unstable : Verdict::undecided;
+  return stability;
+}
+
 std::vector<ModeState> mean_modes(const ScaledSystem& system) {
   const Eigen::VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
   std::vector<ModeState> modes;

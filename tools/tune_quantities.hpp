@@ -49,6 +49,7 @@ struct JointQuantities {
 
 // The system of p in q = e^{-mt} p: stable where q decays faster than e^{-mt}.
 [[nodiscard]] HillSystem shifted(const HillSystem& system, double m);
+[[nodiscard]] Stability shifted(Stability stability, double m);
 // Modes of the mean system; NaN where overdamped or not held up.
 [[nodiscard]] std::vector<ModeState> mean_modes(const ScaledSystem& system);
 

@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const SceneModel& model, const Metric& metric)
 }  // namespace
 
 DesignSpace::DesignSpace(const SceneSource& source, const Settings& settings, SectionHeights given_heights,
-                         At overrides, SpanAt span, std::vector<Metric> metrics, RequiredDecay required,
+                         At overrides, SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required,
                          TuneCounts& counts)
     : source_(source),
       settings_(settings),
@@ -58,7 +58,7 @@ DesignSpace::DesignSpace(const SceneSource& source, const Settings& settings, Se
       overrides_(std::move(overrides)),
       span_(std::move(span)),
       metrics_(std::move(metrics)),
-      required_(required),
+      required_(std::move(required)),
       counts_(counts) {
   const std::vector<std::string> paths = source.numeric_paths();
   numbers_.insert(paths.begin(), paths.end());
@@ -182,13 +182,15 @@ DesignAims::DesignAims(const Goal& goal, const std::vector<Keep>& keeps, const S
   allowance = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(parts_.size()));
 }
 
-RequiredDecay DesignAims::required() const {
-  RequiredDecay required;
-  for (const ConditionPart& part : parts_) {
-    if (!is_margin(part.keep.metric)) continue;
-    double& rate = part.keep.metric.kind == MetricKind::margin ? required.per_time : required.per_turn;
-    rate = std::max(rate, part.keep.bound);
-  }
+std::vector<RequiredDecay> DesignAims::required() const {
+  std::vector<RequiredDecay> required;
+  for (const ConditionPart& part : parts_)
+    if (is_margin(part.keep.metric) && part.keep.bound > 0)
+      required.push_back({part.keep.bound, part.keep.metric.kind == MetricKind::margin_per_turn});
+  const auto same = [](const RequiredDecay& a, const RequiredDecay& b) {
+    return a.bound == b.bound && a.per_turn == b.per_turn;
+  };
+  required.erase(std::ranges::unique(required, same).begin(), required.end());  // parts of one condition
   return required;
 }
 

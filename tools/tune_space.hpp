@@ -30,7 +30,7 @@ class DesignSpace {
 
   // Keeps references to source, settings and counts. `required` as in DesignAnalysis.
   DesignSpace(const SceneSource& source, const Settings& settings, SectionHeights given_heights, At overrides,
-              SpanAt span, std::vector<Metric> metrics, RequiredDecay required, TuneCounts& counts);
+              SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required, TuneCounts& counts);
 
   const std::vector<Metric>& metrics() const { return metrics_; }
   [[nodiscard]] SceneModel model(const std::vector<double>& x) const;  // throws SceneError
@@ -68,7 +68,7 @@ class DesignSpace {
   At overrides_;
   SpanAt span_;
   std::vector<Metric> metrics_;
-  RequiredDecay required_;
+  std::vector<RequiredDecay> required_;
   TuneCounts& counts_;
   std::set<std::string> numbers_;  // paths that the scene gives
   int times_ = 1;
@@ -88,7 +88,7 @@ class DesignAims {
 
   const std::vector<Metric>& metrics() const { return metrics_; }
   const std::vector<ConditionPart>& parts() const { return parts_; }
-  RequiredDecay required() const;
+  std::vector<RequiredDecay> required() const;
 
   // Values of the metrics at the start: units of weighted terms and of margins. Throws UsageError where a weighted sum
   // has none.
