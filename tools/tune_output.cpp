@@ -214,6 +214,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
         result.sensitivity->residual);
   if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
     text += "\n1 % more of      changes the goal by\n";
+    if (!result.worst_at_once.empty())
+      text += fmt::format("  {} are worst at once: less changes the goal in another way than more\n",
+                          fmt::join(result.worst_at_once, " and "));
     for (std::size_t i = 0; i < task.variables.size(); ++i) {
       const double change = result.goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
       text += fmt::format("{:<28}{:>+10.3g} %\n", task.variables[i].path, change / result.goal_after);
@@ -235,7 +238,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
   if (result.without_response > 0)
     text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
-  text += fmt::format("{} modes of each rod\n", result.num_modes);
+  if (std::holds_alternative<Linkage>(scene.model)) text += fmt::format("{} modes of each rod\n", result.num_modes);
   if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
   if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)
     text += "conditions hold with the estimated errors of their values\n";
@@ -292,6 +295,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                           {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
   }
   if (result.sensitivity) json["slope_left_over"] = number(result.sensitivity->residual);
+  json["worst_at_once"] = result.worst_at_once;
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
   json["analyses"] = result.design.trials.size() + static_cast<std::size_t>(result.confirmations);

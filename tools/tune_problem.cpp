@@ -178,6 +178,7 @@ class Tuner {
     problem.upper = to_eigen(upper);
     problem.start = to_eigen(start);
     problem.num_conditions = static_cast<int>(aims_->parts().size());
+    problem.num_parts = static_cast<int>(aims_->goal_parts().size());
     problem.evaluate = [this, &space](const Eigen::VectorXd& x) -> std::optional<DesignValues> {
       const std::vector<MetricValue>* metrics = space.try_values(to_vector(x));
       if (!metrics) return std::nullopt;
@@ -189,7 +190,7 @@ class Tuner {
     problem.gradient = [this, &space, lower, upper](const Eigen::VectorXd& x) -> std::optional<DesignGradient> {
       const std::optional<Eigen::MatrixXd> slopes = space.gradients(to_vector(x), lower, upper);
       if (!slopes) return std::nullopt;
-      return aims_->design_gradient(*slopes);
+      return aims_->design_gradient(*slopes, numbers_of(space.values(to_vector(x))));
     };
     return problem;
   }
@@ -227,7 +228,13 @@ class Tuner {
 
     constexpr double active = 1e-3;
     result.sensitivity = design_sensitivity(problem, result.design.x, active);
-    if (result.sensitivity) result.goal_gradient = aims_->sign() * result.sensitivity->gradient.goal;
+    if (result.sensitivity) {
+      result.goal_gradient = aims_->sign() * result.sensitivity->upward;
+      for (std::size_t k = 0; k < aims_->goal_parts().size(); ++k)
+        if (result.sensitivity->weights(static_cast<Eigen::Index>(k)) > 0)
+          result.worst_at_once.push_back(aims_->goal_parts()[k].name);
+      if (result.worst_at_once.size() < 2) result.worst_at_once.clear();
+    }
     // Of each condition the part that is nearest to its bound; relaxing the bound relaxes all parts.
     for (const Keep& keep : task_.keeps) {
       TuneCondition& condition = result.conditions.emplace_back();
@@ -253,7 +260,7 @@ class Tuner {
   }
 
   // One variable, a factor on the internal damping of all links, at the tuned design. Of the best goal,
-  //     df*/dp = df/dp + sum_j lambda_j dg_j/dp.
+  //     df*/dp = sum_k mu_k df_k/dp + sum_j lambda_j dg_j/dp.
   void damping_sensitivity(TuneResult& result) {
     const std::vector<Override> tuned = overrides_at(task_, result.tuned);
     const Scene scene = task_.source.with(tuned);
@@ -274,10 +281,12 @@ class Tuner {
     const DesignProblem problem = problem_over(space, {1}, {0.5}, {1.5}, true);
     const auto sensitivity = design_sensitivity(problem, Eigen::VectorXd::Ones(1));
     if (!sensitivity) return;
-    const double own = sensitivity->gradient.goal(0);
+    const double own = sensitivity->upward(0);
     result.damping_sensitivity = aims_->sign() * own / result.goal_after;
     if (!result.sensitivity) return;
-    const double best = own + result.sensitivity->multipliers.dot(sensitivity->gradient.conditions.col(0));
+    const DesignSensitivity& held = *result.sensitivity;
+    const double fixed = held.weights.sum() > 0 ? held.weights.dot(sensitivity->gradient.parts.col(0)) : own;
+    const double best = fixed + held.multipliers.dot(sensitivity->gradient.conditions.col(0));
     result.damping_sensitivity_of_best = aims_->sign() * best / result.goal_after;
   }
 

@@ -64,7 +64,8 @@ struct TuneResult {
   std::vector<std::size_t> condition_of;  // of each of its conditions: the place in TuneTask::keeps
   std::vector<double> start, tuned;  // of the variables
   double goal_before = 0, goal_after = 0;
-  Eigen::VectorXd goal_gradient;  // with respect to the variables; empty: not found
+  Eigen::VectorXd goal_gradient;  // with respect to the variables, for more of them; empty: not found
+  std::vector<std::string> worst_at_once;  // rods that hold the goal together, where it has a kink
   std::vector<TuneRow> rows;
   std::vector<TuneCondition> conditions;
   std::optional<DesignSensitivity> sensitivity;

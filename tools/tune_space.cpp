@@ -168,14 +168,24 @@ DesignAims::DesignAims(const Goal& goal, const std::vector<Keep>& keeps, const S
   const auto add = [&](const Metric& metric) {
     if (std::ranges::find(metrics_, metric) == metrics_.end()) metrics_.push_back(metric);
   };
-  for (const GoalTerm& term : goal.terms) add(term.metric);
+  const auto part_of = [](Metric metric, const std::string& name) {
+    metric.name = name;
+    metric.text += ":" + name;
+    return metric;
+  };
+  // Joints are too many to be worth a search each.
+  const Metric& first = goal.terms[0].metric;
+  if (!goal.weighted && first.kind != MetricKind::force)
+    for (const std::string& name : names_of(model, first)) goal_parts_.push_back(part_of(first, name));
+  for (const Metric& part : goal_parts_) add(part);
+  if (goal_parts_.empty())
+    for (const GoalTerm& term : goal.terms) add(term.metric);
   for (std::size_t j = 0; j < keeps.size(); ++j) {
     const std::vector<std::string> names = names_of(model, keeps[j].metric);
     if (names.empty()) parts_.push_back({keeps[j], j});
     for (const std::string& name : names) {
       ConditionPart& part = parts_.emplace_back(keeps[j], j);
-      part.keep.metric.name = name;
-      part.keep.metric.text += ":" + name;
+      part.keep.metric = part_of(keeps[j].metric, name);
     }
   }
   for (const ConditionPart& part : parts_) add(part.keep.metric);
@@ -211,6 +221,17 @@ std::size_t DesignAims::place_of(const Metric& metric) const {
   return static_cast<std::size_t>(std::ranges::find(metrics_, metric) - metrics_.begin());
 }
 
+double DesignAims::value_of(const Metric& metric, const std::vector<double>& values) const {
+  const std::size_t place = place_of(metric);
+  if (place < values.size()) return values[place];
+  double worst = values[place_of(goal_parts_.front())];
+  for (const Metric& part : goal_parts_) {
+    const double value = values[place_of(part)];
+    if (std::isnan(value) || (better_large(metric.kind) ? value < worst : value > worst)) worst = value;
+  }
+  return worst;
+}
+
 double DesignAims::factor(const GoalTerm& term) const {
   return goal_.weighted ? term.weight / value_of(term.metric, start_) : 1;
 }
@@ -240,15 +261,27 @@ std::optional<DesignValues> DesignAims::design_values(const std::vector<double>&
   for (std::size_t j = 0; j < parts_.size(); ++j)
     result.conditions(static_cast<Eigen::Index>(j)) +=
         excess(parts_[j].keep, value_of(parts_[j].keep.metric, values));
-  if (!std::isfinite(result.goal) || !result.conditions.allFinite()) return std::nullopt;
+  result.parts.resize(static_cast<Eigen::Index>(goal_parts_.size()));
+  for (std::size_t k = 0; k < goal_parts_.size(); ++k)
+    result.parts(static_cast<Eigen::Index>(k)) = sign() * value_of(goal_parts_[k], values);
+  if (!std::isfinite(result.goal) || !result.conditions.allFinite() || !result.parts.allFinite()) return std::nullopt;
   return result;
 }
 
-DesignGradient DesignAims::design_gradient(const Eigen::MatrixXd& slopes) const {
+DesignGradient DesignAims::design_gradient(const Eigen::MatrixXd& slopes, const std::vector<double>& values) const {
   const auto row = [&](const Metric& metric) { return slopes.row(static_cast<Eigen::Index>(place_of(metric))); };
   DesignGradient result;
   result.goal = Eigen::VectorXd::Zero(slopes.cols());
-  for (const GoalTerm& term : goal_.terms) result.goal += sign() * factor(term) * row(term.metric).transpose();
+  result.parts.resize(static_cast<Eigen::Index>(goal_parts_.size()), slopes.cols());
+  for (std::size_t k = 0; k < goal_parts_.size(); ++k)
+    result.parts.row(static_cast<Eigen::Index>(k)) = sign() * row(goal_parts_[k]);
+  if (goal_parts_.empty()) {
+    for (const GoalTerm& term : goal_.terms) result.goal += sign() * factor(term) * row(term.metric).transpose();
+  } else {
+    const auto worst = std::ranges::max_element(
+        goal_parts_, {}, [&](const Metric& part) { return sign() * value_of(part, values); });
+    result.goal = sign() * row(*worst).transpose();
+  }
   result.conditions.resize(allowance.size(), slopes.cols());
   for (std::size_t j = 0; j < parts_.size(); ++j) {
     const Keep& keep = parts_[j].keep;

@@ -88,6 +88,8 @@ class DesignAims {
 
   const std::vector<Metric>& metrics() const { return metrics_; }
   const std::vector<ConditionPart>& parts() const { return parts_; }
+  // A goal that is the worst of several rods, one each; else empty.
+  const std::vector<Metric>& goal_parts() const { return goal_parts_; }
   std::vector<RequiredDecay> required() const;
 
   // Values of the metrics at the start: units of weighted terms and of margins. Throws UsageError where a weighted sum
@@ -96,7 +98,7 @@ class DesignAims {
   // Kept free of every part, in its unit: for errors of values.
   Eigen::VectorXd allowance;
 
-  double value_of(const Metric& metric, const std::vector<double>& values) const { return values[place_of(metric)]; }
+  double value_of(const Metric& metric, const std::vector<double>& values) const;
   double goal(const std::vector<double>& values) const;  // as asked for, not as minimised
   double sign() const { return goal_.maximise ? -1 : 1; }
   double unit_of(const Keep& keep) const;
@@ -104,7 +106,8 @@ class DesignAims {
 
   // As minimised, allowance included; empty where something is not finite.
   [[nodiscard]] std::optional<DesignValues> design_values(const std::vector<double>& values) const;
-  [[nodiscard]] DesignGradient design_gradient(const Eigen::MatrixXd& slopes) const;  // rows: the metrics
+  // Rows of `slopes` are the metrics'.
+  [[nodiscard]] DesignGradient design_gradient(const Eigen::MatrixXd& slopes, const std::vector<double>& values) const;
   // What the errors of the values ask for.
   [[nodiscard]] Eigen::VectorXd allowance_for(const std::vector<MetricValue>& values) const;
 
@@ -113,7 +116,7 @@ class DesignAims {
   double factor(const GoalTerm& term) const;
 
   const Goal& goal_;
-  std::vector<Metric> metrics_;
+  std::vector<Metric> metrics_, goal_parts_;
   std::vector<ConditionPart> parts_;
   std::vector<double> start_;
 };

@@ -114,6 +114,46 @@ TEST(Design, FindsTheMinimaxBetweenTwoKinks) {
   EXPECT_NEAR(result.values.goal, 0.1, 1e-3) << result.evidence;
 }
 
+// max(|x - a|^2, |x - b|^2): smallest halfway between, |a - b|^2/4, both parts weighing the same.
+DesignProblem between_two_points() {
+  const Vector2d a(1, 0.5), b(-1, 1);
+  DesignProblem problem = problem_of({-3, -3}, {3, 3}, {-2, 2.5}, 0, [=](const VectorXd& x) {
+    const double to_a = (x - a).squaredNorm(), to_b = (x - b).squaredNorm();
+    return DesignValues{std::max(to_a, to_b), {}, vector({to_a, to_b})};
+  });
+  problem.num_parts = 2;
+  problem.gradient = [=](const VectorXd& x) {
+    DesignGradient gradient{2 * (x - a), Eigen::MatrixXd(0, 2), Eigen::MatrixXd(2, 2)};
+    if ((x - b).squaredNorm() > (x - a).squaredNorm()) gradient.goal = 2 * (x - b);
+    gradient.parts << 2 * (x - a).transpose(), 2 * (x - b).transpose();
+    return gradient;
+  };
+  return problem;
+}
+
+TEST(Design, FindsTheKinkOfTheLargestPartByEveryAlgorithmWithConditions) {
+  for (const DesignAlgorithm algorithm : every_algorithm) {
+    if (algorithm == DesignAlgorithm::bobyqa) continue;
+    SCOPED_TRACE(to_string(algorithm));
+    DesignOptions options;
+    options.algorithm = algorithm;
+    const DesignResult result = optimise(between_two_points(), options);
+    EXPECT_EQ(result.status, DesignStatus::optimal) << result.evidence;
+    EXPECT_NEAR(result.values.goal, 4.25 / 4, 1e-4) << result.evidence;
+  }
+}
+
+TEST(Design, SensitivityAtAKinkWeighsThePartsAndIsOneSided) {
+  const DesignProblem problem = between_two_points();
+  const auto sensitivity = design_sensitivity(problem, Vector2d(0, 0.75));
+  ASSERT_TRUE(sensitivity);
+  EXPECT_LE(sensitivity->residual, 1e-6);
+  EXPECT_NEAR(sensitivity->weights(0), 0.5, 1e-6);
+  EXPECT_NEAR(sensitivity->weights(1), 0.5, 1e-6);
+  EXPECT_NEAR(sensitivity->upward(0), 2, 1e-6);  // away from b
+  EXPECT_NEAR(sensitivity->upward(1), 0.5, 1e-6);  // away from a
+}
+
 TEST(Design, FindsTheLowestOfManyValleys) {
   const auto valleys = [](const VectorXd& x) {
     return DesignValues{std::cos(7 * x(0)) + 0.1 * (x(0) - 4.0) * (x(0) - 4.0), {}};
