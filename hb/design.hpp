@@ -92,8 +92,8 @@ struct DesignSensitivity {
   double residual = 0;  // of the equation above relative to the largest |df_k|, x scaled by the bounds' distance
 };
 
-// `active`: a condition within this of 0 counts as active, parts and bounds likewise relative to f and their distance. `step` relative
-// to the bounds' distance. Empty where a neighbour has no values.
+// `active`: a condition within this of 0 counts as active, parts and bounds likewise relative to f and their distance.
+// `step` relative to the bounds' distance. Empty where a neighbour has no values.
 [[nodiscard]] std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem,
                                                                   const Eigen::VectorXd& x, double active = 1e-3,
                                                                   double step = 1e-3);

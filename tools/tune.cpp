@@ -117,6 +117,56 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
   return result;
 }
 
+// Where the linkage does not close at the start, moves that to a design within the bounds that does, and says so.
+void close_start(TuneTask& task) {
+  std::string obstruction;
+  const auto closes = [&](const std::vector<double>& x) {
+    try {
+      Settings settings;
+      settings.modes = 1;
+      (void)make_model(task.source.with(overrides_at(task, x)), settings);
+      return true;
+    } catch (const ObstructedLinkage& problem) {
+      if (obstruction.empty()) obstruction = problem.what();
+    }
+    return false;
+  };
+  if (closes(start_of(task))) return;
+  // The first that closes of evenly spread designs: fractions of k/g, k/g^2, ... with g^(n+1) = g + 1 (M. Roberts'
+  // additive recurrence).
+  constexpr int count = 400;
+  const std::size_t n = task.variables.size();
+  double g = 2;
+  for (int k = 0; k < 60; ++k) g = std::pow(1 + g, 1.0 / static_cast<double>(n + 1));
+  std::optional<std::vector<double>> found;
+  for (int k = 0; k < count && !found; ++k) {
+    std::vector<double> x;
+    for (const TuneVariable& variable : task.variables) {
+      const double u = std::fmod(0.5 + k * std::pow(g, -static_cast<double>(x.size() + 1)), 1.0);
+      x.push_back(variable.lower + u * (variable.upper - variable.lower));
+    }
+    try {
+      if (closes(x)) found = std::move(x);
+    } catch (const SceneError&) {  // no possible scene
+    }
+  }
+  if (!found)
+    throw UsageError(
+        fmt::format("--vary: found no design within the bounds whose linkage closes, of {} looked at ({}); allowed: "
+                    "bounds with some",
+                    count, obstruction));
+  std::string start;
+  for (std::size_t i = 0; i < n; ++i) {
+    TuneVariable& variable = task.variables[i];
+    if (is_speed(variable)) continue;
+    if (!variable.moved_from) variable.moved_from = variable.start;
+    variable.start = (*found)[i];
+    start += fmt::format("{}{} = {:.6g}", start.empty() ? "" : ", ", variable.path, variable.start);
+  }
+  fmt::print(stderr, "hb tune: the linkage does not close at the start; the search starts from {}, where it does\n",
+             start);
+}
+
 void start_speeds(TuneTask& task) {
   double lowest_to = task.span.to / task.speed_unit, highest_from = task.span.from / task.speed_unit;
   bool any = false;
@@ -198,8 +248,8 @@ void require_rods(const std::map<std::string, double>& heights, const Scene& sce
     for (const int link : elastic_links(*linkage)) names.push_back(body_name(*linkage, link));
   for (const auto& [name, height] : heights)
     if (std::ranges::find(names, name) == names.end())
-      throw UsageError(fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name,
-                                   fmt::join(names, ", ")));
+      throw UsageError(
+          fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name, fmt::join(names, ", ")));
 }
 
 void require_algorithm(const TuneTask& task) {
@@ -217,9 +267,10 @@ int run_tune(const TuneFlags& flags) {
                                  flags.minimise.empty() ? "neither" : "both"));
   if (flags.vary.empty()) throw UsageError("--vary: found nothing, allowed: PATH=FROM:TO, as in --vary AB.J=20:200");
   if (!flags.only.empty())
-    throw UsageError(fmt::format("--only: found \"{}\", allowed: not with tune, where goal and conditions say what is "
-                                 "computed",
-                                 flags.only));
+    throw UsageError(
+        fmt::format("--only: found \"{}\", allowed: not with tune, where goal and conditions say what is "
+                    "computed",
+                    flags.only));
   // Numbers of --set become part of the scene that is tuned.
   const SceneSource as_written(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
@@ -260,8 +311,9 @@ int run_tune(const TuneFlags& flags) {
     for (const char* name : {tuned_file, nearest_file}) {
       std::error_code none;
       if (std::filesystem::equivalent(*task.settings.out / name, file, none))
-        throw UsageError(fmt::format("--out: found {}, where {} would replace the scene itself; allowed: another folder",
-                                     task.settings.out->string(), name));
+        throw UsageError(
+            fmt::format("--out: found {}, where {} would replace the scene itself; allowed: another folder",
+                        task.settings.out->string(), name));
     }
     folder.emplace(*task.settings.out);
   }
@@ -328,7 +380,8 @@ void add_tune_command(CLI::App& app, int& status) {
   command->add_option("--algorithm", flags->algorithm, "automatic, direct, mlsl, cobyla, bobyqa, slsqp or mma (NLopt)")
       ->type_name("NAME");
   command->add_option("--seed", flags->seed, "of mlsl")->type_name("N");
-  command->add_option("--analyses", flags->analyses, "designs analysed at most, confirmations included")->type_name("N");
+  command->add_option("--analyses", flags->analyses, "designs analysed at most, confirmations included")
+      ->type_name("N");
   command->add_option("--speeds", flags->speeds, "speeds sampled before the worst case is refined; default 24")
       ->type_name("N");
   command->callback([flags, &status] { status = run_tune(*flags); });

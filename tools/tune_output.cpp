@@ -65,8 +65,8 @@ std::string place(const TuneTask& task, const MetricValue& value, const Units& u
 
 // Digits as far as the error allows and two more; the worst case is at least that where more speeds show more.
 std::string worst_text(const MetricValue& value, bool confirmed, MetricKind kind) {
-  return fmt::format("{}{:.{}g}", confirmed ? "" : better_large(kind) ? "<" : ">", value.value,
-                     std::min(trusted_digits(value.value, value.error) + 2, 10));
+  const std::string mark = confirmed ? "" : better_large(kind) ? "<" : ">";
+  return mark + fmt::format("{:.{}g}", value.value, std::min(trusted_digits(value.value, value.error) + 2, 10));
 }
 
 std::string at_bound(const TuneVariable& variable, double x) {
@@ -190,8 +190,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   text += fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
   for (const TuneRow& row : result.rows) {
     const std::string before = place(task, row.before, units), after = place(task, row.after, units);
-    if (!before.empty() || !after.empty())
-      text += fmt::format("{:<36}{:<40}{}\n", label(row.metric), before, after);
+    if (!before.empty() || !after.empty()) text += fmt::format("{:<36}{:<40}{}\n", label(row.metric), before, after);
   }
 
   if (!result.conditions.empty()) text += "\ncondition                            bound               \n";

@@ -66,7 +66,8 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
       "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nunset xlabel\nset format y '%g'\nset "
       "format x ''\n"
       "set ylabel 'largest deflection{}'\n",
-      quoted(fmt::format("{}: before (dashed) and {}", scene_name(scene), after_text(result))), from, to, bracketed(units.response));
+      quoted(fmt::format("{}: before (dashed) and {}", scene_name(scene), after_text(result))), from, to,
+      bracketed(units.response));
   std::string above, below;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     for (const bool after : {false, true}) {
@@ -98,7 +99,8 @@ void add_campbell(const TuneTask& task, const TuneResult& result, bool after, Ou
   axis.kind = task.in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
   axis.path = task.in_rpm ? "rpm" : "omega";
   axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, campbell_points);
-  const SweepScene scene(task.source, overrides_at(task, after ? result.tuned : result.start), settings, axis, span.from, axis.values.front());
+  const SweepScene scene(task.source, overrides_at(task, after ? result.tuned : result.start), settings, axis,
+                         span.from, axis.values.front());
   const std::optional<SweepResult> sweep = run_sweep(scene);
   if (!sweep) return;
   for (std::size_t r = 0; r < sweep->rods.size(); ++r) {

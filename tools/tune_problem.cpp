@@ -86,8 +86,8 @@ class Tuner {
   }
 
   DesignSpace space_of(DesignSpace::At overrides, DesignSpace::SpanAt span) {
-    return {task_.source,      settings_,         task_.heights, std::move(overrides), std::move(span),
-            aims_->metrics(), aims_->required(), counts_};
+    return {task_.source,    settings_,        task_.heights,     std::move(overrides),
+            std::move(span), aims_->metrics(), aims_->required(), counts_};
   }
 
   // The worst cases on more speeds, with the errors of their values, and with the modes needed at this design. Where
@@ -103,7 +103,8 @@ class Tuner {
       const bool conditions = known.conditions.size() > 0;
       Eigen::VectorXd off = Eigen::VectorXd::Zero(known.conditions.size()), needed = aims_->allowance_for(values);
       if (checked) off = checked->conditions - known.conditions;
-      result.agrees = checked && std::abs(checked->goal - known.goal) <= verification_tolerance * std::abs(known.goal) &&
+      result.agrees = checked &&
+                      std::abs(checked->goal - known.goal) <= verification_tolerance * std::abs(known.goal) &&
                       (!conditions || off.maxCoeff() <= verification_tolerance);
       // Excess without allowance, with the error.
       result.holds = result.design.status == DesignStatus::infeasible || !conditions ||
@@ -214,8 +215,7 @@ class Tuner {
     DesignSpace::Report after = space.report(result.tuned, shown, verification, verification_tolerance);
     report_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     for (std::size_t k = 0; k < shown.size(); ++k)
-      result.rows.push_back(
-          {shown[k], before.values[k], after.values[k], before.confirmed[k], after.confirmed[k]});
+      result.rows.push_back({shown[k], before.values[k], after.values[k], before.confirmed[k], after.confirmed[k]});
     result.curves_before = std::move(before.curves);
     result.curves_after = std::move(after.curves);
     result.span_before = span_at(task_, result.start);
@@ -358,54 +358,6 @@ std::vector<double> start_of(const TuneTask& task) {
   std::vector<double> x;
   for (const TuneVariable& variable : task.variables) x.push_back(variable.start);
   return x;
-}
-
-void close_start(TuneTask& task) {
-  std::string obstruction;
-  const auto closes = [&](const std::vector<double>& x) {
-    try {
-      Settings settings;
-      settings.modes = 1;
-      (void)make_model(task.source.with(overrides_at(task, x)), settings);
-      return true;
-    } catch (const ObstructedLinkage& problem) {
-      if (obstruction.empty()) obstruction = problem.what();
-    }
-    return false;
-  };
-  if (closes(start_of(task))) return;
-  // The first that closes of evenly spread designs: fractions of k/g, k/g^2, ... with g^(n+1) = g + 1 (M. Roberts'
-  // additive recurrence).
-  constexpr int count = 400;
-  const std::size_t n = task.variables.size();
-  double g = 2;
-  for (int k = 0; k < 60; ++k) g = std::pow(1 + g, 1.0 / static_cast<double>(n + 1));
-  std::optional<std::vector<double>> found;
-  for (int k = 0; k < count && !found; ++k) {
-    std::vector<double> x;
-    for (const TuneVariable& variable : task.variables) {
-      const double u = std::fmod(0.5 + k * std::pow(g, -static_cast<double>(x.size() + 1)), 1.0);
-      x.push_back(variable.lower + u * (variable.upper - variable.lower));
-    }
-    try {
-      if (closes(x)) found = std::move(x);
-    } catch (const SceneError&) {  // no possible scene
-    }
-  }
-  if (!found)
-    throw UsageError(fmt::format(
-        "--vary: found no design within the bounds whose linkage closes, of {} looked at ({}); allowed: bounds with some",
-        count, obstruction));
-  std::string start;
-  for (std::size_t i = 0; i < n; ++i) {
-    TuneVariable& variable = task.variables[i];
-    if (is_speed(variable)) continue;
-    if (!variable.moved_from) variable.moved_from = variable.start;
-    variable.start = (*found)[i];
-    start += fmt::format("{}{} = {:.6g}", start.empty() ? "" : ", ", variable.path, variable.start);
-  }
-  fmt::print(stderr, "hb tune: the linkage does not close at the start; the search starts from {}, where it does\n",
-             start);
 }
 
 TuneResult tune(const TuneTask& task) { return Tuner(task).run(); }

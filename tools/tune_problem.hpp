@@ -94,10 +94,6 @@ struct TuneResult {
 
 [[nodiscard]] std::vector<double> start_of(const TuneTask& task);
 
-// Where the linkage does not close at the start, moves that to a design within the bounds that does, and says so.
-// Throws UsageError where none is found.
-void close_start(TuneTask& task);
-
 // Throws UsageError and SceneError for what cannot be at the start.
 [[nodiscard]] TuneResult tune(const TuneTask& task);
 

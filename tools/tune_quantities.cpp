@@ -190,10 +190,9 @@ void seek_jointly(MetricValue& value, const SceneModel& model, const SpeedSpan& 
     const double speed = x.size() > 2 ? x(2) : *value.speed;
     const std::optional<FourierSeries> response = rod_response(rod, speed, settings);
     if (!response) return std::numeric_limits<double>::quiet_NaN();
-    const RodFunctional J = rod_functional(link, coefficients, speed, response->num_components(),
-                                           response->num_harmonics(),
-                                           stress ? RodQuantity::bending_moment : RodQuantity::deflection,
-                                           x(0) * link.length, x(1));
+    const RodFunctional J =
+        rod_functional(link, coefficients, speed, response->num_components(), response->num_harmonics(),
+                       stress ? RodQuantity::bending_moment : RodQuantity::deflection, x(0) * link.length, x(1));
     return value.factor * std::abs(J.offset + mean_product(J.g, *response));
   };
   // A neighbourhood: what lies further away was seen speed by speed.
@@ -252,8 +251,8 @@ void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span
   const auto change_with_more_modes = [&](const std::function<double(const HillSystem&)>& of) {
     if (rod.link < 0) return 0.0;
     const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
-    const HillSystem finer = ritz_system(*body_at(*model.linkage(), rod.link), coefficients,
-                                         comparison_modes(rod.system.num_modes()));
+    const HillSystem finer =
+        ritz_system(*body_at(*model.linkage(), rod.link), coefficients, comparison_modes(rod.system.num_modes()));
     return safety * std::abs(of(finer) - of(rod.system));
   };
   Settings asked = settings;

@@ -69,8 +69,8 @@ struct SpeedSpan {
   int num_nodes = 24;  // sampled before refinement
 };
 
-// Place, crank angle and error of a worst case found. The largest deflection and stress are sought once more over speed,
-// place and crank angle together; errors are seen with more modes, and from the harmonics' bound.
+// Place, crank angle and error of a worst case found. The largest deflection and stress are sought once more over
+// speed, place and crank angle together; errors are seen with more modes, and from the harmonics' bound.
 void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
               const Metric& metric);
 

@@ -259,8 +259,7 @@ std::optional<DesignValues> DesignAims::design_values(const std::vector<double>&
   result.goal = sign() * goal(values);
   result.conditions = allowance;
   for (std::size_t j = 0; j < parts_.size(); ++j)
-    result.conditions(static_cast<Eigen::Index>(j)) +=
-        excess(parts_[j].keep, value_of(parts_[j].keep.metric, values));
+    result.conditions(static_cast<Eigen::Index>(j)) += excess(parts_[j].keep, value_of(parts_[j].keep.metric, values));
   result.parts.resize(static_cast<Eigen::Index>(goal_parts_.size()));
   for (std::size_t k = 0; k < goal_parts_.size(); ++k)
     result.parts(static_cast<Eigen::Index>(k)) = sign() * value_of(goal_parts_[k], values);
@@ -278,15 +277,14 @@ DesignGradient DesignAims::design_gradient(const Eigen::MatrixXd& slopes, const 
   if (goal_parts_.empty()) {
     for (const GoalTerm& term : goal_.terms) result.goal += sign() * factor(term) * row(term.metric).transpose();
   } else {
-    const auto worst = std::ranges::max_element(
-        goal_parts_, {}, [&](const Metric& part) { return sign() * value_of(part, values); });
+    const auto worst =
+        std::ranges::max_element(goal_parts_, {}, [&](const Metric& part) { return sign() * value_of(part, values); });
     result.goal = sign() * row(*worst).transpose();
   }
   result.conditions.resize(allowance.size(), slopes.cols());
   for (std::size_t j = 0; j < parts_.size(); ++j) {
     const Keep& keep = parts_[j].keep;
-    result.conditions.row(static_cast<Eigen::Index>(j)) =
-        (keep.at_least ? -1 : 1) / unit_of(keep) * row(keep.metric);
+    result.conditions.row(static_cast<Eigen::Index>(j)) = (keep.at_least ? -1 : 1) / unit_of(keep) * row(keep.metric);
   }
   return result;
 }

@@ -71,8 +71,7 @@ TEST(WorstPoint, IsTheSummitOfSeveralVariables) {
 
 TEST(WorstPoint, StaysWithinItsBox) {
   const auto f = [](const Eigen::VectorXd& x) { return x(0) - (x(1) - 1) * (x(1) - 1); };
-  const WorstPoint found =
-      worst_point(f, Eigen::Vector2d(0.5, 0.7), Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 2));
+  const WorstPoint found = worst_point(f, Eigen::Vector2d(0.5, 0.7), Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 2));
   EXPECT_EQ(found.x(0), 1);
   EXPECT_NEAR(found.value, 1, 1e-9);
 }

@@ -137,8 +137,9 @@ TEST_F(Tune, HoldsItsConditionsWithTheModesLeftOut) {
 
 TEST_F(Tune, TakesMoreModesWhereTheTunedDesignNeedsThem) {
   // The high section of the start needs three modes, the low one that is lightest six.
-  const std::string question = "--minimise mass --set rod.section.height=0.015 --vary rod.section.height=0.003:0.02 "
-                               "--keep 'deflection<=1e-3' --over rpm=8000:9000 --tol 1e-5 ";
+  const std::string question =
+      "--minimise mass --set rod.section.height=0.015 --vary rod.section.height=0.003:0.02 "
+      "--keep 'deflection<=1e-3' --over rpm=8000:9000 --tol 1e-5 ";
   const Json found = document(question + "--modes auto --out tuned --no-plots");
   EXPECT_EQ(found["verified"], true);
   EXPECT_NE(found["evidence"].get<std::string>().find("with 6 modes"), std::string::npos) << found["evidence"];
@@ -192,8 +193,8 @@ TEST_F(Tune, SaysWhatIsNotConfirmedOfAnUnstableStart) {
 
 TEST_F(Tune, NeverAnalysesMoreThanAllowedConfirmationsIncluded) {
   for (const int allowed : {2, 9}) {
-    const CommandResult result = hb("tune engine.toml --json --speeds 6 " + least_mass + "--analyses " +
-                                    std::to_string(allowed));
+    const CommandResult result =
+        hb("tune engine.toml --json --speeds 6 " + least_mass + "--analyses " + std::to_string(allowed));
     const Json found = Json::parse(result.out);
     EXPECT_LE(found["analyses"], allowed);
     EXPECT_GE(found["confirmations"], 1);
@@ -299,7 +300,8 @@ TEST_F(Tune, SeesABandOfInstabilityBetweenItsSpeeds) {
   for (const char* more : {"--keep 'stable>=1e-9/turn'", "--keep 'stable>=1' --keep 'stable>=1e-9/turn'"}) {
     const CommandResult both = hb("tune " + rod +
                                   " --minimise mass --keep stable --vary rod.mass=0.35:0.3501 --over rpm=2000:3000 "
-                                  "--speeds 12 --analyses 3 --json " + more);
+                                  "--speeds 12 --analyses 3 --json " +
+                                  more);
     EXPECT_LE(Json::parse(both.out)["conditions"][0]["value"].get<double>(), -0.999 * fastest) << more;
   }
 }
