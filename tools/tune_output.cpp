@@ -63,7 +63,7 @@ std::string place(const TuneTask& task, const MetricValue& value, const Units& u
   return text;
 }
 
-// Digits as far as the error allows and two more; the worst case is at least that where more speeds show more.
+// Digits as far as the error allows and two more; > or < where more speeds show another value.
 std::string worst_text(const MetricValue& value, bool confirmed, MetricKind kind) {
   const std::string mark = confirmed ? "" : better_large(kind) ? "<" : ">";
   return mark + fmt::format("{:.{}g}", value.value, std::min(trusted_digits(value.value, value.error) + 2, 10));
@@ -179,9 +179,10 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
     unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
     unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
   }
-  text += fmt::format("{:<36}{:>15.7g}{:>15.7g}{:>10}  {}\n", "goal", result.goal_before, result.goal_after, "",
-                      result.goal_unit);
-  if (!confirmed) text += "  > or <: four times the speeds show a worse value; the worst case is at least that\n";
+  if (task.goal.weighted)
+    text += fmt::format("{:<36}{:>15.7g}{:>15.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
+                        std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
+  if (!confirmed) text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
   for (const bool after : {false, true})
     if (after ? unstable_after : unstable_before)
       text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
@@ -253,8 +254,10 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   json["modes"] = result.num_modes;
   const std::string problem = shortfall(result);
   json["shortfall"] = problem.empty() ? Json() : Json(problem);
-  json["goal"] = {
-      {"before", number(result.goal_before)}, {"after", number(result.goal_after)}, {"unit", result.goal_unit}};
+  json["goal"] = {{"before", number(result.goal_before)},
+                  {"after", number(result.goal_after)},
+                  {"error", number(result.goal_error)},
+                  {"unit", result.goal_unit}};
   Json& variables = json["variables"] = Json::array();
   for (std::size_t i = 0; i < task.variables.size(); ++i) {
     const TuneVariable& variable = task.variables[i];

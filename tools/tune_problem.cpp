@@ -224,6 +224,7 @@ class Tuner {
     result.goal_before =
         task_.goal.weighted ? aims_->goal(numbers_of(space.values(start_))) : result.rows.front().before.value;
     result.goal_after = aims_->goal(values_after);
+    result.goal_error = task_.goal.weighted ? aims_->goal_error(confirmed_) : result.rows.front().after.error;
     if (!task_.goal.weighted) result.goal_unit = unit_of(task_.goal.terms[0].metric.kind, scene.units);
 
     constexpr double active = 1e-3;

@@ -63,7 +63,7 @@ struct TuneResult {
   DesignResult design;
   std::vector<std::size_t> condition_of;  // of each of its conditions: the place in TuneTask::keeps
   std::vector<double> start, tuned;  // of the variables
-  double goal_before = 0, goal_after = 0;
+  double goal_before = 0, goal_after = 0, goal_error = 0;  // estimated error of goal_after
   Eigen::VectorXd goal_gradient;  // with respect to the variables, for more of them; empty: not found
   std::vector<std::string> worst_at_once;  // rods that hold the goal together, where it has a kink
   std::vector<TuneRow> rows;

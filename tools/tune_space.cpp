@@ -242,6 +242,12 @@ double DesignAims::goal(const std::vector<double>& values) const {
   return sum;
 }
 
+double DesignAims::goal_error(const std::vector<MetricValue>& values) const {
+  double sum = 0;
+  for (const GoalTerm& term : goal_.terms) sum += std::abs(factor(term)) * values[place_of(term.metric)].error;
+  return sum;
+}
+
 // The bound; a margin's is the start's where that is larger.
 double DesignAims::unit_of(const Keep& keep) const {
   const double at_start = std::abs(value_of(keep.metric, start_));

@@ -100,6 +100,7 @@ class DesignAims {
 
   double value_of(const Metric& metric, const std::vector<double>& values) const;
   double goal(const std::vector<double>& values) const;  // as asked for, not as minimised
+  double goal_error(const std::vector<MetricValue>& values) const;  // of a weighted sum
   double sign() const { return goal_.maximise ? -1 : 1; }
   double unit_of(const Keep& keep) const;
   double excess(const Keep& keep, double value) const;  // beyond the bound, in units
