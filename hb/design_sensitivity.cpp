@@ -130,6 +130,13 @@ std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem
     for (std::size_t k = 0; k < parts.size(); ++k) *places[k] = 1.0 / static_cast<double>(parts.size());
     return result;
   }
+  // Conditions and bounds as steep as the parts: nothing depends on their units.
+  for (std::size_t k = parts.size(); k < columns.size(); ++k) {
+    const double norm = columns[k].norm();
+    if (!(norm > 0)) continue;
+    columns[k] *= steepest / norm;
+    units[k] *= steepest / norm;
+  }
   // |D z|^2 is least with sum mu_k = 1 in the direction in which |D z|^2 + c^2 (sum mu_k - 1)^2 is, whatever c: with
   // z = s z1 the latter is c^2 r^2/(c^2 + r^2) at the best s, which grows with r = |D z1|.
   MatrixXd A = MatrixXd::Zero(n + 1, static_cast<Index>(columns.size()));

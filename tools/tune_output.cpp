@@ -167,11 +167,11 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
                           tied.factor * result.tuned[i], variable.path);
   }
 
-  text += fmt::format("\n{:<36}{:>15}{:>15}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
+  text += fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
   bool confirmed = true, unstable_before = false, unstable_after = false;
   for (const TuneRow& row : result.rows) {
     const MetricKind kind = row.metric.kind;
-    text += fmt::format("{:<36}{:>15}{:>15}{:>10}  {}\n", label(row.metric),
+    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric),
                         worst_text(row.before, row.before_confirmed, kind),
                         worst_text(row.after, row.after_confirmed, kind),
                         row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, units));
@@ -180,7 +180,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
     unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
   }
   if (task.goal.weighted)
-    text += fmt::format("{:<36}{:>15.7g}{:>15.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
+    text += fmt::format("{:<34}{:>17.7g}{:>17.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
                         std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
   if (!confirmed) text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
   for (const bool after : {false, true})

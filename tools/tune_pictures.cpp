@@ -181,7 +181,7 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
   const std::vector<double> x = evenly(from, to, map_speeds), y = evenly(-0.05, 1.05, map_designs);
   MapResult map;
   map.x_axis = {task.in_rpm ? PlaneAxis::Role::rpm : PlaneAxis::Role::omega, task.in_rpm ? "rpm" : "omega", from, to};
-  map.y_axis = {PlaneAxis::Role::scene_number, "way from the design before (0) to the tuned one (1)", y.front(),
+  map.y_axis = {PlaneAxis::Role::scene_number, "way from the design before (0) to the one found (1)", y.front(),
                 y.back()};
   const std::shared_ptr<const SceneModel> tuned = way.at(1);
   for (std::size_t r = 0; r < tuned->rods.size(); ++r) {

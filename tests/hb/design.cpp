@@ -103,6 +103,24 @@ TEST(Design, MultipliersAreWhatRelaxingAConditionGains) {
   EXPECT_NEAR(sensitivity->gradient.goal(0), 4 * bar_width, 1e-3);
 }
 
+TEST(Design, MultipliersScaleWithTheGoal) {
+  const Vector2d x(bar_width, 4 * bar_width);
+  const auto plain = design_sensitivity(bar(), x);
+  for (const double scale : {1e-90, 1e90}) {
+    DesignProblem problem = bar();
+    problem.evaluate = [scale](const VectorXd& y) {
+      DesignValues values = *bar().evaluate(y);
+      values.goal *= scale;
+      return values;
+    };
+    const auto scaled = design_sensitivity(problem, x);
+    ASSERT_TRUE(plain && scaled);
+    EXPECT_NEAR(scaled->multipliers(0) / scale, plain->multipliers(0), 1e-6);
+    EXPECT_NEAR(scaled->multipliers(1) / scale, plain->multipliers(1), 1e-6);
+    EXPECT_NEAR(scaled->residual, plain->residual, 1e-6);
+  }
+}
+
 TEST(Design, FindsTheMinimaxBetweenTwoKinks) {
   // max(|x - 1|, |y + x|) + y^2/10: smallest at x = 1 - t, y = -1 + 2 t where both branches meet.
   const DesignProblem problem = problem_of({-3, -3}, {3, 3}, {-2, 2.5}, 0, [](const VectorXd& x) {
