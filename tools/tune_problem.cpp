@@ -73,8 +73,11 @@ class Tuner {
 
   // As many as the ends of the range and `speeds` need.
   int modes_needed(const std::vector<double>& x, std::vector<double> speeds) const {
+    const bool margin =
+        std::ranges::any_of(task_.keeps, [](const Keep& keep) { return is_margin(keep.metric); }) ||
+        std::ranges::any_of(task_.goal.terms, [](const GoalTerm& term) { return is_margin(term.metric); });
     Settings settings = task_.settings;
-    settings.only = {true, false, false, false};
+    settings.only = {true, margin, false, false};
     const SceneModel model = make_model(scene_at(x), settings);
     const SpeedSpan span = span_at(task_, x);
     speeds.insert(speeds.end(), {span.from, span.to});

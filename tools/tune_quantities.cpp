@@ -242,6 +242,29 @@ void complete_force(MetricValue& value, const SpeedResult& at, bool torque) {
   value.error = std::numbers::sqrt2 * (errors.force + errors.force_cut) * size * value.factor;
 }
 
+// What its error bar and the modes left out may change of the growth rate. Changes that do not shrink with more modes
+// are carried on in proportion to their number squared, to sixty: every mode may be damped less than the one before.
+double growth_error(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings) {
+  const auto stability = [&](const HillSystem& system) {
+    return leading_stability(scale_system(system, speed), settings);
+  };
+  const Stability own = stability(rod.system);
+  if (rod.link < 0) return own.growth_error;
+  const Body& link = *body_at(*model.linkage(), rod.link);
+  const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+  const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
+  constexpr Eigen::Index most = 60;
+  const Eigen::Index more = comparison_modes(rod.system.num_modes()), still_more = comparison_modes(more);
+  const Stability second = stability(ritz_system(link, coefficients, more)),
+                  third = stability(ritz_system(link, coefficients, still_more));
+  const double change = std::abs(second.growth_rate - own.growth_rate),
+               next = std::abs(third.growth_rate - second.growth_rate);
+  double error = own.growth_error + safety * change;
+  if (!(next <= change / 2 + second.growth_error + third.growth_error))
+    error += safety * next * std::max(1.0, (square(most) - square(more)) / (square(still_more) - square(more)));
+  return error;
+}
+
 }  // namespace
 
 void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
@@ -276,11 +299,7 @@ void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span
     }
     case MetricKind::margin:
     case MetricKind::margin_per_turn: {
-      const auto stability = [&](const HillSystem& system) {
-        return leading_stability(scale_system(system, *value.speed), settings);
-      };
-      value.error = change_with_more_modes([&](const HillSystem& s) { return stability(s).growth_rate; }) +
-                    stability(rod.system).growth_error;
+      value.error = growth_error(model, rod, *value.speed, settings);
       if (metric.kind == MetricKind::margin_per_turn) value.error *= 2 * std::numbers::pi / *value.speed;
       break;
     }
