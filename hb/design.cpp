@@ -60,12 +60,43 @@ double condition(const std::vector<double>& u, std::vector<double>& slope, void*
   });
 }
 
-// Restoration: minimise s over (u, s) subject to g_j(u) <= s; without derivatives.
-double slack(const std::vector<double>& us, std::vector<double>&, void*) { return us.back(); }
+// With one more variable s, minimised: restoration subject to g_j(u) <= s, the epigraph of max f_k subject to
+// f_k(u) <= s and g_j(u) <= 0, smooth where the largest of several has a kink.
+double last(const std::vector<double>& us, std::vector<double>& slope, void*) {
+  if (!slope.empty()) {
+    std::ranges::fill(slope, 0.0);
+    slope.back() = 1;
+  }
+  return us.back();
+}
+
+std::vector<double> without_last(const std::vector<double>& us) { return {us.begin(), us.end() - 1}; }
 
 double condition_with_slack(const std::vector<double>& us, std::vector<double>&, void* pointer) {
   const auto& data = *static_cast<Condition*>(pointer);
-  return guarded(data, [&] { return data.search->condition({us.begin(), us.end() - 1}, data.number) - us.back(); });
+  return guarded(data, [&] { return data.search->condition(without_last(us), data.number) - us.back(); });
+}
+
+double condition_beside(const std::vector<double>& us, std::vector<double>& slope, void* pointer) {
+  const auto& data = *static_cast<Condition*>(pointer);
+  return guarded(data, [&] {
+    if (!slope.empty()) {
+      data.search->condition_slope(without_last(us), data.number, slope);
+      slope.back() = 0;
+    }
+    return data.search->condition(without_last(us), data.number);
+  });
+}
+
+double part_below(const std::vector<double>& us, std::vector<double>& slope, void* pointer) {
+  const auto& data = *static_cast<Condition*>(pointer);
+  return guarded(data, [&] {
+    if (!slope.empty()) {
+      data.search->part_slope(without_last(us), data.number, slope);
+      slope.back() = -1;
+    }
+    return data.search->part(without_last(us), data.number) - us.back();
+  });
 }
 
 std::vector<Condition> conditions_of(Search& search, Waiting& waiting) {
@@ -96,7 +127,32 @@ void bound(nlopt::opt& opt, std::size_t n) {
   opt.set_upper_bounds(std::vector<double>(n, 1.0));
 }
 
+bool epigraph(Search& search, nlopt::algorithm algorithm, const char* name, double first_step) {
+  const std::size_t n = search.size();
+  nlopt::opt opt(algorithm, static_cast<unsigned>(n + 1));
+  std::vector<double> us = search.best_place();
+  us.push_back(search.goal(us));
+  std::vector<double> low(n, 0.0), high(n, 1.0);
+  low.push_back(-HUGE_VAL);
+  high.push_back(HUGE_VAL);
+  opt.set_lower_bounds(low);
+  opt.set_upper_bounds(high);
+  opt.set_min_objective(last, nullptr);
+  Waiting waiting;
+  std::vector<Condition> conditions = conditions_of(search, waiting), parts;
+  for (std::size_t k = 0; k < search.num_parts(); ++k) parts.push_back({&search, &waiting, k});
+  for (Condition& p : parts) opt.add_inequality_constraint(part_below, &p, 0.0);
+  for (Condition& c : conditions) opt.add_inequality_constraint(condition_beside, &c, 0.0);
+  opt.set_xtol_abs(search.options().tolerance);
+  opt.set_initial_step(first_step);
+  const int before = search.evaluations();
+  const bool converged = run(waiting, opt, us);
+  search.say(fmt::format("{} on the epigraph", name), search.evaluations() - before);
+  return converged;
+}
+
 bool local(Search& search, nlopt::algorithm algorithm, const char* name, double first_step) {
+  if (search.num_parts() > 1 && algorithm != nlopt::LN_BOBYQA) return epigraph(search, algorithm, name, first_step);
   const std::size_t n = search.size();
   nlopt::opt opt(algorithm, static_cast<unsigned>(n));
   bound(opt, n);
@@ -151,7 +207,7 @@ void restore(Search& search) {
   opt.set_lower_bounds(low);
   opt.set_upper_bounds(high);
   opt.set_initial_step(step);
-  opt.set_min_objective(slack, nullptr);
+  opt.set_min_objective(last, nullptr);
   Waiting waiting;
   std::vector<Condition> conditions = conditions_of(search, waiting);
   for (Condition& c : conditions) opt.add_inequality_constraint(condition_with_slack, &c, 0.0);
@@ -177,6 +233,10 @@ void validate(const DesignProblem& problem, const DesignOptions& options) {
   if (!problem.evaluate) throw std::invalid_argument("evaluate: found nothing, allowed a function");
   if (!(options.tolerance > 0))
     throw std::invalid_argument(fmt::format("tolerance: found {}, allowed > 0", options.tolerance));
+  if (options.algorithm == DesignAlgorithm::bobyqa && (n < 2 || problem.num_conditions > 0))
+    throw std::invalid_argument(fmt::format(
+        "algorithm: found bobyqa for {} variables and {} conditions, allowed 2 variables or more and no conditions", n,
+        problem.num_conditions));
   if (options.max_evaluations < 1)
     throw std::invalid_argument(fmt::format("max_evaluations: found {}, allowed >= 1", options.max_evaluations));
 }
@@ -200,33 +260,29 @@ bool search_all(Search& search, DesignAlgorithm algorithm) {
   const int n = static_cast<int>(search.size());
   (void)search.at(search.start());
   const int global = std::min(search.left() / 3, 20 + 40 * n);
-  switch (algorithm) {
-    case DesignAlgorithm::automatic:
-    case DesignAlgorithm::direct:
+  if (!search.options().only_local) {
+    if (algorithm == DesignAlgorithm::automatic || algorithm == DesignAlgorithm::direct)
       penalised_search(search, nlopt::GN_DIRECT_L_NOSCAL, "DIRECT-L on a penalty", global);
-      break;
-    case DesignAlgorithm::mlsl:
-      penalised_search(search, nlopt::G_MLSL, "MLSL on a penalty", global);
-      break;
-    default:
-      break;
+    if (algorithm == DesignAlgorithm::mlsl) penalised_search(search, nlopt::G_MLSL, "MLSL on a penalty", global);
   }
-  if (!search.feasible() && search.num_conditions() > 0) restore(search);
+  // All but MMA find back from a small violation by themselves.
+  constexpr double small = 1e-2;
+  const double tolerated = algorithm == DesignAlgorithm::mma ? 0 : small;
+  if (search.num_conditions() > 0 && search.least_violation() > tolerated) restore(search);
   switch (algorithm) {
     case DesignAlgorithm::bobyqa:
-      // BOBYQA needs two variables, and stops at the penalty's kinks.
-      if (n > 1) penalised_search(search, nlopt::LN_BOBYQA, "BOBYQA on a penalty", 0);
-      return settle(search, nlopt::LN_COBYLA, "COBYLA");
+      return settle(search, nlopt::LN_BOBYQA, "BOBYQA");
     case DesignAlgorithm::slsqp:
       return settle(search, nlopt::LD_SLSQP, "SLSQP");
     case DesignAlgorithm::mma:
       return settle(search, nlopt::LD_MMA, "MMA");
     case DesignAlgorithm::automatic:
       // Derivatives see the smooth part around, COBYLA the kinks.
-      if (search.feasible()) {
+      if (search.least_violation() <= small) {
         local(search, nlopt::LD_SLSQP, "SLSQP", 0.05);
         if (search.stationary()) return true;
       }
+      if (search.num_conditions() > 0 && !search.feasible()) restore(search);
       break;
     default:
       break;

@@ -32,7 +32,7 @@ constexpr double stationary_residual = 1e-3;
 constexpr int most_revisits = 2000;
 
 bool usable(const std::optional<DesignValues>& values) {
-  return values && std::isfinite(values->goal) && values->conditions.allFinite();
+  return values && std::isfinite(values->goal) && values->conditions.allFinite() && values->parts.allFinite();
 }
 
 // Feasible before infeasible, then the lower goal; among infeasible the smaller violation.
@@ -95,6 +95,9 @@ const std::optional<DesignValues>& DesignSearch::at(const std::vector<double>& u
   if (found && found->conditions.size() != problem_.num_conditions)
     throw std::invalid_argument(
         fmt::format("evaluate: found {} conditions, allowed {}", found->conditions.size(), problem_.num_conditions));
+  if (found && found->parts.size() != problem_.num_parts)
+    throw std::invalid_argument(
+        fmt::format("evaluate: found {} parts of the goal, allowed {}", found->parts.size(), problem_.num_parts));
   if (!usable(found)) {
     found.reset();
     ++result_.num_missing;
@@ -118,6 +121,11 @@ double DesignSearch::goal(const std::vector<double>& u) {
   return values ? values->goal / scale() : worst_goal_ / scale() + 1;
 }
 
+double DesignSearch::part(const std::vector<double>& u, std::size_t k) {
+  const std::optional<DesignValues>& values = at(u);
+  return values ? values->parts(static_cast<Index>(k)) / scale() : worst_goal_ / scale() + 1;
+}
+
 double DesignSearch::condition(const std::vector<double>& u, std::size_t j) {
   const std::optional<DesignValues>& values = at(u);
   return (values ? values->conditions(static_cast<Index>(j)) : worst_violation_ + 1) + safety;
@@ -138,22 +146,25 @@ double DesignSearch::penalised(const std::vector<double>& u) {
 const MatrixXd& DesignSearch::slopes(const std::vector<double>& u) {
   const auto known = slopes_.find(u);
   if (known != slopes_.end()) return known->second;
-  const auto n = static_cast<Index>(size()), m = static_cast<Index>(num_conditions());
-  MatrixXd result(1 + m, n);
+  const auto n = static_cast<Index>(size()), m = static_cast<Index>(num_conditions()),
+             p = static_cast<Index>(num_parts());
+  MatrixXd result(1 + m + p, n);
   std::optional<DesignGradient> gradient;
   if (problem_.gradient && at(u)) gradient = problem_.gradient(design(u));
-  if (gradient && gradient->goal.allFinite() && gradient->conditions.allFinite()) {
+  if (gradient && gradient->goal.allFinite() && gradient->conditions.allFinite() && gradient->parts.allFinite()) {
     ++result_.num_gradients;
     result.row(0) = gradient->goal.transpose() / scale();
-    result.bottomRows(m) = gradient->conditions;
+    result.middleRows(1, m) = gradient->conditions;
+    if (p > 0) result.bottomRows(p) = gradient->parts / scale();
     const VectorXd x = design(u);
     for (Index i = 0; i < n; ++i) result.col(i) *= scales_[static_cast<std::size_t>(i)].slope(x(i));
   } else {
     const auto values = [&](const VectorXd& v) -> OptionalVector {
       const std::vector<double> place(v.data(), v.data() + n);
-      VectorXd all(1 + m);
+      VectorXd all(1 + m + p);
       all(0) = goal(place);
       for (Index j = 0; j < m; ++j) all(1 + j) = condition(place, static_cast<std::size_t>(j));
+      for (Index k = 0; k < p; ++k) all(1 + m + k) = part(place, static_cast<std::size_t>(k));
       return all;
     };
     result = *difference_jacobian(values, Eigen::Map<const VectorXd>(u.data(), n), VectorXd::Zero(n), VectorXd::Ones(n),
@@ -162,14 +173,19 @@ const MatrixXd& DesignSearch::slopes(const std::vector<double>& u) {
   return slopes_.emplace(u, std::move(result)).first->second;
 }
 
-void DesignSearch::goal_slope(const std::vector<double>& u, std::vector<double>& slope) {
+void DesignSearch::slope(const std::vector<double>& u, std::size_t row, std::vector<double>& slope) {
   const MatrixXd& all = slopes(u);
-  for (std::size_t i = 0; i < size(); ++i) slope[i] = all(0, static_cast<Index>(i));
+  for (std::size_t i = 0; i < size(); ++i) slope[i] = all(static_cast<Index>(row), static_cast<Index>(i));
+}
+
+void DesignSearch::goal_slope(const std::vector<double>& u, std::vector<double>& slope) { this->slope(u, 0, slope); }
+
+void DesignSearch::part_slope(const std::vector<double>& u, std::size_t k, std::vector<double>& slope) {
+  this->slope(u, 1 + num_conditions() + k, slope);
 }
 
 void DesignSearch::condition_slope(const std::vector<double>& u, std::size_t j, std::vector<double>& slope) {
-  const MatrixXd& all = slopes(u);
-  for (std::size_t i = 0; i < size(); ++i) slope[i] = all(1 + static_cast<Index>(j), static_cast<Index>(i));
+  this->slope(u, 1 + j, slope);
 }
 
 bool DesignSearch::stationary() {

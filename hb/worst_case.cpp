@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hb/design.hpp"
+
 namespace hb {
 
 namespace {
@@ -85,6 +87,23 @@ WorstCase worst_case(const std::function<double(double)>& f, const std::vector<d
     if (!brent(f, a, b, start, at_start, options.tolerance, found)) return none;
   }
   return found;
+}
+
+WorstPoint worst_point(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x,
+                       const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  const WorstPoint start{x, f(x)};
+  if (!std::isfinite(start.value)) return start;
+  DesignProblem problem;
+  problem.lower = lower;
+  problem.upper = upper;
+  problem.start = x;
+  problem.evaluate = [&](const Eigen::VectorXd& y) { return DesignValues{-f(y), {}}; };
+  DesignOptions options;
+  options.algorithm = DesignAlgorithm::bobyqa;
+  options.tolerance = 1e-6;  // of the box: its square of the value
+  options.max_evaluations = 200;
+  const DesignResult found = optimise(problem, options);
+  return -found.values.goal > start.value ? WorstPoint{found.x, -found.values.goal} : start;
 }
 
 }  // namespace hb

@@ -2,6 +2,7 @@
 // may belong to it.
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <vector>
 
@@ -22,5 +23,14 @@ struct WorstCaseOptions {
 // sample stands on its slope.
 [[nodiscard]] WorstCase worst_case(const std::function<double(double)>& f, const std::vector<double>& x,
                                    const std::vector<double>& values, const WorstCaseOptions& options = {});
+
+// The local maximum over a box of several variables that begins at `x` (BOBYQA of NLopt), from two variables on; `x`
+// itself where nothing larger is found. f: NaN or -infinity where it does not exist.
+struct WorstPoint {
+  Eigen::VectorXd x;
+  double value = 0;
+};
+[[nodiscard]] WorstPoint worst_point(const std::function<double(const Eigen::VectorXd&)>& f, const Eigen::VectorXd& x,
+                                     const Eigen::VectorXd& lower, const Eigen::VectorXd& upper);
 
 }  // namespace hb

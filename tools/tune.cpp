@@ -54,33 +54,18 @@ void require_scene(const SceneSource& source, const std::string& path, double va
   }
 }
 
-// A scene number, or an end of the speed range as --over gives it.
-double start_value(const std::string& path, const TuneTask& task) {
-  if (path == range_from) return task.span.from / task.speed_unit;
-  if (path == range_to) return task.span.to / task.speed_unit;
-  return task.source.value(path);
+bool is_speed(const TuneVariable& variable) { return variable.path == range_from || variable.path == range_to; }
+
+// Moved into the bounds if need be.
+void start_at(TuneVariable& variable, double value) {
+  variable.start = std::clamp(value, variable.lower, variable.upper);
+  if (variable.start == value) return;
+  variable.moved_from = value;
+  fmt::print(stderr, "hb tune: {} = {:g} lies outside {:g} to {:g}; the search starts at {:g}\n", variable.path, value,
+             variable.lower, variable.upper, variable.start);
 }
 
-std::vector<TuneVariable> variables(const TuneFlags& flags, const TuneTask& task) {
-  const SceneSource& source = task.source;
-  std::vector<TuneVariable> result;
-  for (const std::string& text : flags.vary) {
-    const NamedRange range = named_range("--vary", text);
-    const auto [a, b] = bounds("--vary " + range.path, range.range);
-    TuneVariable variable{range.path, a, b, 0, std::nullopt, {}};
-    for (const TuneVariable& other : result)
-      if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
-    if (range.path.starts_with("analysis.") || range.path.starts_with("units."))
-      throw UsageError(fmt::format("--vary: found {}, allowed: numbers of the mechanism", range.path));
-    const double value = start_value(range.path, task);
-    variable.start = std::clamp(value, a, b);
-    if (variable.start != value) {
-      variable.moved_from = value;
-      fmt::print(stderr, "hb tune: {} = {:g} lies outside {:g} to {:g}; the search starts at {:g}\n", range.path, value,
-                 a, b, variable.start);
-    }
-    result.push_back(std::move(variable));
-  }
+void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<TuneVariable>& variables) {
   for (const std::string& text : flags.tie) {
     const NamedRange tie = named_range("--tie", text);
     const std::size_t star = tie.range.rfind('*');
@@ -89,11 +74,11 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const TuneTask& task
     const std::string path = scaled ? tie.range.substr(star + 1) : tie.range;
     if (scaled)
       tied.factor = number_flag("--tie", tie.range.substr(0, star), -largest, largest, "PATH=PATH or PATH=FACTOR*PATH");
-    const auto leader = std::ranges::find(result, path, &TuneVariable::path);
-    if (leader == result.end())
+    const auto leader = std::ranges::find(variables, path, &TuneVariable::path);
+    if (leader == variables.end())
       throw UsageError(fmt::format("--tie: found \"{}\", allowed: PATH=FACTOR*VARIED with one of --vary, {}", text,
                                    fmt::join(flags.vary, ", ")));
-    for (const TuneVariable& variable : result) {
+    for (const TuneVariable& variable : variables) {
       bool taken = variable.path == tie.path;
       for (const TiedNumber& other : variable.tied) taken = taken || other.path == tie.path;
       if (taken) throw UsageError(fmt::format("--tie: found {}, which is varied or tied already", tie.path));
@@ -101,17 +86,27 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const TuneTask& task
     (void)source.value(tie.path);
     leader->tied.push_back(tied);
   }
+}
+
+// Ends of the speed range start later, in `start_speeds`.
+std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& source) {
+  std::vector<TuneVariable> result;
+  for (const std::string& text : flags.vary) {
+    const NamedRange range = named_range("--vary", text);
+    const auto [a, b] = bounds("--vary " + range.path, range.range);
+    TuneVariable variable{range.path, a, b, a, std::nullopt, {}};
+    for (const TuneVariable& other : result)
+      if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
+    if (range.path.starts_with("analysis.") || range.path.starts_with("units."))
+      throw UsageError(fmt::format("--vary: found {}, allowed: numbers of the mechanism", range.path));
+    if (!is_speed(variable)) start_at(variable, source.value(range.path));
+    result.push_back(std::move(variable));
+  }
+  add_ties(flags, source, result);
   // Conditions between numbers (a wall within its tube) are the search's business; each alone must be possible at one
   // end at least.
-  double lowest_to = task.span.to / task.speed_unit, highest_from = task.span.from / task.speed_unit;
   for (const TuneVariable& variable : result) {
-    if (variable.path == range_from) highest_from = variable.upper;
-    if (variable.path == range_to) lowest_to = variable.lower;
-    if (variable.path == range_from || variable.path == range_to) {
-      if (!(variable.lower > 0))
-        throw UsageError(fmt::format("--vary: found {} from {:g}, allowed: speeds > 0", variable.path, variable.lower));
-      continue;
-    }
+    if (is_speed(variable)) continue;
     try {
       require_scene(source, variable.path, variable.lower);
     } catch (const SceneError&) {
@@ -119,11 +114,74 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const TuneTask& task
       if (variable.lower <= 0) throw;
     }
   }
-  if (std::ranges::any_of(result, [](const auto& v) { return v.path == range_from || v.path == range_to; }) &&
-      !(highest_from < lowest_to))
+  return result;
+}
+
+// Where the linkage does not close at the start, moves that to a design within the bounds that does, and says so.
+void close_start(TuneTask& task) {
+  std::string obstruction;
+  const auto closes = [&](const std::vector<double>& x) {
+    try {
+      Settings settings;
+      settings.modes = 1;
+      (void)make_model(task.source.with(overrides_at(task, x)), settings);
+      return true;
+    } catch (const ObstructedLinkage& problem) {
+      if (obstruction.empty()) obstruction = problem.what();
+    }
+    return false;
+  };
+  if (closes(start_of(task))) return;
+  // The first that closes of evenly spread designs: fractions of k/g, k/g^2, ... with g^(n+1) = g + 1 (M. Roberts'
+  // additive recurrence).
+  constexpr int count = 400;
+  const std::size_t n = task.variables.size();
+  double g = 2;
+  for (int k = 0; k < 60; ++k) g = std::pow(1 + g, 1.0 / static_cast<double>(n + 1));
+  std::optional<std::vector<double>> found;
+  for (int k = 0; k < count && !found; ++k) {
+    std::vector<double> x;
+    for (const TuneVariable& variable : task.variables) {
+      const double u = std::fmod(0.5 + k * std::pow(g, -static_cast<double>(x.size() + 1)), 1.0);
+      x.push_back(variable.lower + u * (variable.upper - variable.lower));
+    }
+    try {
+      if (closes(x)) found = std::move(x);
+    } catch (const SceneError&) {  // no possible scene
+    }
+  }
+  if (!found)
+    throw UsageError(
+        fmt::format("--vary: found no design within the bounds whose linkage closes, of {} looked at ({}); allowed: "
+                    "bounds with some",
+                    count, obstruction));
+  std::string start;
+  for (std::size_t i = 0; i < n; ++i) {
+    TuneVariable& variable = task.variables[i];
+    if (is_speed(variable)) continue;
+    if (!variable.moved_from) variable.moved_from = variable.start;
+    variable.start = (*found)[i];
+    start += fmt::format("{}{} = {:.6g}", start.empty() ? "" : ", ", variable.path, variable.start);
+  }
+  fmt::print(stderr, "hb tune: the linkage does not close at the start; the search starts from {}, where it does\n",
+             start);
+}
+
+void start_speeds(TuneTask& task) {
+  double lowest_to = task.span.to / task.speed_unit, highest_from = task.span.from / task.speed_unit;
+  bool any = false;
+  for (TuneVariable& variable : task.variables) {
+    if (!is_speed(variable)) continue;
+    any = true;
+    const bool from = variable.path == range_from;
+    if (!(variable.lower > 0))
+      throw UsageError(fmt::format("--vary: found {} from {:g}, allowed: speeds > 0", variable.path, variable.lower));
+    start_at(variable, (from ? task.span.from : task.span.to) / task.speed_unit);
+    (from ? highest_from : lowest_to) = from ? variable.upper : variable.lower;
+  }
+  if (any && !(highest_from < lowest_to))
     throw UsageError(
         fmt::format("--vary: found speed ranges from {:g} to {:g}, allowed: from below to", highest_from, lowest_to));
-  return result;
 }
 
 // --over rpm=A:B, else the scene's or the flags' speed.
@@ -157,7 +215,7 @@ DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) 
   DesignOptions options;
   options.max_evaluations = 400 + 100 * static_cast<int>(std::min<std::size_t>(num_variables, 100));
   if (!flags.analyses.empty())
-    options.max_evaluations = integer_flag("--analyses", flags.analyses, 1, 1000000, "an integer 1 to 1000000");
+    options.max_evaluations = integer_flag("--analyses", flags.analyses, 2, 1000000, "an integer 2 to 1000000");
   if (!flags.seed.empty())
     options.seed = static_cast<std::uint64_t>(
         integer_flag("--seed", flags.seed, 0, std::numeric_limits<int>::max(), "an integer >= 0"));
@@ -184,16 +242,23 @@ DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) 
   return options;
 }
 
-// As many modes as the speeds' ends need, fixed for the search.
-int num_modes(const TuneTask& task, const Scene& scene) {
-  Settings settings = task.settings;
-  settings.only = {true, false, false, false};
-  const SceneModel model = make_model(scene, settings);
-  int modes = 1;
-  for (const double speed : {task.span.from, task.span.to})
-    for (const RodResult& rod : analyse(model, speed, settings).rods)
-      modes = std::max(modes, static_cast<int>(rod.num_modes));
-  return modes;
+void require_rods(const std::map<std::string, double>& heights, const Scene& scene) {
+  std::vector<std::string> names = {"*"};
+  if (const auto* linkage = std::get_if<Linkage>(&scene.model))
+    for (const int link : elastic_links(*linkage)) names.push_back(body_name(*linkage, link));
+  for (const auto& [name, height] : heights)
+    if (std::ranges::find(names, name) == names.end())
+      throw UsageError(
+          fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name, fmt::join(names, ", ")));
+}
+
+void require_algorithm(const TuneTask& task) {
+  if (task.options.algorithm != DesignAlgorithm::bobyqa) return;
+  constexpr const char* allowed = "allowed: automatic, direct, mlsl, cobyla, slsqp, mma";
+  if (!task.keeps.empty())
+    throw UsageError(fmt::format("--algorithm: found bobyqa, which takes no conditions, with --keep; {}", allowed));
+  if (task.variables.size() < 2)
+    throw UsageError(fmt::format("--algorithm: found bobyqa, which needs two variables, with one --vary; {}", allowed));
 }
 
 int run_tune(const TuneFlags& flags) {
@@ -201,11 +266,20 @@ int run_tune(const TuneFlags& flags) {
     throw UsageError(fmt::format("--minimise, --maximise: found {}, allowed: one goal, as in --minimise deflection",
                                  flags.minimise.empty() ? "neither" : "both"));
   if (flags.vary.empty()) throw UsageError("--vary: found nothing, allowed: PATH=FROM:TO, as in --vary AB.J=20:200");
+  if (!flags.only.empty())
+    throw UsageError(
+        fmt::format("--only: found \"{}\", allowed: not with tune, where goal and conditions say what is "
+                    "computed",
+                    flags.only));
   // Numbers of --set become part of the scene that is tuned.
   const SceneSource as_written(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
-  const Scene scene = as_written.with(set);
   const std::filesystem::path file = flags.scene_file;
+  std::optional<Scene> given;
+  try {
+    given = as_written.with(set);
+  } catch (const ObstructedLinkage&) {  // an infeasible start
+  }
   TuneTask task{
       .source = set.empty() ? as_written : SceneSource(as_written.text_with(set), file.string(), file.parent_path()),
       .variables = {},
@@ -214,7 +288,7 @@ int run_tune(const TuneFlags& flags) {
       .span = {},
       .in_rpm = true,
       .heights = {},
-      .settings = settings(flags, scene),
+      .settings = {},
       .options = design_options(flags, flags.vary.size())};
   for (const std::string& text : flags.keep) task.keeps.push_back(parse_keep(text));
   for (const std::string& text : flags.height) {
@@ -222,28 +296,34 @@ int run_tune(const TuneFlags& flags) {
     task.heights[height.path] =
         number_flag("--height", height.range, std::numeric_limits<double>::min(), largest, "ROD=H with H > 0");
   }
+  task.variables = variables(flags, task.source);
+  require_algorithm(task);
+  close_start(task);
+  const Scene scene = given ? *given : task.source.with(overrides_at(task, start_of(task)));
+  task.settings = settings(flags, scene);
+  require_rods(task.heights, scene);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
   task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;
-  task.variables = variables(flags, task);
-  if (std::holds_alternative<AutoModes>(task.settings.modes)) task.settings.modes = num_modes(task, scene);
+  start_speeds(task);
 
   std::optional<OutputFolder> folder;
   if (task.settings.out) {
-    const std::filesystem::path written = *task.settings.out / "tuned.toml";
-    std::error_code none;
-    if (std::filesystem::equivalent(written, file, none))
-      throw UsageError(
-          fmt::format("--out: found {}, where tuned.toml would replace the scene itself; allowed: another "
-                      "folder",
-                      task.settings.out->string()));
+    for (const char* name : {tuned_file, nearest_file}) {
+      std::error_code none;
+      if (std::filesystem::equivalent(*task.settings.out / name, file, none))
+        throw UsageError(
+            fmt::format("--out: found {}, where {} would replace the scene itself; allowed: another folder",
+                        task.settings.out->string(), name));
+    }
     folder.emplace(*task.settings.out);
   }
   const TuneResult result = tune(task);
   if (task.options.progress) fmt::print(stderr, "\r\033[K");
+  task.settings.modes = result.num_modes;
 
   const nlohmann::ordered_json document = tune_json(task, result, scene);
   if (folder) {
-    folder->write("tuned.toml", tuned_scene(task, result, file, *task.settings.out));
+    folder->write(scene_file(result), tuned_scene(task, result, file, *task.settings.out));
     folder->write("tune.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     const CsvFile history = history_csv(task, result);
     folder->write(history.name, csv_text(history));
@@ -255,6 +335,7 @@ int run_tune(const TuneFlags& flags) {
     print_json(document);
   } else {
     fmt::print("{}", tune_table(task, result, scene));
+    if (folder) fmt::print("written: {}\n", (*task.settings.out / scene_file(result)).string());
     if (task.settings.stats) fmt::print(stderr, "\n{}", stages_table(result.stages));
   }
   return shortfall(result).empty() ? exit_ok : exit_not_reached;
@@ -299,7 +380,8 @@ void add_tune_command(CLI::App& app, int& status) {
   command->add_option("--algorithm", flags->algorithm, "automatic, direct, mlsl, cobyla, bobyqa, slsqp or mma (NLopt)")
       ->type_name("NAME");
   command->add_option("--seed", flags->seed, "of mlsl")->type_name("N");
-  command->add_option("--analyses", flags->analyses, "designs analysed at most")->type_name("N");
+  command->add_option("--analyses", flags->analyses, "designs analysed at most, confirmations included")
+      ->type_name("N");
   command->add_option("--speeds", flags->speeds, "speeds sampled before the worst case is refined; default 24")
       ->type_name("N");
   command->callback([flags, &status] { status = run_tune(*flags); });

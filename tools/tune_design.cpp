@@ -25,34 +25,6 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t resonant_modes = 2;
 constexpr double highest_order = 24;
 
-// The system of p in q = e^{-mt} p: its exponents are those of q plus m, so it is stable where q decays faster than
-// e^{-mt}.   M p'' + (B - 2 m M) p' + (C - m B + m^2 M) p
-HillSystem shifted(const HillSystem& system, double m) {
-  HillSystem result = system;
-  if (m == 0) return result;
-  const Eigen::MatrixXd &M = system.mass, &B = system.damping;
-  result.damping = B - 2 * m * M;
-  if (result.stiffness[0].c.size() == 0) result.stiffness[0] = FourierSeries(M.size(), 0);
-  const Eigen::MatrixXd added = m * m * M - m * B;
-  result.stiffness[0].c.col(0) +=
-      Eigen::Map<const Eigen::VectorXd>(added.data(), added.size()).cast<std::complex<double>>();
-  return result;
-}
-
-// Modes of the mean system; NaN where overdamped or not held up.
-std::vector<ModeState> mean_modes(const ScaledSystem& system) {
-  const Eigen::VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
-  std::vector<ModeState> modes;
-  for (Eigen::Index i = 0; i < w2.size(); ++i) {
-    const double square = w2(i) - b(i) * b(i) / 4;
-    ModeState mode;
-    mode.frequency = square > 0 ? std::sqrt(square) * system.speed : nan;
-    mode.growth = mode.growth_low = -b(i) / 2 * system.speed;
-    modes.push_back(mode);
-  }
-  return modes;
-}
-
 }  // namespace
 
 struct DesignAnalysis::Sample {
@@ -72,13 +44,9 @@ struct DesignAnalysis::Curve {
 };
 
 DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
-                               SectionHeights heights, double margin, bool per_turn)
-    : model_(model),
-      settings_(settings),
-      span_(span),
-      heights_(std::move(heights)),
-      margin_(margin),
-      per_turn_(per_turn) {
+                               SectionHeights heights, std::vector<RequiredDecay> required)
+    : model_(model), settings_(settings), span_(span), heights_(std::move(heights)), required_(std::move(required)) {
+  required_.insert(required_.begin(), RequiredDecay{});
   const int count = span.from == span.to ? 1 : std::max(2, span.num_nodes);
   for (int k = 0; k < count; ++k) {
     auto sample = std::make_unique<Sample>();
@@ -160,53 +128,50 @@ void DesignAnalysis::need_forces() {
 void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
   place_nodes();
-  const auto shift_at = [&](double speed) { return per_turn_ ? margin_ * speed / (2 * pi) : margin_; };
   const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
-  struct Known {
-    StabilitySample sample;
-    std::vector<ModeState> modes;
-  };
-  std::vector<std::vector<Known>> known(num_nodes);
-  const auto system_at = [&](std::size_t r, double speed) {
-    return scale_system(shifted(model_.rods[r].system, shift_at(speed)), speed);
-  };
+  StabilityOptions all_exponents;
+  all_exponents.method = settings_.stability_method;
+  std::vector<std::vector<Stability>> known(num_nodes);  // by node and rod
+  parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
+    for (const RodModel& rod : model_.rods) {
+      known[k].push_back(analyse_stability(scale_system(rod.system, nodes_[k]->speed), all_exponents));
+      nodes_[k]->growth.push_back(growth_of(known[k].back()));
+    }
+  });
+  // Narrow bands that lie between two nodes.
+  std::vector<std::vector<double>> found(num_nodes);
   SweepOptions options;
   options.stability.method = settings_.stability_method;
   options.stability.leading_only = true;
-  StabilityOptions all_exponents;
-  all_exponents.method = settings_.stability_method;
-  parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
-    const double speed = nodes_[k]->speed;
+  for (const RequiredDecay& required : required_) {
     for (std::size_t r = 0; r < num_rods; ++r) {
-      known[k].push_back({{speed, speed, analyse_stability(system_at(r, speed), all_exponents)}, {}});
-      nodes_[k]->growth.push_back(growth_of(known[k].back().sample.stability) - shift_at(speed));
+      const RodModel& rod = model_.rods[r];
+      if (!rod.reported) continue;
+      std::vector<StabilitySample> samples;
+      std::vector<TrackedPlace> places;
+      for (std::size_t k = 0; k < num_nodes; ++k) {
+        const double speed = nodes_[k]->speed;
+        samples.push_back({speed, speed, shifted(known[k][r], required.at(speed))});
+      }
+      for (const StabilitySample& sample : samples) places.push_back({sample.x, sample.speed, &sample.stability});
+      const auto modes = track_modes(places, static_cast<int>(rod.system.num_modes()));
+      const SystemAt at = [&](double speed) {
+        return std::optional<ScaledSystem>(scale_system(shifted(rod.system, required.at(speed)), speed));
+      };
+      parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
+        for (const StabilitySample& sample :
+             look_between(at, samples[k], samples[k + 1], modes[k], modes[k + 1], options))
+          found[k].push_back(sample.x);
+      });
     }
-  });
-  for (std::size_t r = 0; r < num_rods; ++r) {
-    std::vector<TrackedPlace> places;
-    for (const auto& node : known)
-      places.push_back({node[r].sample.x, node[r].sample.speed, &node[r].sample.stability});
-    const auto tracks = track_modes(places, static_cast<int>(model_.rods[r].system.num_modes()));
-    for (std::size_t k = 0; k < num_nodes; ++k) known[k][r].modes = tracks[k];
   }
-  // Narrow bands that lie between two nodes.
-  std::vector<std::vector<double>> found(num_nodes);
-  parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
-    for (std::size_t r = 0; r < num_rods; ++r) {
-      if (!model_.rods[r].reported) continue;
-      const Known &a = known[k][r], &b = known[k + 1][r];
-      const SystemAt at = [&](double speed) { return std::optional<ScaledSystem>(system_at(r, speed)); };
-      for (const StabilitySample& sample : look_between(at, a.sample, b.sample, a.modes, b.modes, options))
-        found[k].push_back(sample.x);
-    }
-  });
   std::vector<std::unique_ptr<Sample>> more;
   for (const std::vector<double>& speeds : found) {
     for (const double speed : speeds) {
       auto sample = std::make_unique<Sample>();
       sample->speed = speed;
-      for (std::size_t r = 0; r < num_rods; ++r)
-        sample->growth.push_back(growth_of(leading_stability(system_at(r, speed), settings_)) - shift_at(speed));
+      for (const RodModel& rod : model_.rods)
+        sample->growth.push_back(growth_of(leading_stability(scale_system(rod.system, speed), settings_)));
       more.push_back(std::move(sample));
     }
   }
@@ -316,7 +281,7 @@ MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>
   for (std::size_t c = 0; c < curves.size(); ++c) {
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
       values[c].push_back(at_node(curves[c], k));
-      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where, curves[c].index, 1};
+      if (std::isnan(values[c].back())) return {nan, speeds[k], curves[c].where, curves[c].index};
       highest = std::max(highest, values[c].back());
       lowest = std::min(lowest, values[c].back());
     }

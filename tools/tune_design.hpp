@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,17 +13,11 @@
 
 namespace hb::tools {
 
-struct MetricValue {
-  double value = 0;  // in unit_of(kind); NaN where there is no periodic solution
-  std::optional<double> speed;  // where it is worst, rad per unit time
-  std::string where;  // rod or joint
-  std::size_t index = 0;  // of that rod in SceneModel::rods, of that joint in JointForces::joints
-  double factor = 1;  // from the scene's units
-};
-
-struct SpeedSpan {
-  double from = 0, to = 0;  // rad per unit time; equal: one speed
-  int num_nodes = 24;  // sampled before refinement
+// Decay that a condition asks for, 1/time or per turn.
+struct RequiredDecay {
+  double bound = 0;
+  bool per_turn = false;
+  double at(double speed) const { return per_turn ? bound * speed / (2 * std::numbers::pi) : bound; }
 };
 
 // Response and margin over the speeds sampled, for pictures.
@@ -35,10 +30,10 @@ struct DesignCurves {
 
 class DesignAnalysis {
  public:
-  // Keeps references to both.
-  // `margin`: bands are looked for that decay slower than this (1/time, or per turn), also where narrow.
+  // Keeps references to both. Bands of instability, and those that decay slower than required, are looked for also
+  // where narrow.
   DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span, SectionHeights heights,
-                 double margin = 0, bool per_turn = false);
+                 std::vector<RequiredDecay> required = {});
   ~DesignAnalysis();
 
   // Throws UsageError for a name that the scene does not have.
@@ -63,8 +58,7 @@ class DesignAnalysis {
   const Settings& settings_;
   SpeedSpan span_;
   SectionHeights heights_;
-  double margin_;
-  bool per_turn_;
+  std::vector<RequiredDecay> required_;  // begins with none at all
   std::vector<std::unique_ptr<Sample>> nodes_;  // ascending speed
   bool placed_ = false;
 };

@@ -14,6 +14,8 @@ constexpr const char* metric_words =
     "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], frequency[:ROD], stable, clearance[:N], "
     "speed-range";
 
+constexpr double largest_weight = 1e100;  // so that no sum overflows
+
 [[noreturn]] void refuse(const char* flag, const std::string& text, const std::string& why,
                          const std::string& allowed) {
   throw UsageError(fmt::format("{}: found \"{}\", {}; allowed: {}", flag, text, why, allowed));
@@ -98,8 +100,8 @@ Goal parse_goal(const std::string& text) {
     const std::size_t star = part.find('*');
     if (star != std::string::npos) {
       const std::optional<double> weight = number(part.substr(0, star));
-      if (!weight || !(*weight > 0))
-        refuse("--minimise", text, "with a weight that is no number > 0", "0.7*deflection+0.3*mass");
+      if (!weight || !(*weight >= 1 / largest_weight && *weight <= largest_weight))
+        refuse("--minimise", text, "with a weight that is no number from 1e-100 to 1e100", "0.7*deflection+0.3*mass");
       term.weight = *weight;
       goal.weighted = true;
     }
@@ -148,8 +150,7 @@ Keep parse_keep(const std::string& text) {
     bound.resize(bound.size() - 5);
   }
   const std::optional<double> value = number(bound);
-  const bool may_be_zero = keep.metric.kind == MetricKind::margin || keep.metric.kind == MetricKind::margin_per_turn ||
-                           keep.metric.kind == MetricKind::clearance;
+  const bool may_be_zero = is_margin(keep.metric) || keep.metric.kind == MetricKind::clearance;
   if (!value || !(may_be_zero ? *value >= 0 : *value > 0))
     refuse("--keep", text, fmt::format("where \"{}\" is no number {} 0", bound, may_be_zero ? ">=" : ">"), "a bound");
   if (better_large(keep.metric.kind) != keep.at_least)
@@ -162,6 +163,14 @@ Keep parse_keep(const std::string& text) {
 bool better_large(MetricKind kind) {
   return kind == MetricKind::frequency || kind == MetricKind::margin || kind == MetricKind::margin_per_turn ||
          kind == MetricKind::clearance || kind == MetricKind::speed_range;
+}
+
+bool needs_forces(const Metric& metric) {
+  return metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple;
+}
+
+bool is_margin(const Metric& metric) {
+  return metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn;
 }
 
 bool depends_on_speed(MetricKind kind) { return kind != MetricKind::mass && kind != MetricKind::frequency; }

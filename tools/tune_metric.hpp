@@ -58,6 +58,8 @@ struct Keep {
 
 [[nodiscard]] bool depends_on_speed(MetricKind kind);
 [[nodiscard]] bool better_large(MetricKind kind);
+[[nodiscard]] bool needs_forces(const Metric& metric);
+[[nodiscard]] bool is_margin(const Metric& metric);
 // Scene's length and mass; N, N m, MPa, Hz, rpm.
 [[nodiscard]] std::string unit_of(MetricKind kind, const Units& units);
 

@@ -17,6 +17,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+double positive_degrees(double angle) {
+  const double degrees = std::fmod(angle * degrees_per_radian, 360);
+  return degrees < 0 ? degrees + 360 : degrees;
+}
+
 std::string label(MetricKind kind) {
   switch (kind) {
     case MetricKind::deflection:
@@ -48,12 +53,20 @@ std::string label(const Metric& metric) {
          (metric.kind == MetricKind::clearance ? fmt::format(" of orders 1..{}", metric.orders) : "");
 }
 
+// "CD, 3000 rpm, 0.512 l, 123.45 deg"
 std::string place(const TuneTask& task, const MetricValue& value, const Units& units) {
   std::string text = value.where;
-  if (value.speed)
-    text +=
-        fmt::format("{}{:.6g} {}", text.empty() ? "" : ", ", *value.speed / task.speed_unit, speed_unit(task, units));
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (value.speed) add(fmt::format("{:.6g} {}", *value.speed / task.speed_unit, speed_unit(task, units)));
+  if (value.position) add(fmt::format("{:.4f} l", *value.position));
+  if (value.crank_angle) add(fmt::format("{:.2f} deg", positive_degrees(*value.crank_angle)));
   return text;
+}
+
+// Digits as far as the error allows and two more; > or < where more speeds show another value.
+std::string worst_text(const MetricValue& value, bool confirmed, MetricKind kind) {
+  const std::string mark = confirmed ? "" : better_large(kind) ? "<" : ">";
+  return mark + fmt::format("{:.{}g}", value.value, std::min(trusted_digits(value.value, value.error) + 2, 10));
 }
 
 std::string at_bound(const TuneVariable& variable, double x) {
@@ -93,28 +106,41 @@ std::string bound_text(const Keep& keep, const Units& units) {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
-Json metric_json(const TuneTask& task, const MetricValue& value) {
-  Json json = {{"value", number(value.value)}};
+Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed, const Units& units) {
+  Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
   if (!value.where.empty()) json["at"] = value.where;
   if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = *value.speed / task.speed_unit;
+  if (value.position) json["x_over_l"] = *value.position;
+  if (value.crank_angle) json["crank_angle"] = scene_angle(*value.crank_angle, units);
   return json;
+}
+
+std::string not_met(const TuneResult& result) {
+  std::string names;
+  for (const TuneCondition& condition : result.conditions)
+    if (!condition.met) names += (names.empty() ? "" : ", ") + condition.keep.text;
+  return names;
 }
 
 }  // namespace
 
 std::string shortfall(const TuneResult& result) {
-  if (result.design.status == DesignStatus::infeasible) {
-    std::string names;
-    for (const TuneCondition& condition : result.conditions)
-      if (!condition.met) names += (names.empty() ? "" : ", ") + condition.keep.text;
+  if (result.design.status == DesignStatus::infeasible)
     return fmt::format(
         "no design that meets all conditions was found within the bounds{}; at the nearest one not met: {}",
-        result.design.out_of_analyses ? " by the analyses allowed" : "", names);
-  }
-  if (!result.verified) return "the worst cases found on more speeds differ from those of the search";
+        result.design.out_of_analyses ? " by the analyses allowed" : "", not_met(result));
+  if (!result.agrees) return "the worst cases found on more speeds differ from those of the search";
+  if (!result.modes_suffice)
+    return fmt::format("the design found needs more modes for the tolerance than the {} of the search",
+                       result.num_modes);
+  if (!result.holds) return "with the errors of their values these conditions may not be met: " + not_met(result);
   if (result.design.status == DesignStatus::stopped)
     return "the analyses allowed ran out before the search had settled";
   return "";
+}
+
+const char* scene_file(const TuneResult& result) {
+  return result.design.status == DesignStatus::infeasible ? nearest_file : tuned_file;
 }
 
 std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene) {
@@ -128,7 +154,8 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
                         speed_unit(task, units));
   }
   const std::string problem = shortfall(result);
-  text += problem.empty() ? "a design was found that meets every condition\n" : "NOT REACHED: " + problem + "\n";
+  const char* found = task.keeps.empty() ? "a design was found\n" : "a design was found that meets every condition\n";
+  text += problem.empty() ? found : "NOT REACHED: " + problem + "\n";
 
   text += fmt::format("\n{:<28}{:>15}{:>15}  {}\n", "variable", "before", "after", "bounds");
   for (std::size_t i = 0; i < task.variables.size(); ++i) {
@@ -141,20 +168,37 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
                           tied.factor * result.tuned[i], variable.path);
   }
 
-  text += fmt::format("\n{:<36}{:>13}{:>13}  {:<8}  {}\n", "worst case", "before", "after", "unit", "after: where");
+  text += fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
+  bool confirmed = true, unstable_before = false, unstable_after = false;
   for (const TuneRow& row : result.rows) {
-    text += fmt::format("{:<36}{:>13.7g}{:>13.7g}  {:<8}  {}\n", label(row.metric), row.before.value, row.after.value,
-                        unit_of(row.metric.kind, units), place(task, row.after, units));
-    if (row.metric.kind == MetricKind::margin && !(row.after.value > 0))
-      text += "  the tuned design is not stable over all these speeds: its response there would not be seen\n";
+    const MetricKind kind = row.metric.kind;
+    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric),
+                        worst_text(row.before, row.before_confirmed, kind),
+                        worst_text(row.after, row.after_confirmed, kind),
+                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, units));
+    confirmed = confirmed && row.before_confirmed && row.after_confirmed;
+    unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
+    unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
   }
-  text +=
-      fmt::format("{:<36}{:>13.7g}{:>13.7g}  {}\n", "goal", result.goal_before, result.goal_after, result.goal_unit);
+  if (task.goal.weighted)
+    text += fmt::format("{:<34}{:>17.7g}{:>17.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
+                        std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
+  if (!confirmed) text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
+  for (const bool after : {false, true})
+    if (after ? unstable_after : unstable_before)
+      text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
+                          after ? "after" : "before");
+
+  text += fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
+  for (const TuneRow& row : result.rows) {
+    const std::string before = place(task, row.before, units), after = place(task, row.after, units);
+    if (!before.empty() || !after.empty()) text += fmt::format("{:<36}{:<40}{}\n", label(row.metric), before, after);
+  }
 
   if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
   for (const TuneCondition& condition : result.conditions) {
     text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric), bound_text(condition.keep, units),
-                        !condition.met     ? fmt::format("NOT MET: {:.7g}", condition.value)
+                        !condition.met     ? fmt::format("NOT MET: {}", with_error(condition.value, condition.error))
                         : condition.active ? "active"
                                            : "met with room");
     if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
@@ -164,13 +208,16 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
     text += "\n";
   }
 
-  if (result.sensitivity && !smooth(result))
+  if (result.sensitivity && !smooth(result) && result.design.status != DesignStatus::infeasible)
     text += fmt::format(
         "the goal has a kink here (several worst cases at once, or the search ended early: {:.1g} of its slope is left "
         "over): changes below hold to one side, and gains are not given\n",
         result.sensitivity->residual);
   if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
     text += "\n1 % more of      changes the goal by\n";
+    if (!result.worst_at_once.empty())
+      text += fmt::format("  {} are worst at once: less changes the goal in another way than more\n",
+                          fmt::join(result.worst_at_once, " and "));
     for (std::size_t i = 0; i < task.variables.size(); ++i) {
       const double change = result.goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
       text += fmt::format("{:<28}{:>+10.3g} %\n", task.variables[i].path, change / result.goal_after);
@@ -182,7 +229,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
           fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
   }
 
-  text += fmt::format("\n{} designs analysed: {}\n", result.design.trials.size(), result.design.evidence);
+  text += fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
+                      result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
+                      result.design.evidence, result.confirmations);
   if (result.counts.gradients > 0)
     text += fmt::format("{} gradients from adjoint solutions and Floquet vectors\n", result.counts.gradients);
   if (result.counts.not_closing > 0)
@@ -190,7 +239,10 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
   if (result.without_response > 0)
     text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
-  if (result.verified) text += "worst cases confirmed on four times the speeds\n";
+  if (std::holds_alternative<Linkage>(scene.model)) text += fmt::format("{} modes of each rod\n", result.num_modes);
+  if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
+  if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)
+    text += "conditions hold with the estimated errors of their values\n";
   return text;
 }
 
@@ -199,11 +251,14 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
   json["over"] = {{task.in_rpm ? "rpm" : "omega", {task.span.from / task.speed_unit, task.span.to / task.speed_unit}}};
   json["status"] = status_word(result.design.status);
-  json["verified"] = result.verified;
+  json["verified"] = result.verified();
+  json["modes"] = result.num_modes;
   const std::string problem = shortfall(result);
   json["shortfall"] = problem.empty() ? Json() : Json(problem);
-  json["goal"] = {
-      {"before", number(result.goal_before)}, {"after", number(result.goal_after)}, {"unit", result.goal_unit}};
+  json["goal"] = {{"before", number(result.goal_before)},
+                  {"after", number(result.goal_after)},
+                  {"error", number(result.goal_error)},
+                  {"unit", result.goal_unit}};
   Json& variables = json["variables"] = Json::array();
   for (std::size_t i = 0; i < task.variables.size(); ++i) {
     const TuneVariable& variable = task.variables[i];
@@ -228,13 +283,14 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   for (const TuneRow& row : result.rows) {
     metrics.push_back({{"metric", row.metric.text},
                        {"unit", unit_of(row.metric.kind, units)},
-                       {"before", metric_json(task, row.before)},
-                       {"after", metric_json(task, row.after)}});
+                       {"before", metric_json(task, row.before, row.before_confirmed, units)},
+                       {"after", metric_json(task, row.after, row.after_confirmed, units)}});
   }
   Json& conditions = json["conditions"] = Json::array();
   for (const TuneCondition& condition : result.conditions) {
     conditions.push_back({{"condition", condition.keep.text},
                           {"value", number(condition.value)},
+                          {"error", number(condition.error)},
                           {"bound", condition.keep.bound},
                           {"met", condition.met},
                           {"active", condition.active},
@@ -242,9 +298,11 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                           {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
   }
   if (result.sensitivity) json["slope_left_over"] = number(result.sensitivity->residual);
+  json["worst_at_once"] = result.worst_at_once;
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
-  json["analyses"] = result.design.trials.size();
+  json["analyses"] = result.design.trials.size() + static_cast<std::size_t>(result.confirmations);
+  json["confirmations"] = result.confirmations;
   json["gradients"] = result.counts.gradients;
   json["not_closing"] = result.counts.not_closing;
   json["refused"] = result.counts.refused;
@@ -284,8 +342,9 @@ std::string tuned_scene(const TuneTask& task, const TuneResult& result, const st
   namespace fs = std::filesystem;
   const std::string text = task.source.text_with(overrides_at(task, result.tuned));
   const fs::path from = fs::absolute(scene_file).parent_path(), to = fs::absolute(folder);
-  // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   std::string changed;
+  if (const std::string problem = shortfall(result); !problem.empty()) changed = "# NOT REACHED: " + problem + "\n";
+  // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t key = std::min(text.find("file", at), text.size());
     changed.append(text, at, key - at);

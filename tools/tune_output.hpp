@@ -15,7 +15,11 @@ namespace hb::tools {
 
 // Every design tried: variables, goal, conditions' excess.
 [[nodiscard]] CsvFile history_csv(const TuneTask& task, const TuneResult& result);
-// The scene with the tuned numbers; relative paths of further files lead from `folder`.
+// Names of its files: the design found, or the nearest where none meets all conditions.
+inline constexpr const char *tuned_file = "tuned.toml", *nearest_file = "nearest.toml";
+[[nodiscard]] const char* scene_file(const TuneResult& result);
+// The scene with the tuned numbers, which begins with a comment where something was not reached; relative paths of
+// further files lead from `folder`.
 [[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result,
                                       const std::filesystem::path& scene_file, const std::filesystem::path& folder);
 

@@ -22,6 +22,10 @@ namespace {
 constexpr int campbell_points = 49;
 constexpr int map_speeds = 61, map_designs = 23;
 
+const char* after_text(const TuneResult& result) {
+  return result.design.status == DesignStatus::infeasible ? "nearest design, conditions not met" : "after tuning";
+}
+
 std::vector<double> evenly(double from, double to, int count) {
   std::vector<double> values;
   for (int k = 0; k < count; ++k) values.push_back(k + 1 == count ? to : from + (to - from) * k / (count - 1));
@@ -62,7 +66,8 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
       "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nunset xlabel\nset format y '%g'\nset "
       "format x ''\n"
       "set ylabel 'largest deflection{}'\n",
-      quoted(scene_name(scene) + ": before (dashed) and after tuning"), from, to, bracketed(units.response));
+      quoted(fmt::format("{}: before (dashed) and {}", scene_name(scene), after_text(result))), from, to,
+      bracketed(units.response));
   std::string above, below;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     for (const bool after : {false, true}) {
@@ -85,15 +90,17 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
 }
 
 // As `hb sweep` draws them, one per rod and design.
-void add_campbell(const TuneTask& task, const std::vector<double>& x, const SpeedSpan& span, bool after,
-                  OutputFolder& folder, std::vector<Figure>& figures) {
+void add_campbell(const TuneTask& task, const TuneResult& result, bool after, OutputFolder& folder,
+                  std::vector<Figure>& figures) {
+  const SpeedSpan& span = after ? result.span_after : result.span_before;
   Settings settings = task.settings;
   settings.only = {false, true, false, false};
   Axis axis;
   axis.kind = task.in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
   axis.path = task.in_rpm ? "rpm" : "omega";
   axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, campbell_points);
-  const SweepScene scene(task.source, overrides_at(task, x), settings, axis, span.from, axis.values.front());
+  const SweepScene scene(task.source, overrides_at(task, after ? result.tuned : result.start), settings, axis,
+                         span.from, axis.values.front());
   const std::optional<SweepResult> sweep = run_sweep(scene);
   if (!sweep) return;
   for (std::size_t r = 0; r < sweep->rods.size(); ++r) {
@@ -104,8 +111,8 @@ void add_campbell(const TuneTask& task, const std::vector<double>& x, const Spee
     folder.write(csv.name, csv_text(csv));
     Figure figure = campbell_figure(scene, *sweep, r, csv, "");
     figure.name = name;
-    figure.commands = fmt::format("set label '{} tuning' at graph 0.015, 0.965 front font ',14' boxed\n",
-                                  after ? "after" : "before") +
+    figure.commands = fmt::format("set label '{}' at graph 0.015, 0.965 front font ',14' boxed\n",
+                                  after ? after_text(result) : "before tuning") +
                       figure.commands;
     figures.push_back(std::move(figure));
   }
@@ -174,7 +181,7 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
   const std::vector<double> x = evenly(from, to, map_speeds), y = evenly(-0.05, 1.05, map_designs);
   MapResult map;
   map.x_axis = {task.in_rpm ? PlaneAxis::Role::rpm : PlaneAxis::Role::omega, task.in_rpm ? "rpm" : "omega", from, to};
-  map.y_axis = {PlaneAxis::Role::scene_number, "way from the design before (0) to the tuned one (1)", y.front(),
+  map.y_axis = {PlaneAxis::Role::scene_number, "way from the design before (0) to the one found (1)", y.front(),
                 y.back()};
   const std::shared_ptr<const SceneModel> tuned = way.at(1);
   for (std::size_t r = 0; r < tuned->rods.size(); ++r) {
@@ -202,7 +209,7 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
     marks += fmt::format(
         "set arrow from graph 0, first {0} to graph 1, first {0} nohead front linewidth 2 linecolor '#000000'\n"
         "set label '{1}' at graph 0.01, first {0} left offset 0, 0.6 front boxed\n",
-        t, t == 0 ? "before" : "after");
+        t, t == 0 ? "before" : after_text(result));
   figure.commands = marks + figure.commands + "unset arrow\n";
   figures.push_back(std::move(figure));
 }
@@ -220,8 +227,8 @@ std::vector<Figure> tune_figures(const TuneTask& task, const TuneResult& result,
                                  OutputFolder& folder) {
   if (task.span.from == task.span.to) return {};
   std::vector<Figure> figures = {curves_figure(task, result, scene)};
-  add_campbell(task, result.start, result.span_before, false, folder, figures);
-  add_campbell(task, result.tuned, result.span_after, true, folder, figures);
+  add_campbell(task, result, false, folder, figures);
+  add_campbell(task, result, true, folder, figures);
   add_map(task, result, scene, folder, figures);
   return figures;
 }

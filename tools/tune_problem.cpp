@@ -15,7 +15,7 @@ namespace {
 
 constexpr int verification = 4;  // times the speeds of the search
 constexpr double verification_tolerance = 1e-6;  // of goal and conditions, relative
-constexpr int most_rounds = 3;
+constexpr int most_rounds = 4;
 
 std::vector<double> to_vector(const Eigen::VectorXd& x) { return {x.data(), x.data() + x.size()}; }
 
@@ -23,80 +23,44 @@ Eigen::VectorXd to_eigen(const std::vector<double>& x) {
   return Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
 }
 
-bool needs_forces(const Metric& metric) {
-  return metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple;
-}
-
-bool is_margin(const Metric& metric) {
-  return metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn;
-}
-
 bool is_speed(const TuneVariable& variable) { return variable.path == range_from || variable.path == range_to; }
 
-// Names of all that a condition without a name holds for; empty where it is one number.
-std::vector<std::string> names_of(const SceneModel& model, const Metric& metric) {
-  std::vector<std::string> names;
-  switch (metric.kind) {
-    case MetricKind::deflection:
-    case MetricKind::stress:
-    case MetricKind::frequency:
-    case MetricKind::margin:
-    case MetricKind::margin_per_turn:
-      for (const RodModel& rod : model.rods)
-        if (rod.reported) names.push_back(rod.name);
-      break;
-    case MetricKind::force:
-      if (model.linkage())
-        for (const JointForce& joint : forces_of(model, 1, {}).joints) names.push_back(joint.name);
-      break;
-    default:
-      break;
-  }
-  if (!metric.name.empty() || names.size() < 2) names.clear();
-  return names;
+std::vector<double> numbers_of(const std::vector<MetricValue>& values) {
+  std::vector<double> numbers;
+  for (const MetricValue& value : values) numbers.push_back(value.value);
+  return numbers;
 }
 
 class Tuner {
  public:
   explicit Tuner(const TuneTask& task) : task_(task), settings_(task.settings) {
-    for (const Keep& keep : task.keeps) {
-      if (!is_margin(keep.metric)) continue;
-      per_turn_ = keep.metric.kind == MetricKind::margin_per_turn;
-      margin_ = keep.bound;
+    bool forces = std::ranges::any_of(task.goal.terms, [](const GoalTerm& term) { return needs_forces(term.metric); });
+    for (const Keep& keep : task.keeps) forces = forces || needs_forces(keep.metric);
+    settings_.only = {false, true, forces, false};
+    start_ = start_of(task);
+    for (const TuneVariable& variable : task.variables) {
+      lower_.push_back(variable.lower);
+      upper_.push_back(variable.upper);
     }
-    for (const GoalTerm& term : task.goal.terms) add_metric(term.metric);
-    for (const Keep& keep : task.keeps) add_metric(keep.metric);
-    settings_.only = {false, true, std::ranges::any_of(metrics_, needs_forces), false};
+    if (auto_modes()) settings_.modes = modes_needed(start_, {});
+    aims_ = std::make_unique<DesignAims>(task.goal, task.keeps, make_model(scene_at(start_), settings_));
   }
 
   TuneResult run() {
     TuneResult result;
-    result.start = start();
-    split_conditions(make_model(task_.source.with(overrides_at(task_, result.start)), settings_));
-    for (const Part& part : parts_) result.condition_of.push_back(part.of);
+    result.start = start_;
+    for (const ConditionPart& part : aims_->parts()) result.condition_of.push_back(part.of);
     DesignSpace space = space_of([this](const std::vector<double>& x) { return overrides_at(task_, x); },
                                  [this](const std::vector<double>& x) { return span_at(task_, x); });
     // What is wrong with the question shows at the start.
-    start_values_ = numbers_of(space.values(result.start));
-    for (const GoalTerm& term : task_.goal.terms) {
-      const double value = value_of(term.metric, start_values_);
-      if (task_.goal.weighted && !(std::isfinite(value) && value != 0))
-        throw UsageError(
-            fmt::format("--minimise: found {} with the value {} at the start, allowed in a weighted sum: "
-                        "quantities that exist there and are not 0",
-                        term.metric.text, value));
-    }
+    aims_->scale_by(numbers_of(space.values(start_)));
     const bool speeds_vary = std::ranges::any_of(task_.variables, is_speed);
-    std::vector<double> lower, upper;
-    for (const TuneVariable& variable : task_.variables) {
-      lower.push_back(variable.lower);
-      upper.push_back(variable.upper);
-    }
-    DesignProblem problem = problem_over(space, result.start, lower, upper, !speeds_vary);
+    DesignProblem problem = problem_over(space, start_, lower_, upper_, !speeds_vary);
     result.design = first_search(problem);
-    verify(space, problem, result);
+    confirm(space, problem, result);
     result.tuned = to_vector(result.design.x);
     report(space, problem, result);
+    result.num_modes = std::get<int>(settings_.modes);
     result.counts = counts_;
     result.without_response = without_response_;
     stages(result);
@@ -104,60 +68,89 @@ class Tuner {
   }
 
  private:
-  // A condition on the worst of several rods or joints has a kink where another becomes the worst: one each is smooth.
-  struct Part {
-    Keep keep;
-    std::size_t of;  // place in task_.keeps
-  };
-  void split_conditions(const SceneModel& model) {
-    metrics_.clear();
-    for (const GoalTerm& term : task_.goal.terms) add_metric(term.metric);
-    for (std::size_t j = 0; j < task_.keeps.size(); ++j) {
-      const Keep& keep = task_.keeps[j];
-      const std::vector<std::string> names = names_of(model, keep.metric);
-      if (names.empty()) parts_.push_back({keep, j});
-      for (const std::string& name : names) {
-        Part part{keep, j};
-        part.keep.metric.name = name;
-        part.keep.metric.text += ":" + name;
-        parts_.push_back(std::move(part));
-      }
-    }
-    for (const Part& part : parts_) add_metric(part.keep.metric);
-  }
-  void add_metric(const Metric& metric) {
-    if (std::ranges::find(metrics_, metric) == metrics_.end()) metrics_.push_back(metric);
+  bool auto_modes() const { return std::holds_alternative<AutoModes>(task_.settings.modes); }
+  Scene scene_at(const std::vector<double>& x) const { return task_.source.with(overrides_at(task_, x)); }
+
+  // As many as the ends of the range and `speeds` need.
+  int modes_needed(const std::vector<double>& x, std::vector<double> speeds) const {
+    const bool margin =
+        std::ranges::any_of(task_.keeps, [](const Keep& keep) { return is_margin(keep.metric); }) ||
+        std::ranges::any_of(task_.goal.terms, [](const GoalTerm& term) { return is_margin(term.metric); });
+    Settings settings = task_.settings;
+    settings.only = {true, margin, false, false};
+    const SceneModel model = make_model(scene_at(x), settings);
+    const SpeedSpan span = span_at(task_, x);
+    speeds.insert(speeds.end(), {span.from, span.to});
+    int modes = 1;
+    for (const double speed : speeds)
+      for (const RodResult& rod : analyse(model, speed, settings).rods)
+        modes = std::max(modes, static_cast<int>(rod.num_modes));
+    return modes;
   }
 
   DesignSpace space_of(DesignSpace::At overrides, DesignSpace::SpanAt span) {
-    return {task_.source, settings_, task_.heights, std::move(overrides), std::move(span), metrics_,
-            margin_,      per_turn_, counts_};
+    return {task_.source,    settings_,        task_.heights,     std::move(overrides),
+            std::move(span), aims_->metrics(), aims_->required(), counts_};
   }
 
-  // Worst cases on more speeds; where the search was wrong, once more with those.
-  void verify(DesignSpace& space, DesignProblem& problem, TuneResult& result) {
+  // The worst cases on more speeds, with the errors of their values, and with the modes needed at this design. Where
+  // that is not what the search knew, it goes on from there.
+  void confirm(DesignSpace& space, DesignProblem& problem, TuneResult& result) {
     while (true) {
       const std::vector<double> x = to_vector(result.design.x);
       const auto began = std::chrono::steady_clock::now();
-      const auto checked = design_values(space.values(x, verification));
+      const std::vector<MetricValue> values = confirmed_ = space.values(x, verification);
+      ++result.confirmations;
+      const auto checked = aims_->design_values(numbers_of(values));
+      const DesignValues& known = result.design.values;
+      const bool conditions = known.conditions.size() > 0;
+      Eigen::VectorXd off = Eigen::VectorXd::Zero(known.conditions.size()), needed = aims_->allowance_for(values);
+      if (checked) off = checked->conditions - known.conditions;
+      result.agrees = checked &&
+                      std::abs(checked->goal - known.goal) <= verification_tolerance * std::abs(known.goal) &&
+                      (!conditions || off.maxCoeff() <= verification_tolerance);
+      // Excess without allowance, with the error.
+      result.holds = result.design.status == DesignStatus::infeasible || !conditions ||
+                     (checked && (checked->conditions - aims_->allowance + needed).maxCoeff() <= 0);
+      int modes = std::get<int>(settings_.modes);
+      if (auto_modes()) {
+        std::vector<double> speeds;
+        for (const MetricValue& value : values)
+          if (value.speed) speeds.push_back(*value.speed);
+        modes = std::max(modes, modes_needed(x, speeds));
+      }
+      result.modes_suffice = modes == std::get<int>(settings_.modes);
       verification_seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-      const DesignValues& values = result.design.values;
-      const double scale = std::max(std::abs(values.goal), 1e-300);
-      result.verified = checked && std::abs(checked->goal - values.goal) <= verification_tolerance * scale &&
-                        (values.conditions.size() == 0 ||
-                         (checked->conditions - values.conditions).maxCoeff() <= verification_tolerance);
-      if (result.verified || result.rounds == most_rounds || task_.span.from == task_.span.to) return;
+
+      const int left = task_.options.max_evaluations - static_cast<int>(result.design.trials.size()) -
+                       result.confirmations - 1;  // the next confirmation
+      if (result.verified() || result.rounds == most_rounds || left < 1 || !needed.allFinite()) return;
       ++result.rounds;
-      space.refine(2);
+      std::string why;
+      if (!result.agrees) {
+        space.refine(2);
+        why += ", more speeds";
+      }
+      if (!result.modes_suffice) {
+        settings_.modes = modes;
+        space.forget();
+        aims_->scale_by(numbers_of(space.values(start_)));
+        why += fmt::format(", {} modes", modes);
+      }
+      if (!result.holds) {
+        // A little more than the errors, which are not quite the same at the next design.
+        aims_->allowance = aims_->allowance.cwiseMax(1.05 * (needed + off.cwiseMax(0)));
+        why += ", room for the values' errors";
+      }
       problem.start = result.design.x;
       DesignOptions local = task_.options;
-      local.algorithm = DesignAlgorithm::cobyla;
-      local.max_evaluations = std::max(50, task_.options.max_evaluations / 2);
+      local.only_local = true;
+      local.max_evaluations = left;
       DesignResult again = optimise(problem, local);
       again.trials.insert(again.trials.begin(), result.design.trials.begin(), result.design.trials.end());
       again.num_missing += result.design.num_missing;
       again.num_gradients += result.design.num_gradients;
-      again.evidence = result.design.evidence + "; with more speeds " + again.evidence;
+      again.evidence = fmt::format("{}; with{} {}", result.design.evidence, why.substr(1), again.evidence);
       result.design = std::move(again);
     }
   }
@@ -170,8 +163,10 @@ class Tuner {
       any = any || values.has_value();
       return values;
     };
+    DesignOptions options = task_.options;
+    options.max_evaluations = std::max(1, options.max_evaluations - 1);  // and the confirmation
     try {
-      return optimise(watched, task_.options);
+      return optimise(watched, options);
     } catch (const std::invalid_argument&) {
       if (any) throw;
       throw UsageError(
@@ -180,84 +175,18 @@ class Tuner {
     }
   }
 
-  std::vector<double> start() const {
-    std::vector<double> x;
-    for (const TuneVariable& variable : task_.variables) x.push_back(variable.start);
-    return x;
-  }
-
-  static std::vector<double> numbers_of(const std::vector<MetricValue>& values) {
-    std::vector<double> numbers;
-    for (const MetricValue& value : values) numbers.push_back(value.value);
-    return numbers;
-  }
-
-  std::size_t place_of(const Metric& metric) const {
-    return static_cast<std::size_t>(std::ranges::find(metrics_, metric) - metrics_.begin());
-  }
-  double value_of(const Metric& metric, const std::vector<double>& values) const { return values[place_of(metric)]; }
-
-  // As it is minimised: what is to be large has its sign turned.
-  double goal_sign() const { return task_.goal.maximise ? -1 : 1; }
-  double goal_of(const std::vector<double>& values) const {
-    double sum = 0;
-    for (const GoalTerm& term : task_.goal.terms) sum += goal_factor(term) * value_of(term.metric, values);
-    return sum;
-  }
-  double goal_factor(const GoalTerm& term) const {
-    return task_.goal.weighted ? term.weight / value_of(term.metric, start_values_) : 1;
-  }
-
-  // The unit of a condition: its bound; a margin's is the start's where that is larger.
-  double scale_of(const Keep& keep) const {
-    const double at_start = std::abs(value_of(keep.metric, start_values_));
-    double scale = keep.bound;
-    if (is_margin(keep.metric) && std::isfinite(at_start)) scale = std::max(scale, at_start);
-    return scale > 0 ? scale : 1;
-  }
-  double excess_of(const Keep& keep, double value) const {
-    return (keep.at_least ? keep.bound - value : value - keep.bound) / scale_of(keep);
-  }
-
-  std::optional<DesignValues> design_values(const std::vector<MetricValue>& metrics) const {
-    const std::vector<double> values = numbers_of(metrics);
-    DesignValues result;
-    result.goal = goal_sign() * goal_of(values);
-    result.conditions.resize(static_cast<Eigen::Index>(parts_.size()));
-    for (std::size_t j = 0; j < parts_.size(); ++j)
-      result.conditions(static_cast<Eigen::Index>(j)) =
-          excess_of(parts_[j].keep, value_of(parts_[j].keep.metric, values));
-    if (!std::isfinite(result.goal) || !result.conditions.allFinite()) return std::nullopt;
-    return result;
-  }
-
-  // Rows of `slopes` are the metrics'.
-  DesignGradient design_gradient(const Eigen::MatrixXd& slopes) const {
-    DesignGradient result;
-    result.goal = Eigen::VectorXd::Zero(slopes.cols());
-    for (const GoalTerm& term : task_.goal.terms)
-      result.goal += goal_sign() * goal_factor(term) * slopes.row(row_of(term.metric)).transpose();
-    result.conditions.resize(static_cast<Eigen::Index>(parts_.size()), slopes.cols());
-    for (std::size_t j = 0; j < parts_.size(); ++j) {
-      const Keep& keep = parts_[j].keep;
-      result.conditions.row(static_cast<Eigen::Index>(j)) =
-          (keep.at_least ? -1 : 1) / scale_of(keep) * slopes.row(row_of(keep.metric));
-    }
-    return result;
-  }
-  Eigen::Index row_of(const Metric& metric) const { return static_cast<Eigen::Index>(place_of(metric)); }
-
   DesignProblem problem_over(DesignSpace& space, const std::vector<double>& start, const std::vector<double>& lower,
                              const std::vector<double>& upper, bool with_gradient) {
     DesignProblem problem;
     problem.lower = to_eigen(lower);
     problem.upper = to_eigen(upper);
     problem.start = to_eigen(start);
-    problem.num_conditions = static_cast<int>(parts_.size());
+    problem.num_conditions = static_cast<int>(aims_->parts().size());
+    problem.num_parts = static_cast<int>(aims_->goal_parts().size());
     problem.evaluate = [this, &space](const Eigen::VectorXd& x) -> std::optional<DesignValues> {
       const std::vector<MetricValue>* metrics = space.try_values(to_vector(x));
       if (!metrics) return std::nullopt;
-      std::optional<DesignValues> values = design_values(*metrics);
+      std::optional<DesignValues> values = aims_->design_values(numbers_of(*metrics));
       if (!values) ++without_response_;
       return values;
     };
@@ -265,7 +194,7 @@ class Tuner {
     problem.gradient = [this, &space, lower, upper](const Eigen::VectorXd& x) -> std::optional<DesignGradient> {
       const std::optional<Eigen::MatrixXd> slopes = space.gradients(to_vector(x), lower, upper);
       if (!slopes) return std::nullopt;
-      return design_gradient(*slopes);
+      return aims_->design_gradient(*slopes, numbers_of(space.values(to_vector(x))));
     };
     return problem;
   }
@@ -277,7 +206,7 @@ class Tuner {
     for (const Keep& keep : task_.keeps)
       if (std::ranges::find(shown, keep.metric) == shown.end()) shown.push_back(keep.metric);
     std::vector<MetricKind> more = {MetricKind::deflection, MetricKind::margin};
-    const Scene scene = task_.source.with(overrides_at(task_, result.start));
+    const Scene scene = scene_at(start_);
     if (std::holds_alternative<Linkage>(scene.model)) more.push_back(MetricKind::mass);
     const char* const words[] = {"deflection", "stable", "mass"};
     for (std::size_t k = 0; k < more.size(); ++k) {
@@ -285,45 +214,57 @@ class Tuner {
       if (std::ranges::find(shown, metric) == shown.end()) shown.push_back(metric);
     }
     const auto began = std::chrono::steady_clock::now();
-    DesignSpace::Report before = space.report(result.start, shown, 1);
-    DesignSpace::Report after = space.report(result.tuned, shown, 1);
+    DesignSpace::Report before = space.report(result.start, shown, verification, verification_tolerance);
+    DesignSpace::Report after = space.report(result.tuned, shown, verification, verification_tolerance);
     report_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    for (std::size_t k = 0; k < shown.size(); ++k) result.rows.push_back({shown[k], before.values[k], after.values[k]});
+    for (std::size_t k = 0; k < shown.size(); ++k)
+      result.rows.push_back({shown[k], before.values[k], after.values[k], before.confirmed[k], after.confirmed[k]});
     result.curves_before = std::move(before.curves);
     result.curves_after = std::move(after.curves);
     result.span_before = span_at(task_, result.start);
     result.span_after = span_at(task_, result.tuned);
-    const std::vector<double> values_after = numbers_of(space.values(result.tuned));
-    result.goal_before = goal_of(start_values_);
-    result.goal_after = goal_of(values_after);
+    const std::vector<double> values_after = numbers_of(confirmed_);
+    result.goal_before =
+        task_.goal.weighted ? aims_->goal(numbers_of(space.values(start_))) : result.rows.front().before.value;
+    result.goal_after = aims_->goal(values_after);
+    result.goal_error = task_.goal.weighted ? aims_->goal_error(confirmed_) : result.rows.front().after.error;
     if (!task_.goal.weighted) result.goal_unit = unit_of(task_.goal.terms[0].metric.kind, scene.units);
 
     constexpr double active = 1e-3;
     result.sensitivity = design_sensitivity(problem, result.design.x, active);
-    if (result.sensitivity) result.goal_gradient = goal_sign() * result.sensitivity->gradient.goal;
+    if (result.sensitivity) {
+      result.goal_gradient = aims_->sign() * result.sensitivity->upward;
+      for (std::size_t k = 0; k < aims_->goal_parts().size(); ++k)
+        if (result.sensitivity->weights(static_cast<Eigen::Index>(k)) > 0)
+          result.worst_at_once.push_back(aims_->goal_parts()[k].name);
+      if (result.worst_at_once.size() < 2) result.worst_at_once.clear();
+    }
     // Of each condition the part that is nearest to its bound; relaxing the bound relaxes all parts.
     for (const Keep& keep : task_.keeps) {
       TuneCondition& condition = result.conditions.emplace_back();
       condition.keep = keep;
       condition.excess = -HUGE_VAL;
+      condition.met = true;
     }
-    for (std::size_t j = 0; j < parts_.size(); ++j) {
-      TuneCondition& condition = result.conditions[parts_[j].of];
-      if (result.sensitivity) condition.multiplier += result.sensitivity->multipliers(static_cast<Eigen::Index>(j));
-      const double value = value_of(parts_[j].keep.metric, values_after);
-      const double excess = excess_of(parts_[j].keep, value);
+    const Eigen::VectorXd errors = aims_->allowance_for(confirmed_);
+    for (std::size_t j = 0; j < aims_->parts().size(); ++j) {
+      const auto& [keep, of] = aims_->parts()[j];
+      const auto row = static_cast<Eigen::Index>(j);
+      TuneCondition& condition = result.conditions[of];
+      if (result.sensitivity) condition.multiplier += result.sensitivity->multipliers(row);
+      const double value = aims_->value_of(keep.metric, values_after), excess = aims_->excess(keep, value);
+      condition.met = condition.met && excess + errors(row) <= 0;
       if (excess <= condition.excess) continue;
       condition.value = value;
+      condition.error = errors(row) * aims_->unit_of(keep);
       condition.excess = excess;
-      // Search and verification agree to the tolerance; what they differ by is not a violation.
-      condition.met = excess <= verification_tolerance;
       condition.active = std::abs(excess) <= active;
     }
     damping_sensitivity(result);
   }
 
   // One variable, a factor on the internal damping of all links, at the tuned design. Of the best goal,
-  //     df*/dp = df/dp + sum_j lambda_j dg_j/dp.
+  //     df*/dp = sum_k mu_k df_k/dp + sum_j lambda_j dg_j/dp.
   void damping_sensitivity(TuneResult& result) {
     const std::vector<Override> tuned = overrides_at(task_, result.tuned);
     const Scene scene = task_.source.with(tuned);
@@ -344,11 +285,13 @@ class Tuner {
     const DesignProblem problem = problem_over(space, {1}, {0.5}, {1.5}, true);
     const auto sensitivity = design_sensitivity(problem, Eigen::VectorXd::Ones(1));
     if (!sensitivity) return;
-    const double own = sensitivity->gradient.goal(0);
-    result.damping_sensitivity = goal_sign() * own / result.goal_after;
+    const double own = sensitivity->upward(0);
+    result.damping_sensitivity = aims_->sign() * own / result.goal_after;
     if (!result.sensitivity) return;
-    const double best = own + result.sensitivity->multipliers.dot(sensitivity->gradient.conditions.col(0));
-    result.damping_sensitivity_of_best = goal_sign() * best / result.goal_after;
+    const DesignSensitivity& held = *result.sensitivity;
+    const double fixed = held.weights.sum() > 0 ? held.weights.dot(sensitivity->gradient.parts.col(0)) : own;
+    const double best = fixed + held.multipliers.dot(sensitivity->gradient.conditions.col(0));
+    result.damping_sensitivity_of_best = aims_->sign() * best / result.goal_after;
   }
 
   void stages(TuneResult& result) const {
@@ -357,7 +300,7 @@ class Tuner {
       std::string& text = asked ? computed : skipped;
       text += (text.empty() ? "" : ", ") + std::string(what);
     };
-    const auto any = [&](auto&& holds) { return std::ranges::any_of(metrics_, holds); };
+    const auto any = [&](auto&& holds) { return std::ranges::any_of(aims_->metrics(), holds); };
     say(any([](const Metric& m) {
           return depends_on_speed(m.kind) && !is_margin(m) && m.kind != MetricKind::clearance &&
                  m.kind != MetricKind::speed_range;
@@ -381,11 +324,9 @@ class Tuner {
 
   const TuneTask& task_;
   Settings settings_;
-  std::vector<Metric> metrics_;
-  std::vector<Part> parts_;  // the conditions of the search
-  std::vector<double> start_values_;
-  double margin_ = 0;
-  bool per_turn_ = false;
+  std::vector<double> start_, lower_, upper_;
+  std::unique_ptr<DesignAims> aims_;
+  std::vector<MetricValue> confirmed_;  // of the tuned design, by metric
   TuneCounts counts_;
   int without_response_ = 0;
   double verification_seconds_ = 0, report_seconds_ = 0;
@@ -415,6 +356,12 @@ SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x) {
     (task.variables[i].path == range_from ? span.from : span.to) = x[i] * task.speed_unit;
   }
   return span;
+}
+
+std::vector<double> start_of(const TuneTask& task) {
+  std::vector<double> x;
+  for (const TuneVariable& variable : task.variables) x.push_back(variable.start);
+  return x;
 }
 
 TuneResult tune(const TuneTask& task) { return Tuner(task).run(); }

@@ -47,12 +47,13 @@ struct TuneTask {
 struct TuneRow {
   Metric metric;
   MetricValue before, after;
+  bool before_confirmed = false, after_confirmed = false;  // on four times the speeds; if not, it is at least as bad
 };
 
 struct TuneCondition {
   Keep keep;
-  double value = 0;  // at the tuned design
-  bool met = false;
+  double value = 0, error = 0;  // at the tuned design; estimate
+  bool met = false;  // by the value with its error
   double excess = 0;  // how far beyond the bound, relative to it (margins: to the start's); <= 0 if met
   double multiplier = 0;  // what the goal gains per unit of excess allowed
   bool active = false;
@@ -62,8 +63,9 @@ struct TuneResult {
   DesignResult design;
   std::vector<std::size_t> condition_of;  // of each of its conditions: the place in TuneTask::keeps
   std::vector<double> start, tuned;  // of the variables
-  double goal_before = 0, goal_after = 0;
-  Eigen::VectorXd goal_gradient;  // with respect to the variables; empty: not found
+  double goal_before = 0, goal_after = 0, goal_error = 0;  // estimated error of goal_after
+  Eigen::VectorXd goal_gradient;  // with respect to the variables, for more of them; empty: not found
+  std::vector<std::string> worst_at_once;  // rods that hold the goal together, where it has a kink
   std::vector<TuneRow> rows;
   std::vector<TuneCondition> conditions;
   std::optional<DesignSensitivity> sensitivity;
@@ -72,8 +74,13 @@ struct TuneResult {
   std::optional<DesignCurves> curves_before, curves_after;
   TuneCounts counts;
   int without_response = 0;  // designs tried that have no periodic solution at some speed
-  int rounds = 1;  // searches, each from the last and with more speeds
-  bool verified = false;  // the conditions hold and the goal stands on four times the speeds
+  int num_modes = 0;  // kept of each rod's series
+  int rounds = 1;  // searches, each from the last with more speeds, more modes or more room for errors
+  int confirmations = 0;  // analyses on four times the speeds
+  bool agrees = false;  // goal and conditions are the same on four times the speeds
+  bool holds = false;  // the conditions do with the errors of their values, or there is no such design
+  bool modes_suffice = false;  // for the tolerance, where their number is chosen
+  bool verified() const { return agrees && holds && modes_suffice; }
   std::string goal_unit;  // empty for weighted sums
   SpeedSpan span_before, span_after;
   std::vector<Stage> stages;
@@ -84,6 +91,8 @@ struct TuneResult {
 
 [[nodiscard]] std::string speed_unit(const TuneTask& task, const Units& units);  // "rpm", "rad/s"
 [[nodiscard]] SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x);
+
+[[nodiscard]] std::vector<double> start_of(const TuneTask& task);
 
 // Throws UsageError and SceneError for what cannot be at the start.
 [[nodiscard]] TuneResult tune(const TuneTask& task);

@@ -6,11 +6,24 @@
 #include <string>
 #include <vector>
 
+#include "hb/mode_tracks.hpp"
 #include "hb/stability.hpp"
 #include "tools/linkage_analysis.hpp"
 #include "tools/tune_metric.hpp"
 
 namespace hb::tools {
+
+struct MetricValue {
+  double value = 0;  // in unit_of(kind); NaN where there is no periodic solution
+  std::optional<double> speed;  // where it is worst, rad per unit time
+  std::string where;  // rod or joint
+  std::size_t index = 0;  // of that rod in SceneModel::rods, of that joint in JointForces::joints
+  double factor = 1;  // from the scene's units
+  // From `complete`:
+  double error = 0;  // estimate: modes left out, harmonics, rounding
+  std::optional<double> position = std::nullopt;  // from joint 0, over the rod's length
+  std::optional<double> crank_angle = std::nullopt;  // rad
+};
 
 // Section height across the rod, by name; "*" for all that are not named.
 using SectionHeights = std::map<std::string, double>;
@@ -34,6 +47,12 @@ struct JointQuantities {
 [[nodiscard]] JointForces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q,
                                     double tolerance = 1e-10);
 
+// The system of p in q = e^{-mt} p: stable where q decays faster than e^{-mt}.
+[[nodiscard]] HillSystem shifted(const HillSystem& system, double m);
+[[nodiscard]] Stability shifted(Stability stability, double m);
+// Modes of the mean system; NaN where overdamped or not held up.
+[[nodiscard]] std::vector<ModeState> mean_modes(const ScaledSystem& system);
+
 // Leading exponents alone where that gives a bound, else all of them; and what the margin is judged by: rate and error.
 [[nodiscard]] Stability leading_stability(const ScaledSystem& system, const Settings& settings);
 [[nodiscard]] double growth_of(const Stability& stability);
@@ -44,5 +63,15 @@ struct JointQuantities {
 // omega_1 of the mean system at rest, rad per unit time, and omega_1/Omega at a speed.
 [[nodiscard]] double lowest_frequency(const HillSystem& system);
 [[nodiscard]] double frequency_ratio(const HillSystem& system, double speed);
+
+struct SpeedSpan {
+  double from = 0, to = 0;  // rad per unit time; equal: one speed
+  int num_nodes = 24;  // sampled before refinement
+};
+
+// Place, crank angle and error of a worst case found. The largest deflection and stress are sought once more over
+// speed, place and crank angle together; errors are seen with more modes, and from the harmonics' bound.
+void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
+              const Metric& metric);
 
 }  // namespace hb::tools

@@ -57,4 +57,29 @@ TEST(WorstCase, OfWhatIsNotANumberIsNotANumber) {
   EXPECT_TRUE(std::isnan(worst(f, 1, 4, 4).value));
 }
 
+TEST(WorstPoint, IsTheSummitOfSeveralVariables) {
+  // Largest at (1, 2, 0.3), on a ridge that runs askew.
+  const auto f = [](const Eigen::VectorXd& x) {
+    const double a = x(0) - 1, b = x(1) - 2, c = x(2) - 0.3;
+    return 5 - a * a - (a + b) * (a + b) - 3 * (b - c) * (b - c);
+  };
+  const Eigen::Vector3d start(0.9, 2.2, 0.4), lower(0, 1, 0), upper(2, 3, 1);
+  const WorstPoint found = worst_point(f, start, lower, upper);
+  EXPECT_NEAR(found.value, 5, 1e-9);
+  EXPECT_NEAR((found.x - Eigen::Vector3d(1, 2, 0.3)).norm(), 0, 1e-5);
+}
+
+TEST(WorstPoint, StaysWithinItsBox) {
+  const auto f = [](const Eigen::VectorXd& x) { return x(0) - (x(1) - 1) * (x(1) - 1); };
+  const WorstPoint found = worst_point(f, Eigen::Vector2d(0.5, 0.7), Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 2));
+  EXPECT_EQ(found.x(0), 1);
+  EXPECT_NEAR(found.value, 1, 1e-9);
+}
+
+TEST(WorstPoint, IsNeverBelowItsStart) {
+  const auto f = [](const Eigen::VectorXd& x) { return x(0) == 0.5 && x(1) == 0.5 ? 1.0 : -1.0; };
+  const WorstPoint found = worst_point(f, Eigen::Vector2d(0.5, 0.5), Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1));
+  EXPECT_EQ(found.value, 1);
+}
+
 }  // namespace
