@@ -2,11 +2,8 @@
 // one row per system, method and asked tolerance. Errors against a reference made by another method, outside the timed
 // runs; a dense Hill solve and shooting with SUNDIALS stand beside as yardsticks.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <functional>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -18,31 +15,12 @@
 #include "lib/rod.hpp"
 #include "lib/scene.hpp"
 #include "lib/time_domain.hpp"
+#include "synthetic.hpp"
+#include "timing.hpp"
 
 namespace hb::benchmarks {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-struct Timing {
-  double best, median;
-};
-
-// At least 3 and at most 200 runs, about 0.2 s.
-Timing timed(const std::function<void()>& run) {
-  std::vector<double> seconds;
-  double sum = 0;
-  while (seconds.size() < 3 || (sum < 0.2 && seconds.size() < 200)) {
-    const auto start = Clock::now();
-    run();
-    seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
-    sum += seconds.back();
-    if (sum > 10) break;
-  }
-  std::sort(seconds.begin(), seconds.end());
-  return {seconds.front(), seconds[seconds.size() / 2]};
-}
 
 struct Case {
   std::string name;
@@ -60,26 +38,6 @@ void add_rod(std::vector<Case>& cases, const std::string& name, const std::strin
   const LinkageCoefficients coefficients = linkage_coefficients(linkage);
   cases.push_back({name, ritz_system(*body_at(linkage, coefficients.links[0]), coefficients.rods[0], 5),
                    speed_from_rpm(rpm, scene.units), integrate});
-}
-
-// Frequencies 2.3 i, damping 1 %, two harmonics of stiffness coupling all modes by 10 %.
-HillSystem synthetic(Eigen::Index I) {
-  HillSystem s;
-  s.mass = Eigen::MatrixXd::Identity(I, I);
-  s.damping = Eigen::MatrixXd::Zero(I, I);
-  s.stiffness[0] = FourierSeries(I * I, 2);
-  s.load[0] = FourierSeries(I, 3);
-  for (Eigen::Index i = 0; i < I; ++i) {
-    const double w = 2.3 * static_cast<double>(i + 1);
-    s.damping(i, i) = 0.02 * w;
-    s.stiffness[0].c(i + I * i, 0) = w * w;
-    for (Eigen::Index k = 0; k <= 3; ++k) s.load[0].c(i, k) = 1.0 / static_cast<double>((i + 1) * (k + 1));
-    for (Eigen::Index j = 0; j < I; ++j)
-      for (Eigen::Index k = 1; k <= 2; ++k)
-        s.stiffness[0].c(i + I * j, k) +=
-            0.05 * 5.29 * static_cast<double>((i + 1) * (j + 1)) / static_cast<double>(k * (1 + std::abs(i - j)));
-  }
-  return s;
 }
 
 std::vector<Case> all_cases() {
@@ -176,14 +134,10 @@ void growth_rows(const Case& c) {
   if (c.system.num_modes() > 10) return;
   rows("slaving", StabilityMethod::slaving, false);
   rows("propagation", StabilityMethod::propagation, false);
-  if (c.system.num_modes() <= 2) rows("hill", StabilityMethod::hill, false);
-}
-
-std::string cpu_model() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(": ") + 2);
-  return "unknown";
+  rows("bound", StabilityMethod::bound, false);
+  if (c.system.num_modes() > 2) return;
+  rows("hill", StabilityMethod::hill, false);
+  rows("determinant", StabilityMethod::determinant, false);
 }
 
 }  // namespace
@@ -192,9 +146,7 @@ std::string cpu_model() {
 
 int main() {
   using namespace hb::benchmarks;
-  std::printf("# CPU %s; %s; Eigen %d.%d.%d, %s; one thread; seconds: smallest and median of repeated runs\n",
-              cpu_model().c_str(), HB_BUILD, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION,
-              Eigen::SimdInstructionSetsInUse());
+  std::printf("%s\n", header().c_str());
   std::printf("system,modes,quantity,method,asked,size,error,claimed,seconds_min,seconds_median\n");
   for (const Case& c : all_cases()) {
     steady_rows(c);

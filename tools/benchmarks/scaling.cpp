@@ -1,0 +1,110 @@
+// How run time grows with the number of modes, harmonics and points, as CSV on standard output. The yardstick of the
+// same run is Eigen's product of 512 x 512 matrices: `of_dgemm` is the rate of the method's own floating-point
+// operations relative to it.
+#include <sys/resource.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "dense_hill.hpp"
+#include "hb/radau_turn.hpp"
+#include "hb/stability_map.hpp"
+#include "hb/steady_state.hpp"
+#include "synthetic.hpp"
+#include "timing.hpp"
+
+namespace hb::benchmarks {
+
+namespace {
+
+// Flops per second of C += A B.
+double dgemm_rate() {
+  constexpr Eigen::Index n = 512;
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, n), B = Eigen::MatrixXd::Random(n, n);
+  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
+  const Timing timing = timed([&] { C.noalias() += A * B; });
+  return 2.0 * n * n * n / timing.best;
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+void row(const char* what, long modes, long harmonics, long points, double error, const Timing& timing, double of_dgemm) {
+  std::printf("%s,%ld,%ld,%ld,%.3e,%.4e,%.4e,%.3f,%.1f\n", what, modes, harmonics, points, error, timing.best,
+              timing.median, of_dgemm, peak_megabytes());
+  std::fflush(stdout);
+}
+
+// x'' + 0.1 x' + (1.2 + swing cos Omega t) x = 0.
+std::optional<ScaledSystem> mathieu(double Omega, double swing) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Ones(1, 1);
+  system.damping = Eigen::MatrixXd::Constant(1, 1, 0.1);
+  system.stiffness[0] = FourierSeries(1, 1);
+  system.stiffness[0].c << 1.2, swing / 2;
+  return scale_system(system, Omega);
+}
+
+std::vector<double> spaced(double from, double to, int n) {
+  std::vector<double> values;
+  for (int k = 0; k < n; ++k) values.push_back(from + (to - from) * k / (n - 1));
+  return values;
+}
+
+}  // namespace
+
+}  // namespace hb::benchmarks
+
+int main() {
+  using namespace hb;
+  using namespace hb::benchmarks;
+  const double rate = dgemm_rate();
+  std::printf("%s; Eigen's DGEMM %.1f GFlop/s\n", header().c_str(), rate * 1e-9);
+  std::printf("what,modes,harmonics,points,error,seconds_min,seconds_median,of_dgemm,peak_megabytes\n");
+
+  // Elimination of 8 I unknowns with 2 I right-hand sides per cell; error: against twice the cells, all of the turn.
+  for (const Eigen::Index I : {1, 2, 5, 10, 20, 40}) {
+    const ScaledSystem system = scale_system(synthetic(I), 1);
+    FourierSeries beta(I * I, 0);
+    for (Eigen::Index i = 0; i < I; ++i) beta.c(i + I * i, 0) = system.G(i, i);
+    const Eigen::Index cells = radau_cells(std::max<Eigen::Index>(12, 3 * I));
+    const auto turn = [&](Eigen::Index n) {
+      const TurnMaps maps = radau_turn(system.K, beta, I, n);
+      Eigen::MatrixXd product = Eigen::MatrixXd::Identity(2 * I, 2 * I);
+      for (Eigen::Index c = 0; c < maps.num_cells; ++c)
+        product = (maps.cells.middleCols(2 * I * c, 2 * I) * product).eval();
+      return product;
+    };
+    const Eigen::MatrixXd fine = turn(radau_cells(2 * cells));
+    const double error = (turn(cells) - fine).norm() / fine.norm();
+    const Timing timing = timed([&] { (void)radau_turn(system.K, beta, I, cells); });
+    const double n = 8.0 * static_cast<double>(I), right = 2.0 * static_cast<double>(I);
+    const double flops = static_cast<double>(cells) * (2.0 / 3 * n * n * n + 2 * n * n * right);
+    row("radau_turn", I, system.K.num_harmonics(), cells, error, timing, flops / timing.best / rate);
+  }
+  // Harmonics asked for, I = 5.
+  const HillSystem five = synthetic(5);
+  const SteadyState exact = solve_steady_state(five, 1, {.tolerance = 1e-13});
+  for (const auto& [name, method] : {std::pair{"steady_direct", SteadyMethod::direct},
+                                     std::pair{"steady_iterative", SteadyMethod::iterative}})
+    for (const int H : {32, 64, 128, 256, 512}) {
+      const SteadyOptions options{.tolerance = 1e-12, .num_harmonics = H, .method = method};
+      const SteadyState state = solve_steady_state(five, 1, options);
+      row(name, 5, state.num_harmonics, 1, relative_error(state.q, exact.q),
+          timed([&] { (void)solve_steady_state(five, 1, options); }), 0);
+    }
+  // Points of a map on one thread, and the memory of the process; error: the largest that a boundary point claims.
+  for (const int n : {10, 32, 100, 316, 1000}) {
+    StabilityMap map;
+    const Timing timing = timed([&] { map = stability_map(mathieu, spaced(1, 3, n), spaced(0.05, 0.6, n)); }, 1);
+    double error = 0;
+    for (const BoundaryCurve& curve : map.boundaries)
+      for (const BoundaryPoint& p : curve.points) error = std::max(error, p.error / (p.along_x ? p.x : p.y));
+    row("map_mathieu", 1, 1, static_cast<long>(n) * n, error, timing, 0);
+  }
+}
