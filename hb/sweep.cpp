@@ -233,14 +233,33 @@ double ResonanceStrength::operator()(std::size_t i, std::size_t j, double k) {
   return safety * coupling(static_cast<Index>(j), static_cast<Index>(k) - 1);
 }
 
+namespace {
+
+// Of both lists; null if there is none.
+const Exponent* leading_exponent(const Stability& stability) {
+  const Exponent* leading = nullptr;
+  for (const std::vector<Exponent>* list : {&stability.exponents, &stability.uncertain})
+    if (!list->empty() && (!leading || list->front().value.real() > leading->value.real())) leading = &list->front();
+  return leading;
+}
+
+}  // namespace
+
 bool leading_resolved(const Stability& stability) {
-  return !stability.exponents.empty() &&
-         stability.exponents.front().value.real() >= stability.growth_rate - stability.growth_error;
+  const Exponent* leading = leading_exponent(stability);
+  if (!leading || !(leading->value.real() >= stability.growth_rate - stability.growth_error)) return false;
+  if (leading == stability.exponents.data()) return true;
+  // A real multiplier stays real until it meets another one, a complex one complex until it meets its conjugate.
+  for (const std::vector<Exponent>* list : {&stability.exponents, &stability.uncertain})
+    for (const Exponent& other : *list)
+      if (&other != leading && !(std::abs(other.value - leading->value) > 2 * (other.error + leading->error)))
+        return false;
+  return std::isfinite(leading->error);
 }
 
 BoundaryKind boundary_kind(const Stability& stability, double speed) {
   if (!leading_resolved(stability)) return BoundaryKind::complex;
-  const double frequency = std::abs(stability.exponents.front().value.imag());
+  const double frequency = std::abs(leading_exponent(stability)->value.imag());
   const double slack = 1e-7 * speed;
   if (frequency <= slack) return BoundaryKind::plus_one;
   if (std::abs(frequency - speed / 2) <= slack) return BoundaryKind::minus_one;

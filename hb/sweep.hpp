@@ -47,7 +47,7 @@ class ResonanceStrength {
   std::vector<Eigen::MatrixXd> of_mode_;
 };
 
-// The exponents that are resolved begin with the one that gives the growth rate.
+// The exponent that gives the growth rate is known well enough to tell how it leaves.
 [[nodiscard]] bool leading_resolved(const Stability& stability);
 
 // How the leading exponent leaves: multiplier +1, -1 (half the crank's speed), or a complex pair.
