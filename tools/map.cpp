@@ -293,9 +293,7 @@ int run_map(const MapFlags& flags) {
     for (const StabilityMap& map : result.maps) samples += map.samples;
     fmt::print(stderr, "\n  {}; exponents at {} places\n", plane.evidence(), samples);
   }
-  const bool reached = std::all_of(result.maps.begin(), result.maps.end(),
-                                   [](const StabilityMap& map) { return map.not_converged == 0; });
-  return reached ? exit_ok : exit_not_reached;
+  return boundary_points_not_reached(result) == 0 ? exit_ok : exit_not_reached;
 }
 
 }  // namespace

@@ -135,6 +135,7 @@ Json map_json(const MapDocument& document) {
   for (const ResonanceLine& line : r.lines) {
     json["resonance_lines"].push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
   }
+  json["boundary_points_not_reached"] = boundary_points_not_reached(r);
   json["counts"] = {{"stable", n.stable},
                     {"unstable", n.unstable},
                     {"undecided", n.undecided},
@@ -254,6 +255,20 @@ std::string map_summary(const MapDocument& document) {
   for (const MissingPoints& m : r.missing) {
     text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,
                         m.x, r.y_axis.path, m.y, m.message);
+  }
+  if (const std::size_t missed = boundary_points_not_reached(r); missed > 0) {
+    double worst = 0;
+    for (const StabilityMap& map : r.maps) {
+      for (const BoundaryCurve& curve : map.boundaries) {
+        for (const BoundaryPoint& p : curve.points) {
+          worst = std::max(worst, p.error / std::max(std::abs(p.along_x ? p.x : p.y), 1e-300));
+        }
+      }
+    }
+    text += fmt::format(
+        "  NOT REACHED: {} boundary {} known to less than 1e-10, where the growth rate's error moves {}: to {:.1e} at "
+        "worst\n",
+        missed, missed == 1 ? "point is" : "points are", missed == 1 ? "it" : "them", worst);
   }
   if (r.boundaries.empty()) return text + "  no stability boundary\n";
   text += fmt::format("\n  boundaries\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind", "points", r.x_axis.path,

@@ -54,6 +54,12 @@ std::vector<MissingPoints> missing_points(const ScenePlane& plane, const Stabili
 
 }  // namespace
 
+std::size_t boundary_points_not_reached(const MapResult& result) {
+  std::size_t count = 0;
+  for (const StabilityMap& map : result.maps) count += map.not_converged;
+  return count;
+}
+
 StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
                      const MapOptions& search) {
   const MapSystemAt at = [&plane, rod](double u, double v) { return plane.system(rod, u, v); };

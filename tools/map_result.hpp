@@ -42,6 +42,9 @@ struct MapResult {
   const std::vector<double>& y() const { return maps.front().y; }
 };
 
+// Of all rods, the error beyond 1e-10 relative.
+[[nodiscard]] std::size_t boundary_points_not_reached(const MapResult& result);
+
 // Boundaries of the worst rod alone.
 [[nodiscard]] std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
                                                      const MapOptions& search);
