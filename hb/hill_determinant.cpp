@@ -90,8 +90,7 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
   // Harmonics where the coupling is strong make up the core.
   VectorXd pull = VectorXd::Zero(I_);
   for (Index i = 0; i < I_; ++i)
-    for (Index j = 0; j < I_; ++j)
-      pull(i) += 2 * K_.c.row(i + I_ * j).cwiseAbs().sum();
+    for (Index j = 0; j < I_; ++j) pull(i) += 2 * K_.c.row(i + I_ * j).cwiseAbs().sum();
   Index core = std::min(P_, H);
   for (Index k = core; k <= H; ++k)
     for (Index i = 0; i < I_; ++i)
@@ -144,8 +143,7 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
         if (product == 0.0) continue;
         cplx sum = 0;
         for (Index k = -far; k <= far; ++k)
-          if (std::abs(k) > H || std::abs(k - m) > H)
-            sum += inverse(i, k + far + P_) * inverse(j, k - m + far + P_);
+          if (std::abs(k) > H || std::abs(k - m) > H) sum += inverse(i, k + far + P_) * inverse(j, k - m + far + P_);
         second -= 0.5 * product * sum;
         trace += product.real();
       }

@@ -19,8 +19,8 @@ struct Bounded {
 };
 
 Bounded operator*(Bounded a, Bounded b) {
-  return {a.value * b.value,
-          std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error + eps * std::abs(a.value * b.value)};
+  return {a.value * b.value, std::abs(a.value) * b.error + std::abs(b.value) * a.error + a.error * b.error +
+                                 eps * std::abs(a.value * b.value)};
 }
 
 // Rows after which the closed form of the tail is exact to rounding. What it leaves out is of the orders

@@ -11,7 +11,7 @@ namespace hb {
 
 struct MathieuEquation {
   double w2 = 0;  // mean stiffness; per radian of crank angle as everything here
-  double q = 0;   // |c|
+  double q = 0;  // |c|
   double b = 0;
   double stiffness_error = 0;  // bounds on the errors of w2 and q, and of b
   double damping_error = 0;

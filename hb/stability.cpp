@@ -238,8 +238,9 @@ Search by_determinant(const ScaledSystem& system) {
     (growth > bar ? found : unclear) += growth >= -bar ? 1 : 0;
   }
   search.complete = !search.exponents.s.empty() && (!growing || unclear > 0 || *growing == found);
-  search.evidence = growing ? fmt::format("zeros of Hill's determinant on a circle; {} growing by its winding", *growing)
-                            : "zeros of Hill's determinant on a circle";
+  search.evidence = growing
+                        ? fmt::format("zeros of Hill's determinant on a circle; {} growing by its winding", *growing)
+                        : "zeros of Hill's determinant on a circle";
   return search;
 }
 

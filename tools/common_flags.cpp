@@ -161,7 +161,8 @@ void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
   add("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm", "W");
   add("--threads", flags.threads, "number of threads, 1 or more", "N");
   add("--steady-method", flags.steady_method, "automatic, direct or iterative", "METHOD");
-  add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation, determinant or bound", "METHOD");
+  add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation, determinant or bound",
+      "METHOD");
 }
 
 std::vector<Override> overrides(const CommonFlags& flags) {

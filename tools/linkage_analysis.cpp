@@ -95,13 +95,13 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
   while (true) {
     const Eigen::Index more = comparison_modes(I);
     Stability fine = growth(more);
-    const double change = std::abs(fine.growth_rate - coarse.growth_rate), bars = fine.growth_error + coarse.growth_error;
+    const double change = std::abs(fine.growth_rate - coarse.growth_rate),
+                 bars = fine.growth_error + coarse.growth_error;
     // Changes that do not shrink are carried on, in proportion to the number of the mode: every mode that is added may
     // be damped less than the one before it.
     const bool shrinks = change <= previous / 2 && previous < HUGE_VAL;
     const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
-    const double steps =
-        shrinks ? 1 : std::max(1.0, (square(max_auto_modes) - square(I)) / (square(more) - square(I)));
+    const double steps = shrinks ? 1 : std::max(1.0, (square(max_auto_modes) - square(I)) / (square(more) - square(I)));
     const double scale = std::max(std::abs(fine.growth_rate), speed);
     result.growth_modes_error = (safety * steps * change + bars) / scale;
     if (*result.growth_modes_error <= settings.tolerance || I == max_auto_modes) break;
@@ -136,8 +136,7 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
       stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
       if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
       I = std::min(more, max_auto_modes);
-      state =
-          I == more ? std::move(finer_state) : solve_steady_state(system_with(model, rod, I), speed, options);
+      state = I == more ? std::move(finer_state) : solve_steady_state(system_with(model, rod, I), speed, options);
     }
   }
   result.num_modes = I;
@@ -196,9 +195,10 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
                                     rod.name, rod.num_modes, *rod.modes_error, settings.tolerance));
   }
   if (rod.growth_modes_error && !(*rod.growth_modes_error <= settings.tolerance)) {
-    sentences.push_back(fmt::format("{}: with {} modes the growth rate's error of the cut is {:.1e} of the larger of "
-                                    "itself and the speed, above the tolerance {:.1e}",
-                                    rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
+    sentences.push_back(
+        fmt::format("{}: with {} modes the growth rate's error of the cut is {:.1e} of the larger of "
+                    "itself and the speed, above the tolerance {:.1e}",
+                    rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
   }
   if (computed.stability && rod.stability && !rod.stability->converged) {
     const double relative = stability_options(settings).tolerance;

@@ -31,11 +31,11 @@ struct DampingCurves {
 struct MapResult {
   PlaneAxis x_axis, y_axis;
   std::vector<std::string> rods;
-  std::vector<StabilityMap> maps;      // one per rod
-  std::vector<MapPoint> worst;         // largest growth over the rods; x fastest
-  std::vector<RodCurve> boundaries;    // of the worst: each rod's where no other rod is unstable
+  std::vector<StabilityMap> maps;  // one per rod
+  std::vector<MapPoint> worst;  // largest growth over the rods; x fastest
+  std::vector<RodCurve> boundaries;  // of the worst: each rod's where no other rod is unstable
   std::vector<DampingCurves> damping;  // both ends of a damping range
-  std::vector<ResonanceLine> lines;    // of the first rod
+  std::vector<ResonanceLine> lines;  // of the first rod
   std::vector<MissingPoints> missing;
 
   const std::vector<double>& x() const { return maps.front().x; }

@@ -23,8 +23,7 @@ constexpr const char* clean_up =
 std::string title(const SweepScene& scene, const SweepResult& result, std::size_t rod, const std::string& shown) {
   const std::string subject = scene.first().linkage() ? ", " + result.rods[rod].name : "";
   std::string at;
-  if (scene.axis().kind == Axis::Kind::parameter)
-    at = " at " + speed_text(result.points.front().speed, scene.scene());
+  if (scene.axis().kind == Axis::Kind::parameter) at = " at " + speed_text(result.points.front().speed, scene.scene());
   return "set title '{/:Bold " + literal(scene_name(scene.scene()) + subject + at) + "}'.\"\\n\".'" + shown + "'\n";
 }
 
@@ -95,9 +94,15 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   const double seconds = scene.scene().units.time_in_s;
   double factor = 0, constant = 0;
   switch (scene.axis().kind) {
-    case Axis::Kind::rpm: factor = 1.0 / 60; break;
-    case Axis::Kind::omega: factor = 1 / (2 * std::numbers::pi * seconds); break;
-    case Axis::Kind::parameter: constant = result.points.front().speed / (2 * std::numbers::pi * seconds); break;
+    case Axis::Kind::rpm:
+      factor = 1.0 / 60;
+      break;
+    case Axis::Kind::omega:
+      factor = 1 / (2 * std::numbers::pi * seconds);
+      break;
+    case Axis::Kind::parameter:
+      constant = result.points.front().speed / (2 * std::numbers::pi * seconds);
+      break;
   }
   const double fastest = factor * to + constant;
   // High enough for the two lowest modes and for two turns of the crank.
@@ -116,7 +121,8 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [Hz]'\nunset key\nset rmargin 20\n", top);
   const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
   text += fmt::format(
-      "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 '#fc8d59', "
+      "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 "
+      "'#fc8d59', "
       "1 '#99000d')\nset cbrange [{}:{}]\nset cblabel 'growth rate of the mode [{}]' font ',11' offset -0.5, 0\n"
       "set cbtics font ',10'\nset colorbox user origin 0.88, 0.2 size 0.018, 0.6\n",
       -scale, scale, literal(output_units(scene.scene()).rate));
@@ -155,9 +161,10 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   for (int i = 0; i < std::min(shown, 3); ++i) {
     for (int j = i + 1; j < std::min(shown, 3); ++j) {
       for (const char* sign : {"+", "-"}) {
-        add(fmt::format("'{}' using 1:(abs(column({}) {} column({}))/2) with lines linecolor rgb '#56b4e9' linewidth 0.8 "
-                        "dashtype 3 notitle",
-                        csv.name, frequency(j), sign, frequency(i)));
+        add(fmt::format(
+            "'{}' using 1:(abs(column({}) {} column({}))/2) with lines linecolor rgb '#56b4e9' linewidth 0.8 "
+            "dashtype 3 notitle",
+            csv.name, frequency(j), sign, frequency(i)));
       }
     }
   }
@@ -166,11 +173,12 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   constexpr double jump = 0.25;  // of the speed
   for (int mode = 0; mode < shown; ++mode) {
     text += fmt::format("before{} = NaN\n", mode);
-    add(fmt::format("'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
-                    "jumps ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
-                    "linewidth 3 linecolor palette notitle",
-                    csv.name, frequency(mode), mode, jump, factor, constant, mode, frequency(mode) + 1, scale, scale,
-                    frequency(mode) + 1, -scale, -scale, frequency(mode) + 1));
+    add(fmt::format(
+        "'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
+        "jumps ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
+        "linewidth 3 linecolor palette notitle",
+        csv.name, frequency(mode), mode, jump, factor, constant, mode, frequency(mode) + 1, scale, scale,
+        frequency(mode) + 1, -scale, -scale, frequency(mode) + 1));
     // Named where it is first seen inside the picture.
     for (Eigen::Index k = 0; k < csv.rows.rows(); ++k) {
       const double y = csv.rows(k, frequency(mode) - 1), x = csv.rows(k, 0);
@@ -181,9 +189,10 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
     }
   }
   if (result.computed.steady && !result.critical.empty()) {
-    add(fmt::format("'{}' using (column(1) == {} && column(6) > 0 ? column(2) : NaN):8 with points pointtype 7 pointsize "
-                    "0.7 linecolor rgb '#000000' notitle",
-                    critical, r + 1));
+    add(fmt::format(
+        "'{}' using (column(1) == {} && column(6) > 0 ? column(2) : NaN):8 with points pointtype 7 pointsize "
+        "0.7 linecolor rgb '#000000' notitle",
+        critical, r + 1));
   }
   text += plot + "\nunset colorbox\nunset cblabel\n" + clean_up;
   return figure;
@@ -214,8 +223,8 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   text += fmt::format("set ylabel 'largest |q_i|{}'\nset key outside right top Left reverse samplen 2\nplot ",
                       bracketed(output_units(scene.scene()).response));
   for (int i = 0; i < shown; ++i) {
-    text += fmt::format("{}'{}' using 1:{} with lines lt {} linewidth 1.8 title 'q_{{{}}}'", i == 0 ? "" : ", ", csv.name,
-                        columns.first_peak + i, i + 1, i + 1);
+    text += fmt::format("{}'{}' using 1:{} with lines lt {} linewidth 1.8 title 'q_{{{}}}'", i == 0 ? "" : ", ",
+                        csv.name, columns.first_peak + i, i + 1, i + 1);
   }
   text += std::string("\n") + clean_up;
   return figure;
@@ -228,11 +237,13 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
   figure.name = figure_name("deflection", rod.name);
   figure.height = 640;
   std::string& text = figure.commands;
-  std::string heading = title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(rod));
+  std::string heading =
+      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(rod));
   heading.replace(0, 10, "");  // without "set title "
   heading.pop_back();
-  text += fmt::format("set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char 4.5 spacing char 0, char 1.5\n",
-                      heading);
+  text += fmt::format(
+      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char 4.5 spacing char 0, char 1.5\n",
+      heading);
   text += axis(scene) + shaded(rod);
   const auto range = [&](int column) {
     const std::vector<double> values = where_stable(result, csv, column);
@@ -260,8 +271,8 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
   Figure figure;
   figure.name = figure_name("growth", rod.name);
   std::string& text = figure.commands;
-  text += title(scene, result, r,
-                "growth rate of disturbances: below zero they die out" + shaded_note(rod)) + axis(scene) + shaded(rod);
+  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(rod)) +
+          axis(scene) + shaded(rod);
   // Around the leading rate: modes that decay far faster would hide it.
   const double low = growth.empty() ? -1 : *std::min_element(growth.begin(), growth.end());
   const double high = std::max(largest(growth), 0.0);
@@ -318,7 +329,8 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
       const double margin = 0.15 * (high - low);
       const std::string range = high > low ? fmt::format("set yrange [{}:{}]\n", low - margin, high + margin) : "";
       panels += fmt::format(
-          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#0072b2' fillstyle solid 0.25 "
+          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#0072b2' fillstyle solid "
+          "0.25 "
           "notitle, '' using 1:{} with lines lt 1 title 'elastic', '' using 1:{} with lines lt 1 notitle, "
           "'' using 1:{} with lines lt 2 dashtype 2 title 'rigid', '' using 1:{} with lines lt 2 dashtype 2 notitle\n"
           "unset key\n",
@@ -333,7 +345,8 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
     figure.width = 1000;
     figure.height = 130 + 230 * rows;
     figure.commands = fmt::format(
-        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'smallest and largest force over the turn, elastic beside "
+        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'smallest and largest force over the turn, elastic "
+        "beside "
         "rigid; shaded: unstable'\nset key at screen 0.99, screen 0.995 right top vertical samplen 3\nset format '%g'\n"
         "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset xtics autofreq\nset ytics autofreq\n",
         rows, literal(scene_name(scene.scene()) + ", joints of " + name), axis(scene), bands, panels);

@@ -183,7 +183,8 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (task.goal.weighted)
     text += fmt::format("{:<34}{:>17.7g}{:>17.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
                         std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
-  if (!confirmed) text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
+  if (!confirmed)
+    text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
   for (const bool after : {false, true})
     if (after ? unstable_after : unstable_before)
       text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",

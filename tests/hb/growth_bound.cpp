@@ -51,8 +51,7 @@ TEST(GrowthBound, ProvesMostStableSpeedsOfTheSixLinkMechanism) {
     const Linkage linkage = six_link::linkage({.J = J});
     const LinkageCoefficients coefficients = linkage_coefficients(linkage);
     for (const std::size_t rod : {0u, 1u}) {
-      const HillSystem system =
-          ritz_system(*body_at(linkage, coefficients.links[rod]), coefficients.rods[rod], 5);
+      const HillSystem system = ritz_system(*body_at(linkage, coefficients.links[rod]), coefficients.rods[rod], 5);
       int stable = 0, proved = 0;
       for (double rpm = 200; rpm <= 6000; rpm += 40) {
         const double Omega = rpm * std::numbers::pi / 30;

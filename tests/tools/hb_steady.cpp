@@ -42,7 +42,8 @@ double reference_tolerance(double value) { return 1e-9 * std::abs(value); }
 
 TEST_F(Steady, VerdictAloneIsProvedWithoutExponentsAndItsIntervalHoldsTheGrowthRate) {
   const std::string six_link = "steady " + scene("six_link") + " --rpm 300 --rods AB --only ";
-  const Json verdict = document(six_link + "verdict")["rods"]["AB"], full = document(six_link + "stability")["rods"]["AB"];
+  const Json verdict = document(six_link + "verdict")["rods"]["AB"],
+             full = document(six_link + "stability")["rods"]["AB"];
   EXPECT_EQ(verdict["verdict"], "stable");
   EXPECT_EQ(verdict["stability_method"], "bound");
   EXPECT_TRUE(verdict["exponents"].empty());

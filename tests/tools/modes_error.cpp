@@ -69,9 +69,8 @@ TEST_P(ModesError, AutomaticModesAreEnoughForDeflectionAndGrowth) {
     const auto result = hb::tools::analyse(hb::tools::make_model(read, settings), speed, settings);
     for (std::size_t r = 0; r < result.rods.size(); ++r) {
       const RodResult& rod = result.rods[r];
-      const hb::Stability exact =
-          hb::analyse_stability(hb::ritz_system(*hb::body_at(linkage, rod.link), coefficients.rods[r], 60), speed,
-                                {.leading_only = true});
+      const hb::Stability exact = hb::analyse_stability(
+          hb::ritz_system(*hb::body_at(linkage, rod.link), coefficients.rods[r], 60), speed, {.leading_only = true});
       ASSERT_TRUE(rod.growth_modes_error.has_value());
       // Rotary inertia damps every higher mode of the rocker less: its growth rate has no limit below 60 modes, and
       // the estimate says so.

@@ -34,7 +34,8 @@ double peak_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-void row(const char* what, long modes, long harmonics, long points, double error, const Timing& timing, double of_dgemm) {
+void row(const char* what, long modes, long harmonics, long points, double error, const Timing& timing,
+         double of_dgemm) {
   std::printf("%s,%ld,%ld,%ld,%.3e,%.4e,%.4e,%.3f,%.1f\n", what, modes, harmonics, points, error, timing.best,
               timing.median, of_dgemm, peak_megabytes());
   std::fflush(stdout);
@@ -90,8 +91,8 @@ int main() {
   // Harmonics asked for, I = 5.
   const HillSystem five = synthetic(5);
   const SteadyState exact = solve_steady_state(five, 1, {.tolerance = 1e-13});
-  for (const auto& [name, method] : {std::pair{"steady_direct", SteadyMethod::direct},
-                                     std::pair{"steady_iterative", SteadyMethod::iterative}})
+  for (const auto& [name, method] :
+       {std::pair{"steady_direct", SteadyMethod::direct}, std::pair{"steady_iterative", SteadyMethod::iterative}})
     for (const int H : {32, 64, 128, 256, 512}) {
       const SteadyOptions options{.tolerance = 1e-12, .num_harmonics = H, .method = method};
       const SteadyState state = solve_steady_state(five, 1, options);
