@@ -1,11 +1,14 @@
 #include "hb/turn_exponents.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include "hb/inexact_eigenvalues.hpp"
 
@@ -212,6 +215,81 @@ BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell
   return {sweep.turned.block(begin, begin, p, p) * (product.M / total.value), total.log(), change, bound.log()};
 }
 
+// Eigenvalues of a block's product, and radii of discs that hold one each for every change of the cell maps.
+struct FramedEigenvalues {
+  Eigen::VectorXcd value;
+  VectorXd radius;
+};
+
+// In frames that move with the eigenvectors, F_0 = V, F_i D_i = R_i F_(i-1) with columns of length 1, the turn's map is
+// diagonal and a change of a cell's map is (F_i^-1 dR_i F_(i-1))_jk <= |row j of F_i^-1| |dR_i|: growth inside the turn
+// that is taken back before its end does not count, as it does in norms of partial products. Changes are carried over
+// the turn entry by entry; Gershgorin's discs then hold an eigenvalue each where they are apart. Empty where not, or
+// where eigenvectors are too close.
+template <int size, int most = size>
+std::optional<FramedEigenvalues> framed_eigenvalues(const Sweep& sweep, Index begin, Index p, double cell_error,
+                                                    const MatrixXd& M, double log_size) {
+  using Square = Eigen::Matrix<cplx, size, size, Eigen::ColMajor, most, most>;
+  using Real = Eigen::Matrix<double, size, size, Eigen::ColMajor, most, most>;
+  using Column = Eigen::Matrix<double, size, 1, Eigen::ColMajor, most, 1>;
+  const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
+  const Eigen::EigenSolver<MatrixXd> solver(M);
+  const Square V = solver.eigenvectors();
+  Square F = V;
+  Column g = Column::Ones(p);  // growth of each column so far, over e^log_common
+  Real change = Real::Zero(p, p);
+  double log_common = 0;
+  for (Index i = 0; i < N; ++i) {
+    const auto R = sweep.R.block<size, size>(begin, n * i + begin, p, p);
+    const Square next = R.template cast<cplx>() * F;
+    const Column d = next.colwise().norm().transpose();
+    F = next * d.cwiseInverse().asDiagonal();
+    const Square inverse = F.inverse();
+    const double error = (cell_error + (i == N - 1 ? sweep.closing : 0)) * sweep.R.middleCols(n * i, n).norm();
+    const Column pulled = error * inverse.rowwise().norm();
+    const Eigen::Matrix<double, 1, size, Eigen::RowMajor, 1, most> carried = g.transpose() + change.colwise().sum();
+    change = d.asDiagonal() * change + pulled * carried;
+    g = g.cwiseProduct(d);
+    const double scale = g.maxCoeff();
+    if (!(scale > 0 && std::isfinite(scale))) return std::nullopt;
+    g /= scale;
+    change /= scale;
+    log_common += std::log(scale);
+  }
+  const Square back = V.inverse();
+  const Square turned = back * sweep.turned.block(begin, begin, p, p).template cast<cplx>() * F * g.asDiagonal();
+  // What the solution with V rounds.
+  change += 64 * eps * double(p) * back.rowwise().norm() * g.transpose();
+  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> refined{Eigen::MatrixXcd(turned)};
+  if (refined.info() != Eigen::Success) return std::nullopt;
+  const Eigen::MatrixXcd& W = refined.eigenvectors();
+  const MatrixXd changed = W.inverse().cwiseAbs() * MatrixXd(change) * W.cwiseAbs();
+  FramedEigenvalues result{refined.eigenvalues(), changed.rowwise().sum()};
+  for (Index j = 0; j < p; ++j)
+    for (Index k = 0; k < j; ++k)
+      if (!(std::abs(result.value(j) - result.value(k)) > result.radius(j) + result.radius(k))) return std::nullopt;
+  // The map is real: an eigenvalue whose disc holds its conjugate is real, the others come in pairs.
+  for (Index j = 0; j < p; ++j) {
+    const cplx mirrored = std::conj(result.value(j));
+    if (std::abs(mirrored.imag()) <= result.radius(j)) {
+      result.radius(j) += std::abs(mirrored.imag());
+      result.value(j) = mirrored.real();
+      continue;
+    }
+    Index partner = j;
+    (result.value.array() - mirrored).abs().minCoeff(&partner);
+    if (partner <= j) continue;
+    result.radius(j) = result.radius(partner) =
+        std::max(result.radius(j), result.radius(partner)) + std::abs(result.value(partner) - mirrored);
+    result.value(partner) = mirrored;
+  }
+  const double factor = std::exp(log_common - log_size);
+  result.value *= factor;
+  result.radius *= factor;
+  if (!result.radius.allFinite()) return std::nullopt;
+  return result;
+}
+
 template <int size>
 TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_only, const MatrixXd& subspaces) {
   const Index n = maps.num_states();
@@ -224,7 +302,7 @@ TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_on
   };
   Index begin = 0;
   for (const Index end : swept.ends) {
-    const Index p = end - begin;
+    const Index p = end - begin, from = begin;
     const auto [M, log_size, change, log_bound] =
         p == n ? block_product<size>(swept, begin, p, cell_error)
                : block_product<Eigen::Dynamic, size>(swept, begin, p, cell_error);
@@ -234,7 +312,13 @@ TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_on
       lose(log_bound / two_pi);
       continue;
     }
-    const InexactEigenvalues mu = inexact_eigenvalues(M, change);
+    InexactEigenvalues mu = inexact_eigenvalues(M, change);
+    constexpr double sharp = 1e-10;
+    if (p > 1 && !at_once && !((mu.radius.array() / mu.value.array().abs()).maxCoeff() < sharp)) {
+      const auto framed = p == 2 ? framed_eigenvalues<2>(swept, from, p, cell_error, M, log_size)
+                                 : framed_eigenvalues<Eigen::Dynamic, size>(swept, from, p, cell_error, M, log_size);
+      if (framed && framed->radius.maxCoeff() < mu.radius.maxCoeff()) mu = {framed->value, framed->radius};
+    }
     for (Index j = 0; j < p; ++j) {
       const double radius = mu.radius(j), modulus = std::abs(mu.value(j));
       if (!(radius < 0.5 * modulus)) {
