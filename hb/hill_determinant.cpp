@@ -21,7 +21,7 @@ using cplx = std::complex<double>;
 
 constexpr double eps = 2.220446049250313e-16;
 constexpr double pi = std::numbers::pi;
-constexpr Index most_unknowns = 6000;
+constexpr Index most_unknowns = 1200;  // of the whole half window, and of the core and a block
 constexpr double settled = 1e-9;
 // A root of D nearer to s + ik than this leaves the row's divisor and the product of sines, where the two cancel.
 constexpr double near = 0.1;
@@ -96,6 +96,8 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
     for (Index i = 0; i < I_; ++i)
       if (pull(i) > 0.5 * std::min(std::abs(D(i, k)), std::abs(D(i, -k)))) core = k;
 
+  if ((2 * core + 1) * I_ > most_unknowns || P_ * I_ > most_unknowns) return {0, HUGE_VAL};
+
   // S = A_nn - A_n,n+1 S_{n+1}^-1 A_n+1,n from the outermost harmonics to the core, on both sides.
   cplx log_det = 0;
   MatrixXcd A = block(-core, core, -core, core);
@@ -162,8 +164,9 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
 
 HillDeterminant::Value HillDeterminant::operator()(cplx s) const {
   Index H = std::max<Index>(P_ + P_ / 2, 16);
+  if (H * I_ > most_unknowns) return {0, HUGE_VAL};
   Value last = truncated(s, H);
-  while (true) {
+  while (std::isfinite(last.error)) {
     H *= 2;
     if (H * I_ > most_unknowns) return {last.log, HUGE_VAL};
     Value next = truncated(s, H);
@@ -176,6 +179,7 @@ HillDeterminant::Value HillDeterminant::operator()(cplx s) const {
       return last;
     }
   }
+  return last;
 }
 
 HillDeterminant::Polynomial HillDeterminant::on_circle(double c) const {

@@ -12,7 +12,7 @@ namespace hb {
 
 class HillDeterminant {
  public:
-  // A complex number e^log, and a bound on the relative error of it.
+  // A complex number e^log, and an estimate of its relative error: the last change, and the core's rounding.
   struct Value {
     std::complex<double> log;
     double error = 0;
@@ -31,7 +31,7 @@ class HillDeterminant {
   Value operator()(std::complex<double> s) const;
 
   // Exponents near the leading one: e^{2 pi I s} F(s) is a polynomial of degree 2I in e^{2 pi s}, interpolated on the
-  // circle through the leading one. Their errors hold for every polynomial within the errors of the values.
+  // circle through the leading one. Their errors hold for every polynomial within the estimated errors of the values.
   Exponents exponents() const;
 
   // How many exponents have a real part above c, from the turns of that polynomial about zero on the circle

@@ -80,6 +80,14 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   const double fastest = std::sqrt(fastest2);
   const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
 
+  // Beyond some seconds' work nothing is known.
+  constexpr double most_work = 1e8;
+  const auto work = [m](double cells) { return cells * double(m * m * m + 100); };
+  if (!(work(0.8 * fastest) < most_work)) {
+    Exponents nothing;
+    nothing.others_below = HUGE_VAL;
+    return nothing;
+  }
   // Eight stages resolve three harmonics a cell.
   constexpr Index fewest_cells = 12;
   Index cells = radau_cells(std::max(
@@ -93,7 +101,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   std::optional<TurnExponents> coarse;
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
-  while (cells <= most && cells * m * m * m < Index(2e8)) {
+  while (cells <= most && work(double(cells)) < most_work) {
     // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
     // tested on strongly damped systems.
     const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);

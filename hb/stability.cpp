@@ -208,13 +208,24 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
 Search by_hill(const ScaledSystem& system) {
   const HillExponents hill = hill_exponents(system);
   Search search;
-  search.exponents.s = hill.s;
-  search.exponents.error = hill.error;
-  search.exponents.mode = hill.mode;
-  for (const cplx s : hill.s) search.exponents.frequency.push_back(std::abs(s.imag()));
+  search.complete = hill.start.cols() == 2 * system.num_modes() && spans(system, hill.start);
+  const auto found_before = [&](std::size_t i) {
+    for (std::size_t k = 0; k < search.exponents.s.size(); ++k) {
+      const cplx apart = search.exponents.s[k] - hill.s[i];
+      const double turn = std::abs(apart.imag() - std::round(apart.imag()));
+      if (std::hypot(apart.real(), turn) <= search.exponents.error[k] + hill.error[i] + 1e-12) return true;
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < hill.s.size(); ++i) {
+    // From two modes the iteration may have gone to one exponent.
+    if (!search.complete && found_before(i)) continue;
+    search.exponents.add(hill.s[i], hill.error[i]);
+    search.exponents.mode.push_back(hill.mode[i]);
+    search.exponents.frequency.push_back(std::abs(hill.s[i].imag()));
+  }
   search.method = StabilityMethod::hill;
   search.evidence = "each exponent by Newton's method on the Hill equations, in a window centred on its mode";
-  search.complete = hill.start.cols() == 2 * system.num_modes() && spans(system, hill.start);
   return search;
 }
 
@@ -328,7 +339,7 @@ Stability finished(const ScaledSystem& system, const Search& search, double tole
   const double bar = known ? std::max(upper - growth, growth - lower) : HUGE_VAL;
   result.growth_rate = Omega * growth;
   result.growth_error = Omega * bar;
-  result.converged = bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 1.0);
+  result.converged = std::isfinite(bar) && bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 1.0);
   if (known && upper < 0) result.verdict = Verdict::stable;
   if (known && lower > 0) result.verdict = Verdict::unstable;
   return result;
@@ -414,9 +425,14 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
     };
     add(part.exponents, whole.exponents);
     add(part.uncertain, whole.uncertain);
+    whole.converged = whole.converged && part.converged;
+    // A group of which nothing is known may do anything.
+    if (!std::isfinite(part.growth_rate) || !std::isfinite(part.growth_error)) {
+      upper = HUGE_VAL;
+      continue;
+    }
     upper = std::max(upper, part.growth_rate + part.growth_error);
     lower = std::max(lower, part.growth_rate - part.growth_error);
-    whole.converged = whole.converged && part.converged;
     if (!(part.growth_rate > whole.growth_rate)) continue;
     whole.growth_rate = part.growth_rate;
     whole.method = part.method;
@@ -427,7 +443,10 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
   whole.evidence =
       fmt::format("{} groups of modes that do not feel each other; the leading one: {}", groups.size(), whole.evidence);
   whole.growth_error = std::max(upper - whole.growth_rate, whole.growth_rate - lower);
-  if (std::isnan(whole.growth_error)) whole.growth_error = HUGE_VAL;
+  if (!std::isfinite(whole.growth_error)) {
+    whole.growth_error = HUGE_VAL;
+    whole.converged = false;
+  }
   if (upper < 0) whole.verdict = Verdict::stable;
   if (lower > 0) whole.verdict = Verdict::unstable;
   return whole;

@@ -300,6 +300,38 @@ TEST(Stability, FullDampingMatricesAreCoupledRight) {
   }
 }
 
+// What cannot be resolved is not left out: neither by a group of modes that nothing is known of, nor by frequencies
+// that no number of cells resolves.
+TEST(Stability, WhatIsNotResolvedIsUndecidedWhateverTheMethod) {
+  for (const double stiffness : {1e16, 1e17, 1e38, 1e60, 1e200}) {
+    HillSystem alone = mathieu(0.1, stiffness, 3 * stiffness);
+    HillSystem beside;
+    beside.mass = Eigen::Matrix2d::Identity();
+    beside.damping = 0.1 * Eigen::Matrix2d::Identity();
+    beside.stiffness[0] = FourierSeries(4, 1);
+    beside.stiffness[0].c.col(0) << 1.2, 0, 0, stiffness;
+    beside.stiffness[0].c.col(1) << 0.2, 0, 0, 1.5 * stiffness;
+    for (const HillSystem& system : {alone, beside})
+      for (const auto method : {StabilityMethod::automatic, StabilityMethod::hill, StabilityMethod::slaving,
+                                StabilityMethod::propagation, StabilityMethod::bound}) {
+        const Stability result = analyse_stability(system, 1, {.method = method});
+        EXPECT_EQ(result.verdict, Verdict::undecided) << stiffness << " " << to_string(method);
+        EXPECT_FALSE(result.converged) << stiffness << " " << to_string(method);
+      }
+  }
+}
+
+TEST(Stability, HillsMethodDoesNotHideTheGroupItDidNotFind) {
+  HillSystem system;
+  system.mass = Eigen::Matrix2d::Identity();
+  system.damping = 0.1 * Eigen::Matrix2d::Identity();
+  system.stiffness[0] = FourierSeries(4, 1);
+  system.stiffness[0].c.col(0) << 1.2, 0, 0, 100;
+  system.stiffness[0].c.col(1) << 0.2, 0, 0, 150;
+  EXPECT_EQ(analyse_stability(system, 1).verdict, Verdict::unstable);
+  EXPECT_NE(analyse_stability(system, 1, {.method = StabilityMethod::hill}).verdict, Verdict::stable);
+}
+
 TEST(Stability, RefusesImpossibleSpeeds) {
   for (const double speed : {0.0, -1.0, double(NAN), double(INFINITY)})
     EXPECT_THROW((void)analyse_stability(mathieu(0.1, 1, 0.1), speed), std::invalid_argument);
