@@ -419,6 +419,7 @@ std::vector<UnstableBand> unstable_bands(const std::vector<const StabilitySample
         const auto boundary = boundary_between(last->x, sample->x);
         if (boundary != boundaries.end()) {
           band.from = boundary->x;
+          band.error_from = boundary->error;
           band.open_from = false;
           band.kind_from = boundary->kind;
         }
@@ -427,7 +428,10 @@ std::vector<UnstableBand> unstable_bands(const std::vector<const StabilitySample
     } else if (!unstable && inside) {
       const auto boundary = boundary_between(last->x, sample->x);
       const bool known = boundary != boundaries.end();
-      if (known) band.kind_to = boundary->kind;
+      if (known) {
+        band.kind_to = boundary->kind;
+        band.error_to = boundary->error;
+      }
       close(known ? boundary->x : last->x, !known);
     }
     if (unstable) {

@@ -83,6 +83,7 @@ struct SweepOptions {
 
 struct UnstableBand {
   double from = 0, to = 0;
+  double error_from = 0, error_to = 0;
   bool open_from = false, open_to = false;  // the sweep ends inside the band, or has no answer beyond
   BoundaryKind kind_from = BoundaryKind::complex, kind_to = BoundaryKind::complex;
   double fastest = 0;  // largest growth rate sampled inside, 1/time

@@ -132,11 +132,20 @@ Json critical_json(const SweepResult& result, const CriticalPoint& point, const 
   return json;
 }
 
+// No more digits than are known.
+std::string located(double x, double error) {
+  constexpr int most = 12, fewest = 3;
+  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
+  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
+}
+
 Json band_json(const UnstableBand& band) {
   return {{"from", band.from},
           {"to", band.to},
           {"from_kind", band.open_from ? Json(nullptr) : Json(to_string(band.kind_from))},
           {"to_kind", band.open_to ? Json(nullptr) : Json(to_string(band.kind_to))},
+          {"from_error", band.error_from},
+          {"to_error", band.error_to},
           {"fastest_growth", band.fastest},
           {"fastest_at", band.fastest_x}};
 }
@@ -287,8 +296,9 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     if (result.computed.stability) {
       add(text, "  {}\n", rod.bands.empty() ? "no unstable band" : "unstable bands");
       for (const UnstableBand& band : rod.bands) {
-        add(text, "    {}{:.12g} .. {:.12g}{}  fastest growth {:.4g} {} at {:.6g}; begins {}, ends {}\n",
-            band.open_from ? "(open) " : "", band.from, band.to, band.open_to ? " (open)" : "", band.fastest, units.rate,
+        add(text, "    {}{} .. {}{}  fastest growth of its points {:.4g} {} at {:.6g}; begins {}, ends {}\n",
+            band.open_from ? "(open) " : "", located(band.from, band.error_from), located(band.to, band.error_to),
+            band.open_to ? " (open)" : "", band.fastest, units.rate,
             band.fastest_x, band.open_from ? "before the sweep" : kind_words(band.kind_from),
             band.open_to ? "beyond the sweep" : kind_words(band.kind_to));
       }

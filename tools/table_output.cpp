@@ -52,18 +52,27 @@ void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, 
 
 // The first few; of a conjugate pair the first stands for both.
 void add_exponents(Text& text, const std::vector<Exponent>& exponents, const char* mark) {
-  std::size_t next = 0;
-  for (std::size_t shown = 0; next < exponents.size() && shown < max_exponents_shown; ++shown) {
-    const Exponent& exponent = exponents[next++];
-    const bool pair =
-        next < exponents.size() && exponent.value.imag() != 0 && exponents[next].value == std::conj(exponent.value);
-    if (pair) ++next;
+  std::vector<bool> done(exponents.size(), false);
+  std::size_t shown = 0, left = 0;
+  for (std::size_t k = 0; k < exponents.size(); ++k) {
+    if (done[k]) continue;
+    if (shown == max_exponents_shown) {
+      ++left;
+      continue;
+    }
+    ++shown;
+    const Exponent& exponent = exponents[k];
+    bool pair = false;
+    for (std::size_t other = k + 1; other < exponents.size() && exponent.value.imag() != 0 && !pair; ++other) {
+      pair = !done[other] && exponents[other].value == std::conj(exponent.value);
+      if (pair) done[other] = true;
+    }
     const double re = exponent.value.real() + 0.0, im = exponent.value.imag() + 0.0;
     const auto digits = [&](double value) { return trusted_digits(value, exponent.error); };
     add(text, "  {:>16}  {:>18}  {:>18}  {:>8.1e}\n", mark, fmt::format("{:.{}g}", re, digits(re)),
         fmt::format("{}{:.{}g}", pair ? "+-" : "", pair ? std::abs(im) : im, digits(im)), exponent.error);
   }
-  if (next < exponents.size()) add(text, "    ... {} more (--json has all)\n", exponents.size() - next);
+  if (left > 0) add(text, "    ... {} more (--json has all)\n", left);
 }
 
 void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene) {
