@@ -271,8 +271,8 @@ std::string map_summary(const MapDocument& document) {
         missed, missed == 1 ? "point is" : "points are", missed == 1 ? "it" : "them", worst);
   }
   if (r.boundaries.empty()) return text + "  no stability boundary\n";
-  text += fmt::format("\n  boundaries\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind", "points", r.x_axis.path,
-                      r.y_axis.path);
+  text += fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind",
+                      "points", r.x_axis.path, r.y_axis.path);
   constexpr std::size_t most = 30;
   for (std::size_t k = 0; k < r.boundaries.size() && k < most; ++k) {
     const auto& points = r.boundaries[k].curve.points;
