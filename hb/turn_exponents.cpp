@@ -316,7 +316,7 @@ TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_on
     constexpr double sharp = 1e-10;
     if (p > 1 && !at_once && !((mu.radius.array() / mu.value.array().abs()).maxCoeff() < sharp)) {
       const auto framed = p == 2 ? framed_eigenvalues<2>(swept, from, p, cell_error, M, log_size)
-                                 : framed_eigenvalues<Eigen::Dynamic, size>(swept, from, p, cell_error, M, log_size);
+                                 : framed_eigenvalues<Eigen::Dynamic>(swept, from, p, cell_error, M, log_size);
       if (framed && framed->radius.maxCoeff() < mu.radius.maxCoeff()) mu = {framed->value, framed->radius};
     }
     for (Index j = 0; j < p; ++j) {

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Error against run time of every method: error_against_time.csv and one picture per system and quantity.
+# Error against run time of every method: error_against_time.csv and one picture per system and quantity; scaling.csv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-../../tools/build.sh release hb_error_against_time >/dev/null
+../../tools/build.sh release hb_error_against_time hb_scaling >/dev/null
+../../build/release/bin/hb_scaling >scaling.csv
 ../../build/release/bin/hb_error_against_time >error_against_time.csv
 gnuplot plot.gp

@@ -51,6 +51,23 @@ std::optional<ScaledSystem> mathieu(double Omega, double swing) {
   return scale_system(system, Omega);
 }
 
+// Two systems that do not feel each other as one.
+HillSystem beside(const HillSystem& a, const HillSystem& b) {
+  const Eigen::Index m = a.num_modes(), n = b.num_modes(), I = m + n;
+  HillSystem both;
+  both.mass = both.damping = Eigen::MatrixXd::Zero(I, I);
+  both.mass.topLeftCorner(m, m) = a.mass;
+  both.mass.bottomRightCorner(n, n) = b.mass;
+  both.damping.topLeftCorner(m, m) = a.damping;
+  both.damping.bottomRightCorner(n, n) = b.damping;
+  both.stiffness[0] = FourierSeries(I * I, a.stiffness[0].num_harmonics());
+  for (Eigen::Index j = 0; j < m; ++j)
+    for (Eigen::Index i = 0; i < m; ++i) both.stiffness[0].c.row(i + I * j) = a.stiffness[0].c.row(i + m * j);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = 0; i < n; ++i) both.stiffness[0].c.row(m + i + I * (m + j)) = b.stiffness[0].c.row(i + n * j);
+  return both;
+}
+
 std::vector<double> spaced(double from, double to, int n) {
   std::vector<double> values;
   for (int k = 0; k < n; ++k) values.push_back(from + (to - from) * k / (n - 1));
@@ -99,6 +116,28 @@ int main() {
       row(name, 5, state.num_harmonics, 1, relative_error(state.q, exact.q),
           timed([&] { (void)solve_steady_state(five, 1, options); }), 0);
     }
+  // What is saved by taking apart what does not belong together: the same systems with a coupling of 1e-12 that forbids
+  // it. Error: difference of the growth rates.
+  const auto stability_rows = [](const char* with, const char* without, const HillSystem& apart,
+                                 const HillSystem& together, const StabilityOptions& options) {
+    const double a = analyse_stability(apart, 1, options).growth_rate, b = analyse_stability(together, 1).growth_rate;
+    row(with, apart.num_modes(), apart.stiffness[0].num_harmonics(), 1, std::abs(a - b),
+        timed([&] { (void)analyse_stability(apart, 1, options); }), 0);
+    row(without, together.num_modes(), together.stiffness[0].num_harmonics(), 1, 0,
+        timed([&] { (void)analyse_stability(together, 1); }), 0);
+  };
+  HillSystem groups = beside(synthetic(4), synthetic(4));
+  HillSystem coupled = groups;
+  coupled.stiffness[0].c(8 * 4, 1) = coupled.stiffness[0].c(4, 1) = 1e-12;
+  stability_rows("groups_apart", "groups_together", groups, coupled, {});
+  HillSystem even = synthetic(4);
+  even.stiffness[0].c.col(1).setZero();
+  HillSystem odd = even;
+  odd.stiffness[0].c(0, 1) = 1e-12;
+  stability_rows("shorter_period", "whole_period", even, odd, {});
+  HillSystem damped = synthetic(4);
+  for (Eigen::Index i = 0; i < 4; ++i) damped.damping(i, i) *= 25;
+  stability_rows("verdict_alone", "exponents", damped, damped, {.verdict_only = true});
   // Points of a map on one thread, and the memory of the process; error: the largest that a boundary point claims.
   for (const int n : {10, 32, 100, 316, 1000}) {
     StabilityMap map;
