@@ -65,6 +65,11 @@ void start_at(TuneVariable& variable, double value) {
              variable.lower, variable.upper, variable.start);
 }
 
+void require_mechanism(const char* flag, const std::string& path) {
+  if (path.starts_with("analysis.") || path.starts_with("units."))
+    throw UsageError(fmt::format("{}: found {}, allowed: numbers of the mechanism", flag, path));
+}
+
 void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<TuneVariable>& variables) {
   for (const std::string& text : flags.tie) {
     const NamedRange tie = named_range("--tie", text);
@@ -83,6 +88,7 @@ void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<Tun
       for (const TiedNumber& other : variable.tied) taken = taken || other.path == tie.path;
       if (taken) throw UsageError(fmt::format("--tie: found {}, which is varied or tied already", tie.path));
     }
+    require_mechanism("--tie", tie.path);
     (void)source.value(tie.path);
     leader->tied.push_back(tied);
   }
@@ -97,8 +103,7 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
     TuneVariable variable{range.path, a, b, a, std::nullopt, {}};
     for (const TuneVariable& other : result)
       if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
-    if (range.path.starts_with("analysis.") || range.path.starts_with("units."))
-      throw UsageError(fmt::format("--vary: found {}, allowed: numbers of the mechanism", range.path));
+    require_mechanism("--vary", range.path);
     if (!is_speed(variable)) start_at(variable, source.value(range.path));
     result.push_back(std::move(variable));
   }
@@ -242,14 +247,38 @@ DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) 
   return options;
 }
 
-void require_rods(const std::map<std::string, double>& heights, const Scene& scene) {
-  std::vector<std::string> names = {"*"};
-  if (const auto* linkage = std::get_if<Linkage>(&scene.model))
-    for (const int link : elastic_links(*linkage)) names.push_back(body_name(*linkage, link));
-  for (const auto& [name, height] : heights)
-    if (std::ranges::find(names, name) == names.end())
-      throw UsageError(
-          fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name, fmt::join(names, ", ")));
+// Heights are for rods without a section, where something asks for stress.
+void require_heights(const TuneTask& task, const Scene& scene) {
+  const std::map<std::string, double>& heights = task.heights;
+  if (heights.empty()) return;
+  const std::vector<std::string> paths = task.source.numeric_paths();
+  std::vector<std::string> without, with;  // a section
+  if (const auto* linkage = std::get_if<Linkage>(&scene.model)) {
+    for (const int link : elastic_links(*linkage)) {
+      const std::string name = body_name(*linkage, link);
+      const bool section = std::ranges::any_of(paths, [&](const std::string& path) {
+        return path.starts_with(name + ".section.") || path.starts_with(name + ".elastic.section.");
+      });
+      (section ? with : without).push_back(name);
+    }
+  }
+  std::vector<std::string> allowed = without;
+  if (!without.empty()) allowed.insert(allowed.begin(), "*");
+  const std::string list = allowed.empty() ? "no --height" : fmt::format("{}", fmt::join(allowed, ", "));
+  for (const auto& [name, height] : heights) {
+    if (std::ranges::find(allowed, name) != allowed.end()) continue;
+    if (name == "*" || std::ranges::find(with, name) != with.end())
+      throw UsageError(fmt::format(
+          "--height: found {}={:g}, where the section in the scene gives the height; allowed: {}", name, height, list));
+    throw UsageError(fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name, list));
+  }
+  if (heights.contains("*") && heights.size() > 1)
+    throw UsageError("--height: found * beside a rod's name, allowed: * alone, or one for each rod");
+  const auto is_stress = [](const Metric& metric) { return metric.kind == MetricKind::stress; };
+  if (std::ranges::none_of(task.goal.terms, is_stress, &GoalTerm::metric) &&
+      std::ranges::none_of(task.keeps, is_stress, &Keep::metric))
+    throw UsageError(fmt::format("--height: found {}={:g}, allowed: with stress as goal or condition",
+                                 heights.begin()->first, heights.begin()->second));
 }
 
 void require_algorithm(const TuneTask& task) {
@@ -301,7 +330,7 @@ int run_tune(const TuneFlags& flags) {
   close_start(task);
   const Scene scene = given ? *given : task.source.with(overrides_at(task, start_of(task)));
   task.settings = settings(flags, scene);
-  require_rods(task.heights, scene);
+  require_heights(task, scene);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
   task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;
   start_speeds(task);
@@ -315,7 +344,7 @@ int run_tune(const TuneFlags& flags) {
             fmt::format("--out: found {}, where {} would replace the scene itself; allowed: another folder",
                         task.settings.out->string(), name));
     }
-    folder.emplace(*task.settings.out);
+    folder.emplace(*task.settings.out, "tune");
   }
   const TuneResult result = tune(task);
   if (task.options.progress) fmt::print(stderr, "\r\033[K");

@@ -91,12 +91,46 @@ const char* status_word(DesignStatus status) {
 // What the goal gains when the bound is relaxed by a hundredth of the condition's unit.
 double gain(const TuneCondition& condition) { return 0.01 * condition.multiplier; }
 
+// "CD.section.height = 8 (tied; scene: 7.746)"
+std::string changes_text(const TuneTask& task) {
+  std::string text;
+  for (const StartChange& change : start_changes(task))
+    text += fmt::format("{}{} = {:.8g} ({}; scene: {:.8g})", text.empty() ? "" : ", ", change.path, change.value,
+                        change.tied ? "tied" : "moved", change.scene);
+  return text;
+}
+
+// "1 % of the bound (0.02 mm)"
+std::string relaxation(const TuneCondition& condition, const Units& units) {
+  const std::string unit = unit_of(condition.keep.metric.kind, units);
+  const char* what = condition.unit == condition.keep.bound ? "the bound"
+                     : is_margin(condition.keep.metric)     ? "the margin at the start"
+                                                            : "1";
+  return fmt::format("1 % of {} ({:.3g}{}{})", what, 0.01 * condition.unit, unit.empty() ? "" : " ", unit);
+}
+
+// "NOT MET: rocker, 0.061 +/- 2.2e-01; ...", with the best that this condition alone could have.
+std::string not_met_text(const TuneResult& result, const TuneCondition& condition, const Units& units) {
+  const MetricKind kind = condition.keep.metric.kind;
+  std::string text = fmt::format("NOT MET: {}{}{}", condition.where, condition.where.empty() ? "" : ", ",
+                                 with_error(condition.value, condition.error));
+  if (condition.excess <= 0)
+    text += is_margin(condition.keep.metric)
+                ? "; it is met with the modes kept, but those left out may change it so far"
+                : "; the value meets the bound, but not with its error: more --modes may";
+  if (result.design.status != DesignStatus::infeasible) return text;
+  const std::string unit = unit_of(kind, units);
+  text += fmt::format("; best of all designs tried {:.6g}{}{}", condition.best, unit.empty() ? "" : " ", unit);
+  if (!condition.best_meets) return text + ", which does not meet it either";
+  return text + (result.conditions.size() > 1 ? ", which meets it, but not together with the others" : "");
+}
+
 // The first-order conditions hold: the slopes of goal and conditions balance. Where several rods or speeds are worst at
 // once the goal has a kink, its slopes belong to one side, and neither they nor the multipliers say what a change
 // gains.
 bool smooth(const TuneResult& result) {
   constexpr double largest_residual = 0.02;
-  return result.sensitivity && result.sensitivity->residual <= largest_residual;
+  return result.sensitivity && result.slope_left_over <= largest_residual;
 }
 
 std::string bound_text(const Keep& keep, const Units& units) {
@@ -168,6 +202,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
                           tied.factor * result.tuned[i], variable.path);
   }
 
+  if (const std::string changes = changes_text(task); !changes.empty())
+    text += "before: the scene with " + changes + "\n";
+
   text += fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
   bool confirmed = true, unstable_before = false, unstable_after = false;
   for (const TuneRow& row : result.rows) {
@@ -199,21 +236,21 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
   for (const TuneCondition& condition : result.conditions) {
     text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric), bound_text(condition.keep, units),
-                        !condition.met     ? fmt::format("NOT MET: {}", with_error(condition.value, condition.error))
+                        !condition.met     ? not_met_text(result, condition, units)
                         : condition.active ? "active"
                                            : "met with room");
     if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
-      text += fmt::format(": relaxed by 1 % of its unit, the goal gains {:.3g}{}{} ({:.3g} %)", gain(condition),
-                          result.goal_unit.empty() ? "" : " ", result.goal_unit,
+      text += fmt::format(": relaxed by {}, the goal gains {:.3g}{}{} ({:.3g} %)", relaxation(condition, units),
+                          gain(condition), result.goal_unit.empty() ? "" : " ", result.goal_unit,
                           100 * gain(condition) / std::abs(result.goal_after));
     text += "\n";
   }
 
-  if (result.sensitivity && !smooth(result) && result.design.status != DesignStatus::infeasible)
+  if (result.sensitivity && !smooth(result) && result.design.status == DesignStatus::optimal)
     text += fmt::format(
-        "the goal has a kink here (several worst cases at once, or the search ended early: {:.1g} of its slope is left "
-        "over): changes below hold to one side, and gains are not given\n",
-        result.sensitivity->residual);
+        "several worst cases meet at this design: changes below hold to one side, and what relaxing a condition gains "
+        "is not given ({:.0f} % of the goal's slope is not balanced)\n",
+        100 * result.slope_left_over);
   if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
     text += "\n1 % more of      changes the goal by\n";
     if (!result.worst_at_once.empty())
@@ -280,6 +317,9 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
     if (!tied.empty()) entry["tied"] = std::move(tied);
     variables.push_back(std::move(entry));
   }
+  Json& changes = json["before_differs"] = Json::array();  // from the scene
+  for (const StartChange& change : start_changes(task))
+    changes.push_back({{"path", change.path}, {"value", change.value}, {"scene", change.scene}, {"tied", change.tied}});
   Json& metrics = json["metrics"] = Json::array();
   for (const TuneRow& row : result.rows) {
     metrics.push_back({{"metric", row.metric.text},
@@ -292,13 +332,15 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
     conditions.push_back({{"condition", condition.keep.text},
                           {"value", number(condition.value)},
                           {"error", number(condition.error)},
+                          {"at", condition.where},
+                          {"best_tried", number(condition.best)},
                           {"bound", condition.keep.bound},
                           {"met", condition.met},
                           {"active", condition.active},
                           {"multiplier", smooth(result) ? Json(condition.multiplier) : Json()},
                           {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
   }
-  if (result.sensitivity) json["slope_left_over"] = number(result.sensitivity->residual);
+  if (result.sensitivity) json["slope_left_over"] = number(result.slope_left_over);
   json["worst_at_once"] = result.worst_at_once;
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;

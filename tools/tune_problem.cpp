@@ -25,6 +25,20 @@ Eigen::VectorXd to_eigen(const std::vector<double>& x) {
 
 bool is_speed(const TuneVariable& variable) { return variable.path == range_from || variable.path == range_to; }
 
+// What does not balance of the slopes over the largest of them; at a minimum inside, where all vanish, over the goal or
+// what it differed by among the designs tried, whichever is less, per bounds' distance.
+double slope_left_over(const DesignSensitivity& sensitivity, const DesignResult& design) {
+  if (sensitivity.left_over == 0) return 0;
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const DesignTrial& trial : design.trials) {
+    if (!trial.values) continue;
+    least = std::min(least, trial.values->goal);
+    most = std::max(most, trial.values->goal);
+  }
+  const double steepest = sensitivity.left_over / sensitivity.residual;
+  return sensitivity.left_over / std::max(steepest, std::min(most - least, std::abs(design.values.goal)));
+}
+
 std::vector<double> numbers_of(const std::vector<MetricValue>& values) {
   std::vector<double> numbers;
   for (const MetricValue& value : values) numbers.push_back(value.value);
@@ -186,8 +200,10 @@ class Tuner {
     problem.evaluate = [this, &space](const Eigen::VectorXd& x) -> std::optional<DesignValues> {
       const std::vector<MetricValue>* metrics = space.try_values(to_vector(x));
       if (!metrics) return std::nullopt;
-      std::optional<DesignValues> values = aims_->design_values(numbers_of(*metrics));
+      const std::vector<double> numbers = numbers_of(*metrics);
+      std::optional<DesignValues> values = aims_->design_values(numbers);
       if (!values) ++without_response_;
+      if (values) note_best(numbers);
       return values;
     };
     if (!with_gradient) return problem;
@@ -197,6 +213,22 @@ class Tuner {
       return aims_->design_gradient(*slopes, numbers_of(space.values(to_vector(x))));
     };
     return problem;
+  }
+
+  // What each condition could have alone.
+  void note_best(const std::vector<double>& numbers) {
+    std::vector<double> values;  // by condition, of its worst part
+    for (const auto& [keep, of] : aims_->parts()) {
+      const double value = aims_->value_of(keep.metric, numbers);
+      if (of == values.size()) {
+        values.push_back(value);
+      } else {
+        values[of] = keep.at_least ? std::min(values[of], value) : std::max(values[of], value);
+      }
+    }
+    if (best_.empty()) best_ = values;
+    for (std::size_t j = 0; j < values.size(); ++j)
+      best_[j] = task_.keeps[j].at_least ? std::max(best_[j], values[j]) : std::min(best_[j], values[j]);
   }
 
   void report(DesignSpace& space, const DesignProblem& problem, TuneResult& result) {
@@ -233,6 +265,7 @@ class Tuner {
     constexpr double active = 1e-3;
     result.sensitivity = design_sensitivity(problem, result.design.x, active);
     if (result.sensitivity) {
+      result.slope_left_over = slope_left_over(*result.sensitivity, result.design);
       result.goal_gradient = aims_->sign() * result.sensitivity->upward;
       for (std::size_t k = 0; k < aims_->goal_parts().size(); ++k)
         if (result.sensitivity->weights(static_cast<Eigen::Index>(k)) > 0)
@@ -243,10 +276,14 @@ class Tuner {
     for (const Keep& keep : task_.keeps) {
       TuneCondition& condition = result.conditions.emplace_back();
       condition.keep = keep;
-      condition.excess = -HUGE_VAL;
       condition.met = true;
+      if (const std::size_t k = result.conditions.size() - 1; k < best_.size()) {
+        condition.best = best_[k];
+        condition.best_meets = keep.at_least ? best_[k] >= keep.bound : best_[k] <= keep.bound;
+      }
     }
     const Eigen::VectorXd errors = aims_->allowance_for(confirmed_);
+    std::vector<double> nearest(task_.keeps.size(), -HUGE_VAL);  // largest excess with its error
     for (std::size_t j = 0; j < aims_->parts().size(); ++j) {
       const auto& [keep, of] = aims_->parts()[j];
       const auto row = static_cast<Eigen::Index>(j);
@@ -254,11 +291,15 @@ class Tuner {
       if (result.sensitivity) condition.multiplier += result.sensitivity->multipliers(row);
       const double value = aims_->value_of(keep.metric, values_after), excess = aims_->excess(keep, value);
       condition.met = condition.met && excess + errors(row) <= 0;
-      if (excess <= condition.excess) continue;
+      // The room kept for the error is part of what the search is held by.
+      condition.active = condition.active || excess + std::max(errors(row), aims_->allowance(row)) >= -active;
+      if (excess + errors(row) <= nearest[of]) continue;
+      nearest[of] = excess + errors(row);
+      condition.where = keep.metric.name;
+      condition.unit = aims_->unit_of(keep);
       condition.value = value;
       condition.error = errors(row) * aims_->unit_of(keep);
       condition.excess = excess;
-      condition.active = std::abs(excess) <= active;
     }
     damping_sensitivity(result);
   }
@@ -328,6 +369,7 @@ class Tuner {
   std::unique_ptr<DesignAims> aims_;
   std::vector<MetricValue> confirmed_;  // of the tuned design, by metric
   TuneCounts counts_;
+  std::vector<double> best_;  // of all designs, by condition alone
   int without_response_ = 0;
   double verification_seconds_ = 0, report_seconds_ = 0;
 };
@@ -343,6 +385,19 @@ std::vector<Override> overrides_at(const TuneTask& task, const std::vector<doubl
       overrides.push_back(number_override(tied.path, tied.factor * x[i]));
   }
   return overrides;
+}
+
+std::vector<StartChange> start_changes(const TuneTask& task) {
+  std::vector<StartChange> changes;
+  for (const TuneVariable& variable : task.variables) {
+    if (variable.moved_from && *variable.moved_from != variable.start)
+      changes.push_back({variable.path, variable.start, *variable.moved_from, false});
+    for (const TiedNumber& tied : variable.tied) {
+      const double value = tied.factor * variable.start, scene = task.source.value(tied.path);
+      if (value != scene) changes.push_back({tied.path, value, scene, true});
+    }
+  }
+  return changes;
 }
 
 std::string speed_unit(const TuneTask& task, const Units& units) {
