@@ -114,9 +114,11 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
     if (is_speed(variable)) continue;
     try {
       require_scene(source, variable.path, variable.lower);
-    } catch (const SceneError&) {
+    } catch (const SceneError& problem) {
       require_scene(source, variable.path, variable.start);
-      if (variable.lower <= 0) throw;
+      if (variable.lower <= 0)
+        throw UsageError(fmt::format("--vary {}={:g}:{:g}: its lower bound makes no scene: {}", variable.path,
+                                     variable.lower, variable.upper, problem.what()));
     }
   }
   return result;
@@ -352,7 +354,7 @@ int run_tune(const TuneFlags& flags) {
 
   const nlohmann::ordered_json document = tune_json(task, result, scene);
   if (folder) {
-    folder->write(scene_file(result), tuned_scene(task, result, file, *task.settings.out));
+    folder->write(scene_file(result), tuned_scene(task, result, scene.units, file, *task.settings.out));
     folder->write("tune.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     const CsvFile history = history_csv(task, result);
     folder->write(history.name, csv_text(history));
@@ -386,7 +388,8 @@ void add_tune_command(CLI::App& app, int& status) {
   };
   command
       ->add_option("--minimise,--minimize", flags->minimise,
-                   "deflection, stress, force (each :NAME for one rod or joint), torque-ripple, mass, or a sum such as "
+                   "deflection, stress, force (each :NAME for one rod or joint), torque-ripple (largest minus smallest "
+                   "torque), mass, or a sum such as "
                    "0.7*deflection+0.3*mass of parts over their start values")
       ->type_name("GOAL");
   command
@@ -399,10 +402,11 @@ void add_tune_command(CLI::App& app, int& status) {
              "PATH=A:B");
   repeatable("--tie", flags->tie, "a scene number that follows a varied one, as in CD.J=AB.J or CD.J=0.5*AB.J",
              "PATH=PATH");
-  repeatable("--keep", flags->keep,
-             "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa), force:JOINT<= (N), torque-ripple<= "
-             "(N m), mass<=, frequency>= (Hz), clearance:N>= (of omega_1 from n Omega, n <= N, relative)",
-             "CONDITION");
+  repeatable(
+      "--keep", flags->keep,
+      "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa), force:JOINT<= (N), torque-ripple<= "
+      "(N m), mass<=, frequency>= (Hz), clearance:N>= (least |omega_1/(n Omega) - 1| over speeds, rods and n = 1..N)",
+      "CONDITION");
   command->add_option("--over", flags->over, "speeds over which the worst case counts")->type_name("rpm=A:B");
   repeatable("--height", flags->height, "height of a rod's section in the plane of motion, for stress; * for all",
              "ROD=H");

@@ -53,6 +53,20 @@ std::string label(const Metric& metric) {
          (metric.kind == MetricKind::clearance ? fmt::format(" of orders 1..{}", metric.orders) : "");
 }
 
+double shown_speed(const TuneTask& task, double speed, const Units& units) {
+  return task.in_rpm ? rpm_of(speed, units) : speed;
+}
+
+std::string span_text(const TuneTask& task, const SpeedSpan& span, const Units& units) {
+  const std::string unit = speed_unit(task, units);
+  const double from = shown_speed(task, span.from, units), to = shown_speed(task, span.to, units);
+  return from == to ? fmt::format("{:.6g} {}", from, unit) : fmt::format("{:.6g} to {:.6g} {}", from, to, unit);
+}
+
+Json span_json(const TuneTask& task, const SpeedSpan& span, const Units& units) {
+  return {{task.in_rpm ? "rpm" : "omega", {shown_speed(task, span.from, units), shown_speed(task, span.to, units)}}};
+}
+
 // "CD, 3000 rpm, 0.512 l, 123.45 deg"
 std::string place(const TuneTask& task, const MetricValue& value, const Units& units) {
   std::string text = value.where;
@@ -143,7 +157,7 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); 
 Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed, const Units& units) {
   Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
   if (!value.where.empty()) json["at"] = value.where;
-  if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = *value.speed / task.speed_unit;
+  if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = shown_speed(task, *value.speed, units);
   if (value.position) json["x_over_l"] = *value.position;
   if (value.crank_angle) json["crank_angle"] = scene_angle(*value.crank_angle, units);
   return json;
@@ -181,12 +195,10 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   const Units& units = scene.units;
   std::string text =
       fmt::format("{}\n{} {}", scene_name(scene), task.goal.maximise ? "maximise" : "minimise", task.goal.text);
-  if (task.span.from == task.span.to) {
-    text += fmt::format(" at {:g} {}\n", task.span.from / task.speed_unit, speed_unit(task, units));
-  } else {
-    text += fmt::format(" over {:g} to {:g} {}\n", task.span.from / task.speed_unit, task.span.to / task.speed_unit,
-                        speed_unit(task, units));
-  }
+  text += result.span_after.from == result.span_after.to ? " at " : " over ";
+  text += span_text(task, result.span_after, units);
+  if (speeds_vary(task)) text += fmt::format(" (found; before: {})", span_text(task, result.span_before, units));
+  text += "\n";
   const std::string problem = shortfall(result);
   const char* found = task.keeps.empty() ? "a design was found\n" : "a design was found that meets every condition\n";
   text += problem.empty() ? found : "NOT REACHED: " + problem + "\n";
@@ -267,6 +279,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
           fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
   }
 
+  for (const std::string& path : result.without_effect)
+    text += fmt::format("the goal and conditions do not depend on {} here\n", path);
+
   text += fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
                       result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
                       result.design.evidence, result.confirmations);
@@ -287,7 +302,8 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
 Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const Units& units = scene.units;
   Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
-  json["over"] = {{task.in_rpm ? "rpm" : "omega", {task.span.from / task.speed_unit, task.span.to / task.speed_unit}}};
+  json["over"] = span_json(task, result.span_after, units);
+  if (speeds_vary(task)) json["over_before"] = span_json(task, result.span_before, units);
   json["status"] = status_word(result.design.status);
   json["verified"] = result.verified();
   json["modes"] = result.num_modes;
@@ -341,6 +357,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                           {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
   }
   if (result.sensitivity) json["slope_left_over"] = number(result.slope_left_over);
+  json["without_effect"] = result.without_effect;
   json["worst_at_once"] = result.worst_at_once;
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
@@ -359,7 +376,10 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
 CsvFile history_csv(const TuneTask& task, const TuneResult& result) {
   CsvFile file;
   file.name = "history.csv";
-  file.comment = {"Designs in the order tried; goal nan: no such design. excess > 0: beyond the bound."};
+  file.comment = {
+      "Designs in the order tried; goal nan: no such design.",
+      "excess: how far the value, with the room kept for its error, is beyond the bound (> 0: not met),",
+      "over the bound (margins: over the larger of bound and margin at the start); of all rods the largest"};
   for (const TuneVariable& variable : task.variables) file.columns.push_back(variable.path);
   file.columns.push_back("goal");
   for (const Keep& keep : task.keeps) file.columns.push_back("excess of " + keep.text);
@@ -380,13 +400,26 @@ CsvFile history_csv(const TuneTask& task, const TuneResult& result) {
   return file;
 }
 
-std::string tuned_scene(const TuneTask& task, const TuneResult& result, const std::filesystem::path& scene_file,
-                        const std::filesystem::path& folder) {
+std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
+                        const std::filesystem::path& scene_file, const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
-  const std::string text = task.source.text_with(overrides_at(task, result.tuned));
+  std::vector<Override> overrides = overrides_at(task, result.tuned);
+  // A range given as omega has no place in a scene: there it is said above alone.
+  if (speeds_vary(task) && task.in_rpm) {
+    const std::vector<std::string> paths = task.source.numeric_paths();
+    const auto has = [&](const char* path) { return std::ranges::find(paths, path) != paths.end(); };
+    const double from = rpm_of(result.span_after.from, units), to = rpm_of(result.span_after.to, units);
+    constexpr int usual_steps = 50;
+    const double step = has("analysis.rpm.2") ? task.source.value("analysis.rpm.2") : (to - from) / usual_steps;
+    if (!has("analysis.omega"))
+      overrides.push_back(
+          {"analysis.rpm", from < to ? fmt::format("[{}, {}, {}]", from, to, step) : fmt::format("{}", from)});
+  }
+  const std::string text = task.source.text_with(overrides);
   const fs::path from = fs::absolute(scene_file).parent_path(), to = fs::absolute(folder);
   std::string changed;
   if (const std::string problem = shortfall(result); !problem.empty()) changed = "# NOT REACHED: " + problem + "\n";
+  if (speeds_vary(task)) changed += "# Speeds found: " + span_text(task, result.span_after, units) + "\n";
   // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t key = std::min(text.find("file", at), text.size());

@@ -68,8 +68,7 @@ class Tuner {
                                  [this](const std::vector<double>& x) { return span_at(task_, x); });
     // What is wrong with the question shows at the start.
     aims_->scale_by(numbers_of(space.values(start_)));
-    const bool speeds_vary = std::ranges::any_of(task_.variables, is_speed);
-    DesignProblem problem = problem_over(space, start_, lower_, upper_, !speeds_vary);
+    DesignProblem problem = problem_over(space, start_, lower_, upper_, !speeds_vary(task_));
     result.design = first_search(problem);
     confirm(space, problem, result);
     result.tuned = to_vector(result.design.x);
@@ -164,7 +163,8 @@ class Tuner {
       again.trials.insert(again.trials.begin(), result.design.trials.begin(), result.design.trials.end());
       again.num_missing += result.design.num_missing;
       again.num_gradients += result.design.num_gradients;
-      again.evidence = fmt::format("{}; with{} {}", result.design.evidence, why.substr(1), again.evidence);
+      const char* gap = again.evidence.starts_with(',') ? "" : " ";
+      again.evidence = fmt::format("{}; with{}{}{}", result.design.evidence, why.substr(1), gap, again.evidence);
       result.design = std::move(again);
     }
   }
@@ -301,7 +301,28 @@ class Tuner {
       condition.error = errors(row) * aims_->unit_of(keep);
       condition.excess = excess;
     }
+    for (std::size_t i = 0; result.sensitivity && i < task_.variables.size(); ++i)
+      if (without_effect(problem, result, static_cast<Eigen::Index>(i)))
+        result.without_effect.push_back(task_.variables[i].path);
     damping_sensitivity(result);
+  }
+
+  // Neither by its slopes, which vanish at a minimum too, nor half way to the farther bound.
+  bool without_effect(const DesignProblem& problem, const TuneResult& result, Eigen::Index i) const {
+    constexpr double slight = 1e-7;
+    const DesignGradient& slopes = result.sensitivity->gradient;
+    const DesignValues& here = result.design.values;
+    const double goal = slight * std::abs(here.goal), width = problem.upper(i) - problem.lower(i);
+    if (width * std::abs(slopes.goal(i)) > goal || (width * slopes.parts.col(i).array().abs() > goal).any() ||
+        (width * slopes.conditions.col(i).array().abs() > slight).any())
+      return false;
+    Eigen::VectorXd x = result.design.x;
+    const bool up = problem.upper(i) - x(i) > x(i) - problem.lower(i);
+    x(i) = 0.5 * (x(i) + (up ? problem.upper : problem.lower)(i));
+    const std::optional<DesignValues> there = problem.evaluate(x);
+    return there && std::abs(there->goal - here.goal) <= goal &&
+           ((there->parts - here.parts).array().abs() <= goal).all() &&
+           ((there->conditions - here.conditions).array().abs() <= slight).all();
   }
 
   // One variable, a factor on the internal damping of all links, at the tuned design. Of the best goal,
@@ -403,6 +424,8 @@ std::vector<StartChange> start_changes(const TuneTask& task) {
 std::string speed_unit(const TuneTask& task, const Units& units) {
   return task.in_rpm ? "rpm" : fmt::format("rad/{}", units.time);
 }
+
+bool speeds_vary(const TuneTask& task) { return std::ranges::any_of(task.variables, is_speed); }
 
 SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x) {
   SpeedSpan span = task.span;

@@ -71,6 +71,7 @@ struct TuneResult {
   double goal_before = 0, goal_after = 0, goal_error = 0;  // estimated error of goal_after
   Eigen::VectorXd goal_gradient;  // with respect to the variables, for more of them; empty: not found
   std::vector<std::string> worst_at_once;  // rods that hold the goal together, where it has a kink
+  std::vector<std::string> without_effect;  // variables on which neither goal nor conditions depend
   std::vector<TuneRow> rows;
   std::vector<TuneCondition> conditions;
   std::optional<DesignSensitivity> sensitivity;
@@ -104,6 +105,7 @@ struct StartChange {
 [[nodiscard]] std::vector<StartChange> start_changes(const TuneTask& task);
 
 [[nodiscard]] std::string speed_unit(const TuneTask& task, const Units& units);  // "rpm", "rad/s"
+[[nodiscard]] bool speeds_vary(const TuneTask& task);
 [[nodiscard]] SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x);
 
 [[nodiscard]] std::vector<double> start_of(const TuneTask& task);
