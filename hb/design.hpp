@@ -89,7 +89,8 @@ struct DesignSensitivity {
   Eigen::VectorXd weights;  // mu_k
   Eigen::VectorXd multipliers;  // lambda_j
   Eigen::VectorXd below, above;  // of the bounds
-  double residual = 0;  // of the equation above relative to the largest |df_k|, x scaled by the bounds' distance
+  double left_over = 0;  // length of the left side above, x scaled by the bounds' distance
+  double residual = 0;  // the same over the largest |df_k|
 };
 
 // `active`: a condition within this of 0 counts as active, parts and bounds likewise relative to f and their distance.

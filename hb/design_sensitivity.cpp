@@ -147,7 +147,8 @@ std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem
   VectorXd multipliers = nonnegative_least_squares(A, steepest * VectorXd::Unit(n + 1, n));
   multipliers /= multipliers.head(static_cast<Index>(parts.size())).sum();
   for (std::size_t k = 0; k < columns.size(); ++k) *places[k] = multipliers(static_cast<Index>(k)) * units[k];
-  result.residual = (A * multipliers).head(n).norm() / steepest;
+  result.left_over = (A * multipliers).head(n).norm();
+  result.residual = result.left_over / steepest;
   return result;
 }
 

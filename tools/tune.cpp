@@ -65,6 +65,11 @@ void start_at(TuneVariable& variable, double value) {
              variable.lower, variable.upper, variable.start);
 }
 
+void require_mechanism(const char* flag, const std::string& path) {
+  if (path.starts_with("analysis.") || path.starts_with("units."))
+    throw UsageError(fmt::format("{}: found {}, allowed: numbers of the mechanism", flag, path));
+}
+
 void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<TuneVariable>& variables) {
   for (const std::string& text : flags.tie) {
     const NamedRange tie = named_range("--tie", text);
@@ -83,6 +88,7 @@ void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<Tun
       for (const TiedNumber& other : variable.tied) taken = taken || other.path == tie.path;
       if (taken) throw UsageError(fmt::format("--tie: found {}, which is varied or tied already", tie.path));
     }
+    require_mechanism("--tie", tie.path);
     (void)source.value(tie.path);
     leader->tied.push_back(tied);
   }
@@ -97,8 +103,7 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
     TuneVariable variable{range.path, a, b, a, std::nullopt, {}};
     for (const TuneVariable& other : result)
       if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
-    if (range.path.starts_with("analysis.") || range.path.starts_with("units."))
-      throw UsageError(fmt::format("--vary: found {}, allowed: numbers of the mechanism", range.path));
+    require_mechanism("--vary", range.path);
     if (!is_speed(variable)) start_at(variable, source.value(range.path));
     result.push_back(std::move(variable));
   }
@@ -109,9 +114,11 @@ std::vector<TuneVariable> variables(const TuneFlags& flags, const SceneSource& s
     if (is_speed(variable)) continue;
     try {
       require_scene(source, variable.path, variable.lower);
-    } catch (const SceneError&) {
+    } catch (const SceneError& problem) {
       require_scene(source, variable.path, variable.start);
-      if (variable.lower <= 0) throw;
+      if (variable.lower <= 0)
+        throw UsageError(fmt::format("--vary {}={:g}:{:g}: its lower bound makes no scene: {}", variable.path,
+                                     variable.lower, variable.upper, problem.what()));
     }
   }
   return result;
@@ -242,14 +249,38 @@ DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) 
   return options;
 }
 
-void require_rods(const std::map<std::string, double>& heights, const Scene& scene) {
-  std::vector<std::string> names = {"*"};
-  if (const auto* linkage = std::get_if<Linkage>(&scene.model))
-    for (const int link : elastic_links(*linkage)) names.push_back(body_name(*linkage, link));
-  for (const auto& [name, height] : heights)
-    if (std::ranges::find(names, name) == names.end())
-      throw UsageError(
-          fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name, fmt::join(names, ", ")));
+// Heights are for rods without a section, where something asks for stress.
+void require_heights(const TuneTask& task, const Scene& scene) {
+  const std::map<std::string, double>& heights = task.heights;
+  if (heights.empty()) return;
+  const std::vector<std::string> paths = task.source.numeric_paths();
+  std::vector<std::string> without, with;  // a section
+  if (const auto* linkage = std::get_if<Linkage>(&scene.model)) {
+    for (const int link : elastic_links(*linkage)) {
+      const std::string name = body_name(*linkage, link);
+      const bool section = std::ranges::any_of(paths, [&](const std::string& path) {
+        return path.starts_with(name + ".section.") || path.starts_with(name + ".elastic.section.");
+      });
+      (section ? with : without).push_back(name);
+    }
+  }
+  std::vector<std::string> allowed = without;
+  if (!without.empty()) allowed.insert(allowed.begin(), "*");
+  const std::string list = allowed.empty() ? "no --height" : fmt::format("{}", fmt::join(allowed, ", "));
+  for (const auto& [name, height] : heights) {
+    if (std::ranges::find(allowed, name) != allowed.end()) continue;
+    if (name == "*" || std::ranges::find(with, name) != with.end())
+      throw UsageError(fmt::format(
+          "--height: found {}={:g}, where the section in the scene gives the height; allowed: {}", name, height, list));
+    throw UsageError(fmt::format("--height: found {}, no elastic link of the scene; allowed: {}", name, list));
+  }
+  if (heights.contains("*") && heights.size() > 1)
+    throw UsageError("--height: found * beside a rod's name, allowed: * alone, or one for each rod");
+  const auto is_stress = [](const Metric& metric) { return metric.kind == MetricKind::stress; };
+  if (std::ranges::none_of(task.goal.terms, is_stress, &GoalTerm::metric) &&
+      std::ranges::none_of(task.keeps, is_stress, &Keep::metric))
+    throw UsageError(fmt::format("--height: found {}={:g}, allowed: with stress as goal or condition",
+                                 heights.begin()->first, heights.begin()->second));
 }
 
 void require_algorithm(const TuneTask& task) {
@@ -301,7 +332,7 @@ int run_tune(const TuneFlags& flags) {
   close_start(task);
   const Scene scene = given ? *given : task.source.with(overrides_at(task, start_of(task)));
   task.settings = settings(flags, scene);
-  require_rods(task.heights, scene);
+  require_heights(task, scene);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
   task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;
   start_speeds(task);
@@ -315,7 +346,7 @@ int run_tune(const TuneFlags& flags) {
             fmt::format("--out: found {}, where {} would replace the scene itself; allowed: another folder",
                         task.settings.out->string(), name));
     }
-    folder.emplace(*task.settings.out);
+    folder.emplace(*task.settings.out, "tune");
   }
   const TuneResult result = tune(task);
   if (task.options.progress) fmt::print(stderr, "\r\033[K");
@@ -323,7 +354,7 @@ int run_tune(const TuneFlags& flags) {
 
   const nlohmann::ordered_json document = tune_json(task, result, scene);
   if (folder) {
-    folder->write(scene_file(result), tuned_scene(task, result, file, *task.settings.out));
+    folder->write(scene_file(result), tuned_scene(task, result, scene.units, file, *task.settings.out));
     folder->write("tune.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     const CsvFile history = history_csv(task, result);
     folder->write(history.name, csv_text(history));
@@ -357,7 +388,8 @@ void add_tune_command(CLI::App& app, int& status) {
   };
   command
       ->add_option("--minimise,--minimize", flags->minimise,
-                   "deflection, stress, force (each :NAME for one rod or joint), torque-ripple, mass, or a sum such as "
+                   "deflection, stress, force (each :NAME for one rod or joint), torque-ripple (largest minus smallest "
+                   "torque), mass, or a sum such as "
                    "0.7*deflection+0.3*mass of parts over their start values")
       ->type_name("GOAL");
   command
@@ -370,10 +402,11 @@ void add_tune_command(CLI::App& app, int& status) {
              "PATH=A:B");
   repeatable("--tie", flags->tie, "a scene number that follows a varied one, as in CD.J=AB.J or CD.J=0.5*AB.J",
              "PATH=PATH");
-  repeatable("--keep", flags->keep,
-             "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa), force:JOINT<= (N), torque-ripple<= "
-             "(N m), mass<=, frequency>= (Hz), clearance:N>= (of omega_1 from n Omega, n <= N, relative)",
-             "CONDITION");
+  repeatable(
+      "--keep", flags->keep,
+      "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa), force:JOINT<= (N), torque-ripple<= "
+      "(N m), mass<=, frequency>= (Hz), clearance:N>= (least |omega_1/(n Omega) - 1| over speeds, rods and n = 1..N)",
+      "CONDITION");
   command->add_option("--over", flags->over, "speeds over which the worst case counts")->type_name("rpm=A:B");
   repeatable("--height", flags->height, "height of a rod's section in the plane of motion, for stress; * for all",
              "ROD=H");

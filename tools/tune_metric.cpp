@@ -14,6 +14,14 @@ constexpr const char* metric_words =
     "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], frequency[:ROD], stable, clearance[:N], "
     "speed-range";
 
+constexpr const char* small_words = "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD]";
+constexpr const char* large_words = "stable (the margin), frequency[:ROD], clearance[:N], speed-range";
+
+// What may stand behind a flag.
+const char* words_of(const std::string& flag) {
+  return flag == "--minimise" ? small_words : flag == "--maximise" ? large_words : metric_words;
+}
+
 constexpr double largest_weight = 1e100;  // so that no sum overflows
 
 [[noreturn]] void refuse(const char* flag, const std::string& text, const std::string& why,
@@ -42,7 +50,7 @@ Metric parse_metric(const char* flag, const std::string& whole, const std::strin
   metric.text = text;
   if (colon != std::string::npos) {
     metric.name = text.substr(colon + 1);
-    if (metric.name.empty()) refuse(flag, whole, "with nothing behind the colon", metric_words);
+    if (metric.name.empty()) refuse(flag, whole, "with nothing behind the colon", words_of(flag));
   }
   bool named = true;
   if (word == "deflection") {
@@ -74,10 +82,10 @@ Metric parse_metric(const char* flag, const std::string& whole, const std::strin
       metric.name.clear();
     }
   } else {
-    refuse(flag, whole, fmt::format("where \"{}\" is unknown", word), metric_words);
+    refuse(flag, whole, fmt::format("where \"{}\" is unknown", word), words_of(flag));
   }
   if (!named && !metric.name.empty())
-    refuse(flag, whole, fmt::format("where \"{}\" stands behind {}", metric.name, word), metric_words);
+    refuse(flag, whole, fmt::format("where \"{}\" stands behind {}", metric.name, word), words_of(flag));
   return metric;
 }
 
@@ -105,7 +113,7 @@ Goal parse_goal(const std::string& text) {
       term.weight = *weight;
       goal.weighted = true;
     }
-    if (part.empty()) refuse("--minimise", text, "with an empty term", metric_words);
+    if (part.empty()) refuse("--minimise", text, "with an empty term", small_words);
     term.metric = parse_metric("--minimise", text, part.substr(star == std::string::npos ? 0 : star + 1));
     if (better_large(term.metric.kind))
       refuse("--minimise", text, fmt::format("where {} is better large", term.metric.text),

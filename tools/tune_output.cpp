@@ -53,6 +53,20 @@ std::string label(const Metric& metric) {
          (metric.kind == MetricKind::clearance ? fmt::format(" of orders 1..{}", metric.orders) : "");
 }
 
+double shown_speed(const TuneTask& task, double speed, const Units& units) {
+  return task.in_rpm ? rpm_of(speed, units) : speed;
+}
+
+std::string span_text(const TuneTask& task, const SpeedSpan& span, const Units& units) {
+  const std::string unit = speed_unit(task, units);
+  const double from = shown_speed(task, span.from, units), to = shown_speed(task, span.to, units);
+  return from == to ? fmt::format("{:.6g} {}", from, unit) : fmt::format("{:.6g} to {:.6g} {}", from, to, unit);
+}
+
+Json span_json(const TuneTask& task, const SpeedSpan& span, const Units& units) {
+  return {{task.in_rpm ? "rpm" : "omega", {shown_speed(task, span.from, units), shown_speed(task, span.to, units)}}};
+}
+
 // "CD, 3000 rpm, 0.512 l, 123.45 deg"
 std::string place(const TuneTask& task, const MetricValue& value, const Units& units) {
   std::string text = value.where;
@@ -91,12 +105,46 @@ const char* status_word(DesignStatus status) {
 // What the goal gains when the bound is relaxed by a hundredth of the condition's unit.
 double gain(const TuneCondition& condition) { return 0.01 * condition.multiplier; }
 
+// "CD.section.height = 8 (tied; scene: 7.746)"
+std::string changes_text(const TuneTask& task) {
+  std::string text;
+  for (const StartChange& change : start_changes(task))
+    text += fmt::format("{}{} = {:.8g} ({}; scene: {:.8g})", text.empty() ? "" : ", ", change.path, change.value,
+                        change.tied ? "tied" : "moved", change.scene);
+  return text;
+}
+
+// "1 % of the bound (0.02 mm)"
+std::string relaxation(const TuneCondition& condition, const Units& units) {
+  const std::string unit = unit_of(condition.keep.metric.kind, units);
+  const char* what = condition.unit == condition.keep.bound ? "the bound"
+                     : is_margin(condition.keep.metric)     ? "the margin at the start"
+                                                            : "1";
+  return fmt::format("1 % of {} ({:.3g}{}{})", what, 0.01 * condition.unit, unit.empty() ? "" : " ", unit);
+}
+
+// "NOT MET: rocker, 0.061 +/- 2.2e-01; ...", with the best that this condition alone could have.
+std::string not_met_text(const TuneResult& result, const TuneCondition& condition, const Units& units) {
+  const MetricKind kind = condition.keep.metric.kind;
+  std::string text = fmt::format("NOT MET: {}{}{}", condition.where, condition.where.empty() ? "" : ", ",
+                                 with_error(condition.value, condition.error));
+  if (condition.excess <= 0)
+    text += is_margin(condition.keep.metric)
+                ? "; it is met with the modes kept, but those left out may change it so far"
+                : "; the value meets the bound, but not with its error: more --modes may";
+  if (result.design.status != DesignStatus::infeasible) return text;
+  const std::string unit = unit_of(kind, units);
+  text += fmt::format("; best of all designs tried {:.6g}{}{}", condition.best, unit.empty() ? "" : " ", unit);
+  if (!condition.best_meets) return text + ", which does not meet it either";
+  return text + (result.conditions.size() > 1 ? ", which meets it, but not together with the others" : "");
+}
+
 // The first-order conditions hold: the slopes of goal and conditions balance. Where several rods or speeds are worst at
 // once the goal has a kink, its slopes belong to one side, and neither they nor the multipliers say what a change
 // gains.
 bool smooth(const TuneResult& result) {
   constexpr double largest_residual = 0.02;
-  return result.sensitivity && result.sensitivity->residual <= largest_residual;
+  return result.sensitivity && result.slope_left_over <= largest_residual;
 }
 
 std::string bound_text(const Keep& keep, const Units& units) {
@@ -109,7 +157,7 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); 
 Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed, const Units& units) {
   Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
   if (!value.where.empty()) json["at"] = value.where;
-  if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = *value.speed / task.speed_unit;
+  if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = shown_speed(task, *value.speed, units);
   if (value.position) json["x_over_l"] = *value.position;
   if (value.crank_angle) json["crank_angle"] = scene_angle(*value.crank_angle, units);
   return json;
@@ -147,12 +195,10 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   const Units& units = scene.units;
   std::string text =
       fmt::format("{}\n{} {}", scene_name(scene), task.goal.maximise ? "maximise" : "minimise", task.goal.text);
-  if (task.span.from == task.span.to) {
-    text += fmt::format(" at {:g} {}\n", task.span.from / task.speed_unit, speed_unit(task, units));
-  } else {
-    text += fmt::format(" over {:g} to {:g} {}\n", task.span.from / task.speed_unit, task.span.to / task.speed_unit,
-                        speed_unit(task, units));
-  }
+  text += result.span_after.from == result.span_after.to ? " at " : " over ";
+  text += span_text(task, result.span_after, units);
+  if (speeds_vary(task)) text += fmt::format(" (found; before: {})", span_text(task, result.span_before, units));
+  text += "\n";
   const std::string problem = shortfall(result);
   const char* found = task.keeps.empty() ? "a design was found\n" : "a design was found that meets every condition\n";
   text += problem.empty() ? found : "NOT REACHED: " + problem + "\n";
@@ -167,6 +213,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
       text += fmt::format("{:<28}{:>15.8g}{:>15.8g}  tied to {}\n", tied.path, tied.factor * result.start[i],
                           tied.factor * result.tuned[i], variable.path);
   }
+
+  if (const std::string changes = changes_text(task); !changes.empty())
+    text += "before: the scene with " + changes + "\n";
 
   text += fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
   bool confirmed = true, unstable_before = false, unstable_after = false;
@@ -199,21 +248,21 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
   for (const TuneCondition& condition : result.conditions) {
     text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric), bound_text(condition.keep, units),
-                        !condition.met     ? fmt::format("NOT MET: {}", with_error(condition.value, condition.error))
+                        !condition.met     ? not_met_text(result, condition, units)
                         : condition.active ? "active"
                                            : "met with room");
     if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
-      text += fmt::format(": relaxed by 1 % of its unit, the goal gains {:.3g}{}{} ({:.3g} %)", gain(condition),
-                          result.goal_unit.empty() ? "" : " ", result.goal_unit,
+      text += fmt::format(": relaxed by {}, the goal gains {:.3g}{}{} ({:.3g} %)", relaxation(condition, units),
+                          gain(condition), result.goal_unit.empty() ? "" : " ", result.goal_unit,
                           100 * gain(condition) / std::abs(result.goal_after));
     text += "\n";
   }
 
-  if (result.sensitivity && !smooth(result) && result.design.status != DesignStatus::infeasible)
+  if (result.sensitivity && !smooth(result) && result.design.status == DesignStatus::optimal)
     text += fmt::format(
-        "the goal has a kink here (several worst cases at once, or the search ended early: {:.1g} of its slope is left "
-        "over): changes below hold to one side, and gains are not given\n",
-        result.sensitivity->residual);
+        "several worst cases meet at this design: changes below hold to one side, and what relaxing a condition gains "
+        "is not given ({:.0f} % of the goal's slope is not balanced)\n",
+        100 * result.slope_left_over);
   if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
     text += "\n1 % more of      changes the goal by\n";
     if (!result.worst_at_once.empty())
@@ -229,6 +278,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
       text +=
           fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
   }
+
+  for (const std::string& path : result.without_effect)
+    text += fmt::format("the goal and conditions do not depend on {} here\n", path);
 
   text += fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
                       result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
@@ -250,7 +302,8 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
 Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const Units& units = scene.units;
   Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
-  json["over"] = {{task.in_rpm ? "rpm" : "omega", {task.span.from / task.speed_unit, task.span.to / task.speed_unit}}};
+  json["over"] = span_json(task, result.span_after, units);
+  if (speeds_vary(task)) json["over_before"] = span_json(task, result.span_before, units);
   json["status"] = status_word(result.design.status);
   json["verified"] = result.verified();
   json["modes"] = result.num_modes;
@@ -280,6 +333,9 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
     if (!tied.empty()) entry["tied"] = std::move(tied);
     variables.push_back(std::move(entry));
   }
+  Json& changes = json["before_differs"] = Json::array();  // from the scene
+  for (const StartChange& change : start_changes(task))
+    changes.push_back({{"path", change.path}, {"value", change.value}, {"scene", change.scene}, {"tied", change.tied}});
   Json& metrics = json["metrics"] = Json::array();
   for (const TuneRow& row : result.rows) {
     metrics.push_back({{"metric", row.metric.text},
@@ -292,13 +348,16 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
     conditions.push_back({{"condition", condition.keep.text},
                           {"value", number(condition.value)},
                           {"error", number(condition.error)},
+                          {"at", condition.where},
+                          {"best_tried", number(condition.best)},
                           {"bound", condition.keep.bound},
                           {"met", condition.met},
                           {"active", condition.active},
                           {"multiplier", smooth(result) ? Json(condition.multiplier) : Json()},
                           {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
   }
-  if (result.sensitivity) json["slope_left_over"] = number(result.sensitivity->residual);
+  if (result.sensitivity) json["slope_left_over"] = number(result.slope_left_over);
+  json["without_effect"] = result.without_effect;
   json["worst_at_once"] = result.worst_at_once;
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
@@ -317,7 +376,10 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
 CsvFile history_csv(const TuneTask& task, const TuneResult& result) {
   CsvFile file;
   file.name = "history.csv";
-  file.comment = {"Designs in the order tried; goal nan: no such design. excess > 0: beyond the bound."};
+  file.comment = {
+      "Designs in the order tried; goal nan: no such design.",
+      "excess: how far the value, with the room kept for its error, is beyond the bound (> 0: not met),",
+      "over the bound (margins: over the larger of bound and margin at the start); of all rods the largest"};
   for (const TuneVariable& variable : task.variables) file.columns.push_back(variable.path);
   file.columns.push_back("goal");
   for (const Keep& keep : task.keeps) file.columns.push_back("excess of " + keep.text);
@@ -338,13 +400,26 @@ CsvFile history_csv(const TuneTask& task, const TuneResult& result) {
   return file;
 }
 
-std::string tuned_scene(const TuneTask& task, const TuneResult& result, const std::filesystem::path& scene_file,
-                        const std::filesystem::path& folder) {
+std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
+                        const std::filesystem::path& scene_file, const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
-  const std::string text = task.source.text_with(overrides_at(task, result.tuned));
+  std::vector<Override> overrides = overrides_at(task, result.tuned);
+  // A range given as omega has no place in a scene: there it is said above alone.
+  if (speeds_vary(task) && task.in_rpm) {
+    const std::vector<std::string> paths = task.source.numeric_paths();
+    const auto has = [&](const char* path) { return std::ranges::find(paths, path) != paths.end(); };
+    const double from = rpm_of(result.span_after.from, units), to = rpm_of(result.span_after.to, units);
+    constexpr int usual_steps = 50;
+    const double step = has("analysis.rpm.2") ? task.source.value("analysis.rpm.2") : (to - from) / usual_steps;
+    if (!has("analysis.omega"))
+      overrides.push_back(
+          {"analysis.rpm", from < to ? fmt::format("[{}, {}, {}]", from, to, step) : fmt::format("{}", from)});
+  }
+  const std::string text = task.source.text_with(overrides);
   const fs::path from = fs::absolute(scene_file).parent_path(), to = fs::absolute(folder);
   std::string changed;
   if (const std::string problem = shortfall(result); !problem.empty()) changed = "# NOT REACHED: " + problem + "\n";
+  if (speeds_vary(task)) changed += "# Speeds found: " + span_text(task, result.span_after, units) + "\n";
   // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t key = std::min(text.find("file", at), text.size());

@@ -20,7 +20,7 @@ inline constexpr const char *tuned_file = "tuned.toml", *nearest_file = "nearest
 [[nodiscard]] const char* scene_file(const TuneResult& result);
 // The scene with the tuned numbers, which begins with a comment where something was not reached; relative paths of
 // further files lead from `folder`.
-[[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result,
+[[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
                                       const std::filesystem::path& scene_file, const std::filesystem::path& folder);
 
 // Empty, or why the exit status is "not reached".

@@ -25,6 +25,20 @@ Eigen::VectorXd to_eigen(const std::vector<double>& x) {
 
 bool is_speed(const TuneVariable& variable) { return variable.path == range_from || variable.path == range_to; }
 
+// What does not balance of the slopes over the largest of them; at a minimum inside, where all vanish, over the goal or
+// what it differed by among the designs tried, whichever is less, per bounds' distance.
+double slope_left_over(const DesignSensitivity& sensitivity, const DesignResult& design) {
+  if (sensitivity.left_over == 0) return 0;
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  for (const DesignTrial& trial : design.trials) {
+    if (!trial.values) continue;
+    least = std::min(least, trial.values->goal);
+    most = std::max(most, trial.values->goal);
+  }
+  const double steepest = sensitivity.left_over / sensitivity.residual;
+  return sensitivity.left_over / std::max(steepest, std::min(most - least, std::abs(design.values.goal)));
+}
+
 std::vector<double> numbers_of(const std::vector<MetricValue>& values) {
   std::vector<double> numbers;
   for (const MetricValue& value : values) numbers.push_back(value.value);
@@ -54,8 +68,7 @@ class Tuner {
                                  [this](const std::vector<double>& x) { return span_at(task_, x); });
     // What is wrong with the question shows at the start.
     aims_->scale_by(numbers_of(space.values(start_)));
-    const bool speeds_vary = std::ranges::any_of(task_.variables, is_speed);
-    DesignProblem problem = problem_over(space, start_, lower_, upper_, !speeds_vary);
+    DesignProblem problem = problem_over(space, start_, lower_, upper_, !speeds_vary(task_));
     result.design = first_search(problem);
     confirm(space, problem, result);
     result.tuned = to_vector(result.design.x);
@@ -150,7 +163,8 @@ class Tuner {
       again.trials.insert(again.trials.begin(), result.design.trials.begin(), result.design.trials.end());
       again.num_missing += result.design.num_missing;
       again.num_gradients += result.design.num_gradients;
-      again.evidence = fmt::format("{}; with{} {}", result.design.evidence, why.substr(1), again.evidence);
+      const char* gap = again.evidence.starts_with(',') ? "" : " ";
+      again.evidence = fmt::format("{}; with{}{}{}", result.design.evidence, why.substr(1), gap, again.evidence);
       result.design = std::move(again);
     }
   }
@@ -186,8 +200,10 @@ class Tuner {
     problem.evaluate = [this, &space](const Eigen::VectorXd& x) -> std::optional<DesignValues> {
       const std::vector<MetricValue>* metrics = space.try_values(to_vector(x));
       if (!metrics) return std::nullopt;
-      std::optional<DesignValues> values = aims_->design_values(numbers_of(*metrics));
+      const std::vector<double> numbers = numbers_of(*metrics);
+      std::optional<DesignValues> values = aims_->design_values(numbers);
       if (!values) ++without_response_;
+      if (values) note_best(numbers);
       return values;
     };
     if (!with_gradient) return problem;
@@ -197,6 +213,22 @@ class Tuner {
       return aims_->design_gradient(*slopes, numbers_of(space.values(to_vector(x))));
     };
     return problem;
+  }
+
+  // What each condition could have alone.
+  void note_best(const std::vector<double>& numbers) {
+    std::vector<double> values;  // by condition, of its worst part
+    for (const auto& [keep, of] : aims_->parts()) {
+      const double value = aims_->value_of(keep.metric, numbers);
+      if (of == values.size()) {
+        values.push_back(value);
+      } else {
+        values[of] = keep.at_least ? std::min(values[of], value) : std::max(values[of], value);
+      }
+    }
+    if (best_.empty()) best_ = values;
+    for (std::size_t j = 0; j < values.size(); ++j)
+      best_[j] = task_.keeps[j].at_least ? std::max(best_[j], values[j]) : std::min(best_[j], values[j]);
   }
 
   void report(DesignSpace& space, const DesignProblem& problem, TuneResult& result) {
@@ -233,6 +265,7 @@ class Tuner {
     constexpr double active = 1e-3;
     result.sensitivity = design_sensitivity(problem, result.design.x, active);
     if (result.sensitivity) {
+      result.slope_left_over = slope_left_over(*result.sensitivity, result.design);
       result.goal_gradient = aims_->sign() * result.sensitivity->upward;
       for (std::size_t k = 0; k < aims_->goal_parts().size(); ++k)
         if (result.sensitivity->weights(static_cast<Eigen::Index>(k)) > 0)
@@ -243,10 +276,14 @@ class Tuner {
     for (const Keep& keep : task_.keeps) {
       TuneCondition& condition = result.conditions.emplace_back();
       condition.keep = keep;
-      condition.excess = -HUGE_VAL;
       condition.met = true;
+      if (const std::size_t k = result.conditions.size() - 1; k < best_.size()) {
+        condition.best = best_[k];
+        condition.best_meets = keep.at_least ? best_[k] >= keep.bound : best_[k] <= keep.bound;
+      }
     }
     const Eigen::VectorXd errors = aims_->allowance_for(confirmed_);
+    std::vector<double> nearest(task_.keeps.size(), -HUGE_VAL);  // largest excess with its error
     for (std::size_t j = 0; j < aims_->parts().size(); ++j) {
       const auto& [keep, of] = aims_->parts()[j];
       const auto row = static_cast<Eigen::Index>(j);
@@ -254,13 +291,38 @@ class Tuner {
       if (result.sensitivity) condition.multiplier += result.sensitivity->multipliers(row);
       const double value = aims_->value_of(keep.metric, values_after), excess = aims_->excess(keep, value);
       condition.met = condition.met && excess + errors(row) <= 0;
-      if (excess <= condition.excess) continue;
+      // The room kept for the error is part of what the search is held by.
+      condition.active = condition.active || excess + std::max(errors(row), aims_->allowance(row)) >= -active;
+      if (excess + errors(row) <= nearest[of]) continue;
+      nearest[of] = excess + errors(row);
+      condition.where = keep.metric.name;
+      condition.unit = aims_->unit_of(keep);
       condition.value = value;
       condition.error = errors(row) * aims_->unit_of(keep);
       condition.excess = excess;
-      condition.active = std::abs(excess) <= active;
     }
+    for (std::size_t i = 0; result.sensitivity && i < task_.variables.size(); ++i)
+      if (without_effect(problem, result, static_cast<Eigen::Index>(i)))
+        result.without_effect.push_back(task_.variables[i].path);
     damping_sensitivity(result);
+  }
+
+  // Neither by its slopes, which vanish at a minimum too, nor half way to the farther bound.
+  bool without_effect(const DesignProblem& problem, const TuneResult& result, Eigen::Index i) const {
+    constexpr double slight = 1e-7;
+    const DesignGradient& slopes = result.sensitivity->gradient;
+    const DesignValues& here = result.design.values;
+    const double goal = slight * std::abs(here.goal), width = problem.upper(i) - problem.lower(i);
+    if (width * std::abs(slopes.goal(i)) > goal || (width * slopes.parts.col(i).array().abs() > goal).any() ||
+        (width * slopes.conditions.col(i).array().abs() > slight).any())
+      return false;
+    Eigen::VectorXd x = result.design.x;
+    const bool up = problem.upper(i) - x(i) > x(i) - problem.lower(i);
+    x(i) = 0.5 * (x(i) + (up ? problem.upper : problem.lower)(i));
+    const std::optional<DesignValues> there = problem.evaluate(x);
+    return there && std::abs(there->goal - here.goal) <= goal &&
+           ((there->parts - here.parts).array().abs() <= goal).all() &&
+           ((there->conditions - here.conditions).array().abs() <= slight).all();
   }
 
   // One variable, a factor on the internal damping of all links, at the tuned design. Of the best goal,
@@ -328,6 +390,7 @@ class Tuner {
   std::unique_ptr<DesignAims> aims_;
   std::vector<MetricValue> confirmed_;  // of the tuned design, by metric
   TuneCounts counts_;
+  std::vector<double> best_;  // of all designs, by condition alone
   int without_response_ = 0;
   double verification_seconds_ = 0, report_seconds_ = 0;
 };
@@ -345,9 +408,24 @@ std::vector<Override> overrides_at(const TuneTask& task, const std::vector<doubl
   return overrides;
 }
 
+std::vector<StartChange> start_changes(const TuneTask& task) {
+  std::vector<StartChange> changes;
+  for (const TuneVariable& variable : task.variables) {
+    if (variable.moved_from && *variable.moved_from != variable.start)
+      changes.push_back({variable.path, variable.start, *variable.moved_from, false});
+    for (const TiedNumber& tied : variable.tied) {
+      const double value = tied.factor * variable.start, scene = task.source.value(tied.path);
+      if (value != scene) changes.push_back({tied.path, value, scene, true});
+    }
+  }
+  return changes;
+}
+
 std::string speed_unit(const TuneTask& task, const Units& units) {
   return task.in_rpm ? "rpm" : fmt::format("rad/{}", units.time);
 }
+
+bool speeds_vary(const TuneTask& task) { return std::ranges::any_of(task.variables, is_speed); }
 
 SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x) {
   SpeedSpan span = task.span;

@@ -52,9 +52,14 @@ struct TuneRow {
 
 struct TuneCondition {
   Keep keep;
+  // Of the rod or joint nearest to the bound, or furthest beyond it, with the error counted.
+  std::string where;  // empty: one number
   double value = 0, error = 0;  // at the tuned design; estimate
   bool met = false;  // by the value with its error
-  double excess = 0;  // how far beyond the bound, relative to it (margins: to the start's); <= 0 if met
+  double excess = 0;  // how far the value is beyond the bound, relative to it (margins: to the start's)
+  double best = 0;  // value of the design that does best by this condition alone, of all tried
+  bool best_meets = false;
+  double unit = 1;  // of excess: the bound, or a margin at the start
   double multiplier = 0;  // what the goal gains per unit of excess allowed
   bool active = false;
 };
@@ -66,9 +71,11 @@ struct TuneResult {
   double goal_before = 0, goal_after = 0, goal_error = 0;  // estimated error of goal_after
   Eigen::VectorXd goal_gradient;  // with respect to the variables, for more of them; empty: not found
   std::vector<std::string> worst_at_once;  // rods that hold the goal together, where it has a kink
+  std::vector<std::string> without_effect;  // variables on which neither goal nor conditions depend
   std::vector<TuneRow> rows;
   std::vector<TuneCondition> conditions;
   std::optional<DesignSensitivity> sensitivity;
+  double slope_left_over = 0;  // of the slopes of goal, conditions and bounds: 0 where they balance
   // d ln goal / d ln internal damping of all links, at fixed variables, and of the best goal: active conditions move.
   std::optional<double> damping_sensitivity, damping_sensitivity_of_best;
   std::optional<DesignCurves> curves_before, curves_after;
@@ -89,7 +96,16 @@ struct TuneResult {
 // Of the scene's numbers.
 [[nodiscard]] std::vector<Override> overrides_at(const TuneTask& task, const std::vector<double>& x);
 
+// What the design before has otherwise than the scene: a number moved into its bounds, or tied.
+struct StartChange {
+  std::string path;
+  double value = 0, scene = 0;
+  bool tied = false;
+};
+[[nodiscard]] std::vector<StartChange> start_changes(const TuneTask& task);
+
 [[nodiscard]] std::string speed_unit(const TuneTask& task, const Units& units);  // "rpm", "rad/s"
+[[nodiscard]] bool speeds_vary(const TuneTask& task);
 [[nodiscard]] SpeedSpan span_at(const TuneTask& task, const std::vector<double>& x);
 
 [[nodiscard]] std::vector<double> start_of(const TuneTask& task);

@@ -244,6 +244,7 @@ void complete_force(MetricValue& value, const SpeedResult& at, bool torque) {
 
 // What its error bar and the modes left out may change of the growth rate. Changes that do not shrink with more modes
 // are carried on in proportion to their number squared, to sixty: every mode may be damped less than the one before.
+// Where that leaves the sign open, the growth rate is computed with up to sixty modes instead.
 double growth_error(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings) {
   const auto stability = [&](const HillSystem& system) {
     return leading_stability(scale_system(system, speed), settings);
@@ -262,7 +263,14 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
   double error = own.growth_error + safety * change;
   if (!(next <= change / 2 + second.growth_error + third.growth_error))
     error += safety * next * std::max(1.0, (square(most) - square(more)) / (square(still_more) - square(more)));
-  return error;
+  if (error < std::abs(own.growth_rate) || rod.system.num_modes() >= most) return error;
+  error = 0;
+  for (Eigen::Index modes = still_more;; modes = std::min(comparison_modes(modes), most)) {
+    const Stability direct = modes == still_more ? third : stability(ritz_system(link, coefficients, modes));
+    error = std::max(error, std::abs(direct.growth_rate - own.growth_rate) + direct.growth_error);
+    if (modes >= most) break;
+  }
+  return own.growth_error + std::max(error, change + second.growth_error);
 }
 
 }  // namespace

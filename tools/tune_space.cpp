@@ -68,14 +68,13 @@ SceneModel DesignSpace::model(const std::vector<double>& x) const {
   return make_model(source_.with(overrides_(x)), settings_);
 }
 
-// A section known by its shape gives its height from area and J.
+// A section known by its shape gives its height from area and J, whatever is given for all rods.
 SectionHeights DesignSpace::heights(const SceneModel& model) const {
   SectionHeights heights = given_heights_;
   const Linkage* linkage = model.linkage();
-  if (!linkage || heights.contains("*")) return heights;
+  if (!linkage) return heights;
   for (const int link : elastic_links(*linkage)) {
     const Body& body = *body_at(*linkage, link);
-    if (heights.contains(body.name)) continue;
     const double F = body.elastic->area, r2 = body.elastic->second_moment / F;  // radius of gyration squared
     const auto has = [&](const char* key) {
       return numbers_.contains(body.name + ".section." + key) ||
