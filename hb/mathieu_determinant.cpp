@@ -23,7 +23,7 @@ Bounded operator*(Bounded a, Bounded b) {
                                  eps * std::abs(a.value * b.value)};
 }
 
-// Rows after which the closed form of the tail is exact to rounding. What it leaves out is of the orders
+// Rows after which the closed form of the tail is exact to rounding by the orders of what it leaves out:
 // 0.03 |a| N^-9 (Euler-Maclaurin), 0.2 q^4 (4 |a| + 9) N^-9 and q^6 N^-11.
 int enough_rows(double a, double q) {
   const double size = std::abs(a), q4 = q * q * q * q;

@@ -215,23 +215,17 @@ BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell
   return {sweep.turned.block(begin, begin, p, p) * (product.M / total.value), total.log(), change, bound.log()};
 }
 
-// Eigenvalues of a block's product, and radii of discs that hold one each for every change of the cell maps.
-struct FramedEigenvalues {
-  Eigen::VectorXcd value;
-  VectorXd radius;
-};
-
-// In frames that move with the eigenvectors, F_0 = V, F_i D_i = R_i F_(i-1) with columns of length 1, the turn's map is
-// diagonal and a change of a cell's map is (F_i^-1 dR_i F_(i-1))_jk <= |row j of F_i^-1| |dR_i|: growth inside the turn
-// that is taken back before its end does not count, as it does in norms of partial products. Changes are carried over
-// the turn entry by entry; Gershgorin's discs then hold an eigenvalue each where they are apart. Empty where not, or
-// where eigenvectors are too close.
-template <int size, int most = size>
-std::optional<FramedEigenvalues> framed_eigenvalues(const Sweep& sweep, Index begin, Index p, double cell_error,
-                                                    const MatrixXd& M, double log_size) {
-  using Square = Eigen::Matrix<cplx, size, size, Eigen::ColMajor, most, most>;
-  using Real = Eigen::Matrix<double, size, size, Eigen::ColMajor, most, most>;
-  using Column = Eigen::Matrix<double, size, 1, Eigen::ColMajor, most, 1>;
+// Eigenvalues of a block's product in frames that move with its eigenvectors: F_0 = V, F_i D_i = R_i F_(i-1) with
+// columns of length 1, the turn's map is diagonal and a change of a cell's map is (F_i^-1 dR_i F_(i-1))_jk <= |row j of
+// F_i^-1| |dR_i|: growth inside the turn that is taken back before its end does not count, as it does in norms of
+// partial products. Changes are carried over the turn entry by entry; Gershgorin's discs then hold an eigenvalue each
+// where they are apart. Empty where not, or where eigenvectors are too close.
+template <int size>
+std::optional<InexactEigenvalues> framed_eigenvalues(const Sweep& sweep, Index begin, Index p, double cell_error,
+                                                     const MatrixXd& M, double log_size) {
+  using Square = Eigen::Matrix<cplx, size, size>;
+  using Real = Eigen::Matrix<double, size, size>;
+  using Column = Eigen::Vector<double, size>;
   const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
   const Eigen::EigenSolver<MatrixXd> solver(M);
   const Square V = solver.eigenvectors();
@@ -247,7 +241,7 @@ std::optional<FramedEigenvalues> framed_eigenvalues(const Sweep& sweep, Index be
     const Square inverse = F.inverse();
     const double error = (cell_error + (i == N - 1 ? sweep.closing : 0)) * sweep.R.middleCols(n * i, n).norm();
     const Column pulled = error * inverse.rowwise().norm();
-    const Eigen::Matrix<double, 1, size, Eigen::RowMajor, 1, most> carried = g.transpose() + change.colwise().sum();
+    const Eigen::RowVector<double, size> carried = g.transpose() + change.colwise().sum();
     change = d.asDiagonal() * change + pulled * carried;
     g = g.cwiseProduct(d);
     const double scale = g.maxCoeff();
@@ -264,7 +258,7 @@ std::optional<FramedEigenvalues> framed_eigenvalues(const Sweep& sweep, Index be
   if (refined.info() != Eigen::Success) return std::nullopt;
   const Eigen::MatrixXcd& W = refined.eigenvectors();
   const MatrixXd changed = W.inverse().cwiseAbs() * MatrixXd(change) * W.cwiseAbs();
-  FramedEigenvalues result{refined.eigenvalues(), changed.rowwise().sum()};
+  InexactEigenvalues result{refined.eigenvalues(), changed.rowwise().sum()};
   for (Index j = 0; j < p; ++j)
     for (Index k = 0; k < j; ++k)
       if (!(std::abs(result.value(j) - result.value(k)) > result.radius(j) + result.radius(k))) return std::nullopt;
@@ -317,7 +311,7 @@ TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_on
     if (p > 1 && !at_once && !((mu.radius.array() / mu.value.array().abs()).maxCoeff() < sharp)) {
       const auto framed = p == 2 ? framed_eigenvalues<2>(swept, from, p, cell_error, M, log_size)
                                  : framed_eigenvalues<Eigen::Dynamic>(swept, from, p, cell_error, M, log_size);
-      if (framed && framed->radius.maxCoeff() < mu.radius.maxCoeff()) mu = {framed->value, framed->radius};
+      if (framed && framed->radius.maxCoeff() < mu.radius.maxCoeff()) mu = *framed;
     }
     for (Index j = 0; j < p; ++j) {
       const double radius = mu.radius(j), modulus = std::abs(mu.value(j));

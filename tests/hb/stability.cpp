@@ -300,18 +300,23 @@ TEST(Stability, FullDampingMatricesAreCoupledRight) {
   }
 }
 
+// x'' + 0.1 x' + (a + c cos t) x = 0 and, not coupled to it, a stable one of Mathieu's equations.
+HillSystem beside_a_stable_one(double a, double c) {
+  HillSystem system;
+  system.mass = Eigen::Matrix2d::Identity();
+  system.damping = 0.1 * Eigen::Matrix2d::Identity();
+  system.stiffness[0] = FourierSeries(4, 1);
+  system.stiffness[0].c.col(0) << 1.2, 0, 0, a;
+  system.stiffness[0].c.col(1) << 0.2, 0, 0, c / 2;
+  return system;
+}
+
 // What cannot be resolved is not left out: neither by a group of modes that nothing is known of, nor by frequencies
 // that no number of cells resolves.
 TEST(Stability, WhatIsNotResolvedIsUndecidedWhateverTheMethod) {
   for (const double stiffness : {1e16, 1e17, 1e38, 1e60, 1e200}) {
-    HillSystem alone = mathieu(0.1, stiffness, 3 * stiffness);
-    HillSystem beside;
-    beside.mass = Eigen::Matrix2d::Identity();
-    beside.damping = 0.1 * Eigen::Matrix2d::Identity();
-    beside.stiffness[0] = FourierSeries(4, 1);
-    beside.stiffness[0].c.col(0) << 1.2, 0, 0, stiffness;
-    beside.stiffness[0].c.col(1) << 0.2, 0, 0, 1.5 * stiffness;
-    for (const HillSystem& system : {alone, beside})
+    for (const HillSystem& system :
+         {mathieu(0.1, stiffness, 3 * stiffness), beside_a_stable_one(stiffness, 3 * stiffness)})
       for (const auto method : {StabilityMethod::automatic, StabilityMethod::hill, StabilityMethod::slaving,
                                 StabilityMethod::propagation, StabilityMethod::bound}) {
         const Stability result = analyse_stability(system, 1, {.method = method});
@@ -322,12 +327,7 @@ TEST(Stability, WhatIsNotResolvedIsUndecidedWhateverTheMethod) {
 }
 
 TEST(Stability, HillsMethodDoesNotHideTheGroupItDidNotFind) {
-  HillSystem system;
-  system.mass = Eigen::Matrix2d::Identity();
-  system.damping = 0.1 * Eigen::Matrix2d::Identity();
-  system.stiffness[0] = FourierSeries(4, 1);
-  system.stiffness[0].c.col(0) << 1.2, 0, 0, 100;
-  system.stiffness[0].c.col(1) << 0.2, 0, 0, 150;
+  const HillSystem system = beside_a_stable_one(100, 300);
   EXPECT_EQ(analyse_stability(system, 1).verdict, Verdict::unstable);
   EXPECT_NE(analyse_stability(system, 1, {.method = StabilityMethod::hill}).verdict, Verdict::stable);
 }
