@@ -8,7 +8,7 @@ namespace hb {
 
 class Anderson {
  public:
-  explicit Anderson(Eigen::Index size) : dx_(size, depth), df_(size, depth) {}
+  explicit Anderson(Eigen::Index size) : dx_(size, depth), df_(size, depth), gram_(depth, depth) {}
 
   // The next x, from x and f(x).
   Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& f);
@@ -16,6 +16,7 @@ class Anderson {
  private:
   static constexpr Eigen::Index depth = 8;
   Eigen::MatrixXd dx_, df_;  // the last differences, a ring of columns
+  Eigen::MatrixXd gram_;  // df' df, of the columns taken so far
   Eigen::VectorXd last_x_, last_f_;
   Eigen::Index taken_ = 0;
 };

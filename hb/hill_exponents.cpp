@@ -76,23 +76,22 @@ class Window {
     const VectorXd rounding =
         double(8 + 2 * P) * eps * (K_.middleRows(P * I_, n).cwiseAbs() * x.cwiseAbs() + diagonal_size(s, x.cwiseAbs()));
     double effect = std::abs(z.dot(Lx)) + z.cwiseAbs().dot(rounding);
-    // Rows outside: r there acts through -(z K) / D of the same harmonic.
+    // Rows outside: r there acts through -(z K) (D + K)^-1, |(D + K)^-1 r| <= max |r/D|/(1 - |D^-1 K|).
+    double back = 0, through = 0;  // sum of |z K| over the outer unknowns, max |r/D|
     for (Index k = -N_ - P; k <= N_ + P; ++k) {
       if (std::abs(k) <= N_) continue;
-      const Index row = (k + N_ + P) * I_;
       for (Index i = 0; i < I_; ++i) {
-        const cplx exponent = s + cplx(0, double(k));
-        const double D = std::abs(exponent * exponent + exponent * system_.G(i, i) + system_.K.c(i + I_ * i, 0));
-        double back = 0;  // |sum_k z_k K_k,(outside)|, K_(k-l) = conj(K_(l-k)) for real K(tau)
+        // K_(k-l) = conj(K_(l-k)) for real K(tau).
         for (Index l = std::max(-N_, k - P); l <= std::min(N_, k + P); ++l)
           for (Index j = 0; j < I_; ++j)
             back += std::abs(z((l + N_) * I_ + j)) * std::abs(system_.K.c(j + I_ * i, std::abs(k - l)));
-        if (std::abs(all(row + i)) > 0) effect += back * std::abs(all(row + i)) / D;
+        through = std::max(through, std::abs(all((k + N_ + P) * I_ + i)) / own(s, k, i));
       }
     }
+    if (through > 0) effect += back * through / (1 - std::min(outer_coupling(s), 1.0));
     const double slope = std::abs(z.dot(derivative(s, x)));
     Found found{s, 4 * effect / slope, VectorXcd(2 * I_)};
-    if (!std::isfinite(found.error)) return std::nullopt;
+    if (std::isnan(found.error)) return std::nullopt;
     found.state.setZero();
     for (Index k = -N_; k <= N_; ++k) {
       const VectorXcd part = x.segment((k + N_) * I_, I_);
@@ -104,6 +103,23 @@ class Window {
 
  private:
   cplx at(cplx s, Index k) const { return s + cplx(0, double(k)); }
+  // |D| of one unknown.
+  double own(cplx s, Index k, Index i) const {
+    return std::abs(at(s, k) * at(s, k) + at(s, k) * system_.G(i, i) + system_.K.c(i + I_ * i, 0));
+  }
+  // Largest row of |D^-1 (K + (s + ik) G - D)| over as many harmonics outside the window as are inside: what lies
+  // farther acts through a power of it.
+  double outer_coupling(cplx s) const {
+    double largest = 0;
+    for (Index i = 0; i < I_; ++i) {
+      double stiffness = -std::abs(system_.K.c(i + I_ * i, 0));
+      for (Index j = 0; j < I_; ++j) stiffness += fourier::wiener_norm(system_.K, i + I_ * j);
+      const double damping = system_.G.row(i).cwiseAbs().sum() - std::abs(system_.G(i, i));
+      for (Index k = -2 * N_; k <= 2 * N_; ++k)
+        if (std::abs(k) > N_) largest = std::max(largest, (stiffness + damping * std::abs(at(s, k))) / own(s, k, i));
+    }
+    return largest;
+  }
   VectorXcd diagonal(cplx s, const VectorXcd& x) const {
     VectorXcd result(x.size());
     for (Index k = -N_; k <= N_; ++k) {
@@ -155,11 +171,11 @@ HillExponents hill_exponents(const ScaledSystem& system) {
     std::optional<Found> best;
     for (Index N = std::max<Index>(8, P); I * (2 * N + 1) <= most_unknowns; N *= 2) {
       const std::optional<Found> found = Window(system, N).newton(best ? best->s : from, mode);
-      if (!found || (best && !(found->error < 0.5 * best->error))) break;
+      if (!found || (best && std::isfinite(best->error) && !(found->error < 0.5 * best->error))) break;
       best = found;
       if (best->error <= 1e-13 * (1 + std::abs(best->s))) break;
     }
-    return best;
+    return best && std::isfinite(best->error) ? best : std::nullopt;
   };
   HillExponents result;
   result.start = MatrixXcd(2 * I, 0);

@@ -14,7 +14,8 @@ struct InexactEigenvalues {
 
 // `change` is in the 2-norm. Discs by Gershgorin's theorem in the coordinates of the eigenvectors where they are apart;
 // otherwise, for eigenvalues that lie close or are defective, circles on which no such matrix has an eigenvalue,
-// checked at eight points with a factor of two between them.
-[[nodiscard]] InexactEigenvalues inexact_eigenvalues(const Eigen::MatrixXd& M, double change);
+// checked at eight points with a factor of two between them. With `leading_only` those that are small and close share
+// one circle, large enough to hold them all (it may hold others).
+[[nodiscard]] InexactEigenvalues inexact_eigenvalues(const Eigen::MatrixXd& M, double change, bool leading_only = false);
 
 }  // namespace hb

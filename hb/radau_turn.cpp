@@ -84,103 +84,129 @@ using Lane = Eigen::Array<double, lanes, 1>;
 // Above, the blocked kernels of one matrix at a time are faster.
 constexpr Index most_modes_in_lanes = 8;
 
-// Basis (1, 2 cos k tau, -2 sin k tau), a row for each stage angle tau = (n + c_i) h, h = 2 pi/num_cells, at row
-// i num_cells + n; kept per thread, since neighbouring points of a sweep use the same one.
-const MatrixXd& stage_basis(Index num_cells, Index H) {
-  thread_local std::map<std::pair<Index, Index>, MatrixXd> kept;
+// e^{i k c_i h}, h = 2 pi/num_cells, at (i, k); kept per thread, since neighbouring points of a sweep use the same one.
+const Eigen::Array<cplx, stages, Eigen::Dynamic>& stage_shifts(Index num_cells, Index H) {
+  thread_local std::map<std::pair<Index, Index>, Eigen::Array<cplx, stages, Eigen::Dynamic>> kept;
   const auto key = std::pair(num_cells, H);
   if (const auto found = kept.find(key); found != kept.end()) return found->second;
   if (kept.size() > 64) kept.clear();
-  // e^{i k tau} = e^{2 pi i k n/N} e^{i k c_i h}
-  std::vector<cplx> root(static_cast<std::size_t>(num_cells));
-  for (Index n = 0; n < num_cells; ++n)
-    root[static_cast<std::size_t>(n)] = std::polar(1.0, two_pi * double(n) / double(num_cells));
-  MatrixXd basis(num_cells * stages, 2 * H + 1);
-  basis.col(0).setOnes();
-  for (int i = 0; i < stages; ++i)
-    for (Index k = 1; k <= H; ++k) {
-      const cplx shift = std::polar(2.0, double(k) * two_pi * radau().c(i) / double(num_cells));
-      for (Index n = 0; n < num_cells; ++n) {
-        const cplx value = shift * root[static_cast<std::size_t>(k * n % num_cells)];
-        basis(i * num_cells + n, 2 * k - 1) = value.real();
-        basis(i * num_cells + n, 2 * k) = -value.imag();
-      }
-    }
-  return kept.emplace(key, std::move(basis)).first->second;
+  Eigen::Array<cplx, stages, Eigen::Dynamic> shifts(stages, H + 1);
+  for (Index k = 0; k <= H; ++k)
+    for (int i = 0; i < stages; ++i)
+      shifts(i, k) = std::polar(1.0, double(k) * two_pi * radau().c(i) / double(num_cells));
+  return kept.emplace(key, std::move(shifts)).first->second;
 }
 
-// Nodes x components: the series at all stage angles, as one matrix product; where the basis would be large, by one
-// Fourier transform per stage of the series shifted by that stage's angle.
+// The series at the stage angles (n + c_i) h, row i num_cells + n, a column per component: per stage one Fourier
+// transform over the cells of the shifted coefficients, those beyond its length folded back.
 MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
-  const Index H = series.num_harmonics();
-  constexpr Index largest_basis = Index(1) << 18;  // numbers, 2 MB
-  if ((2 * H + 1) * num_cells * stages > largest_basis) {
-    const Index multiple = (2 * H + num_cells) / num_cells;  // num_cells * multiple >= 2 H + 1
-    MatrixXd values(num_cells * stages, series.num_components());
-    for (int i = 0; i < stages; ++i) {
-      FourierSeries shifted = series;
-      for (Index k = 1; k <= H; ++k)
-        shifted.c.col(k) *= std::polar(1.0, double(k) * radau().c(i) * two_pi / double(num_cells));
-      const MatrixXd fine = fourier::synthesise(shifted, num_cells * multiple);
-      for (Index n = 0; n < num_cells; ++n) values.row(i * num_cells + n) = fine.col(n * multiple).transpose();
+  const Index H = series.num_harmonics(), N = num_cells, n = series.num_components();
+  if (H == 0) return series.c.col(0).real().transpose().replicate(stages * N, 1);
+  const auto& shifts = stage_shifts(N, H);
+  fourier::RealTransform& transform = fourier::thread_transform(N, stages * n);
+  auto spectrum = transform.spectrum();
+  spectrum.setZero();
+  for (Index q = 0; q < n; ++q)
+    for (Index k = 0; k <= H; ++k) {
+      const Index r = k % N;
+      const Eigen::Array<cplx, stages, 1> c = series.c(q, k) * shifts.col(k);
+      auto bin = spectrum.row(2 * r <= N ? r : N - r).segment<stages>(stages * q).transpose().array();
+      if (k == 0)
+        bin.real() += c.real();
+      else if (r == 0 || 2 * r == N)
+        bin.real() += 2 * c.real();
+      else if (2 * r < N)
+        bin += c;
+      else
+        bin += c.conjugate();
     }
-    return values;
-  }
-  MatrixXd coefficients(2 * H + 1, series.num_components());
-  coefficients.row(0) = series.c.col(0).real().transpose();
-  for (Index k = 1; k <= H; ++k) {
-    coefficients.row(2 * k - 1) = series.c.col(k).real().transpose();
-    coefficients.row(2 * k) = series.c.col(k).imag().transpose();
-  }
-  return stage_basis(num_cells, H) * coefficients;
+  transform.backward();
+  return Eigen::Map<const MatrixXd>(transform.samples().data(), stages * N, n);
 }
 
-// row <- row - l p for entries from..to-1, four multiples at a time.
-void subtract(Lane* row, const Lane* l, const Lane* p, Index stride, Index count, Index from, Index to) {
-  Index k = 0;
-  for (; k + 4 <= count; k += 4) {
-    const Lane l0 = l[k], l1 = l[k + 1], l2 = l[k + 2], l3 = l[k + 3];
-    const Lane *p0 = p + k * stride, *p1 = p0 + stride, *p2 = p1 + stride, *p3 = p2 + stride;
-    for (Index j = from; j < to; ++j) row[j] -= l0 * p0[j] + l1 * p1[j] + l2 * p2[j] + l3 * p3[j];
+// Rows are eliminated in pairs, with four pivots at a time: twice as much arithmetic as loads.
+constexpr Index block = 4;
+using Multiples = std::array<Lane, block>;
+
+// a <- a - l p, b <- b - m p with the four rows p, for entries from..to-1.
+inline void subtract(Lane* __restrict a, Lane* __restrict b, const Multiples& l, const Multiples& m,
+                     const Lane* __restrict p, Index stride, Index from, Index to) {
+  const auto [l0, l1, l2, l3] = l;
+  const auto [m0, m1, m2, m3] = m;
+  const Lane *p0 = p, *p1 = p0 + stride, *p2 = p1 + stride, *p3 = p2 + stride;
+  for (Index j = from; j < to; ++j) {
+    Lane x = a[j], y = b[j], pivot = p0[j];
+    x -= l0 * pivot;
+    y -= m0 * pivot;
+    pivot = p1[j];
+    x -= l1 * pivot;
+    y -= m1 * pivot;
+    pivot = p2[j];
+    x -= l2 * pivot;
+    y -= m2 * pivot;
+    pivot = p3[j];
+    x -= l3 * pivot;
+    y -= m3 * pivot;
+    a[j] = x;
+    b[j] = y;
   }
-  for (; k < count; ++k)
-    for (Index j = from; j < to; ++j) row[j] -= l[k] * p[k * stride + j];
 }
 
-// Solves A X = B, A n x n, B n x r, in all lanes: rows [A B] of n + r entries, overwritten; X takes the place of B.
-// Nothing is interchanged; returned is what the rounding errors are relative to, max_i sum_k |l_ik| max_j |u_kj|,
-// divided by max |a_ij|: not finite, or large, where pivots would have been needed.
+// Solves A X = B, A n x n, B n x r, n a multiple of `block`, in all lanes: rows [A B] of n + r entries, overwritten; X
+// takes the place of B. Nothing is interchanged; returned is what the rounding errors are relative to,
+// max_i sum_k |l_ik| max_j |u_kj|, divided by max |a_ij|: not finite, or large, where pivots would have been needed.
 template <int fixed_n, int fixed_r>
 Lane eliminate(Lane* rows, Index dynamic_n, Index dynamic_r) {
   const Index n = fixed_n == Eigen::Dynamic ? dynamic_n : fixed_n;
   const Index width = n + (fixed_r == Eigen::Dynamic ? dynamic_r : fixed_r);
-  std::array<Lane, stages * most_modes_in_lanes> inverse, largest, l;
+  const auto row_of = [&](Index i) { return rows + i * width; };
+  std::array<Lane, stages * most_modes_in_lanes> inverse, largest, sum;
+  const auto at = [](auto& of_rows, Index i) -> Lane& { return of_rows[std::size_t(i)]; };
   Lane size = Lane::Zero(), growth = Lane::Zero();
-  for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < n; ++j) size = size.max(rows[i * width + j].abs());
   for (Index i = 0; i < n; ++i) {
-    Lane* row = rows + i * width;
-    Lane sum = Lane::Zero();
-    constexpr Index block = 4;
-    for (Index k = 0; k < i; k += block) {
-      const Index end = std::min(i, k + block);
-      for (Index q = k; q < end; ++q) {
-        l[std::size_t(q)] = row[q] * inverse[std::size_t(q)];
-        sum += l[std::size_t(q)].abs() * largest[std::size_t(q)];
-        for (Index j = q + 1; j < end; ++j) row[j] -= l[std::size_t(q)] * rows[q * width + j];
-      }
-      subtract(row, l.data() + k, rows + k * width, width, end - k, end, width);
-    }
-    Lane own = Lane::Zero();
-    for (Index j = i; j < n; ++j) own = own.max(row[j].abs());
-    largest[std::size_t(i)] = own;
-    growth = growth.max(sum + own);
-    inverse[std::size_t(i)] = 1 / row[i];
+    at(sum, i) = Lane::Zero();
+    for (Index j = 0; j < n; ++j) size = size.max(row_of(i)[j].abs());
   }
-  for (Index i = n - 1; i >= 0; --i) {
-    Lane* row = rows + i * width;
-    subtract(row, row + i + 1, rows + (i + 1) * width, width, n - i - 1, n, width);
-    for (Index c = n; c < width; ++c) row[c] *= inverse[std::size_t(i)];
+  for (Index k = 0; k < n; k += block) {
+    for (Index q = k; q < k + block; ++q) {
+      Lane* row = row_of(q);
+      for (Index r = k; r < q; ++r) {
+        const Lane l = row[r] * at(inverse, r);
+        at(sum, q) += l.abs() * at(largest, r);
+        for (Index j = r + 1; j < width; ++j) row[j] -= l * row_of(r)[j];
+      }
+      at(inverse, q) = 1 / row[q];
+      at(largest, q) = Lane::Zero();
+      for (Index j = q; j < n; ++j) at(largest, q) = at(largest, q).max(row[j].abs());
+      growth = growth.max(at(sum, q) + at(largest, q));
+    }
+    const auto multiples = [&](Index i) {
+      Multiples l;
+      for (Index q = 0; q < block; ++q) {
+        Lane value = row_of(i)[k + q];
+        for (Index r = 0; r < q; ++r) value -= at(l, r) * row_of(k + r)[k + q];
+        at(l, q) = value * at(inverse, k + q);
+        at(sum, i) += at(l, q).abs() * at(largest, k + q);
+      }
+      return l;
+    };
+    for (Index i = k + block; i < n; i += 2)
+      subtract(row_of(i), row_of(i + 1), multiples(i), multiples(i + 1), row_of(k), width, k + block, width);
+  }
+  for (Index k = n - block; k >= 0; k -= block) {
+    for (Index q = k + block - 1; q >= k; --q) {
+      Lane* row = row_of(q);
+      for (Index r = q + 1; r < k + block; ++r)
+        for (Index j = n; j < width; ++j) row[j] -= row[r] * row_of(r)[j];
+      for (Index j = n; j < width; ++j) row[j] *= at(inverse, q);
+    }
+    const auto multiples = [&](Index i) {
+      Multiples l;
+      std::copy_n(row_of(i) + k, block, l.begin());
+      return l;
+    };
+    for (Index i = 0; i < k; i += 2)
+      subtract(row_of(i), row_of(i + 1), multiples(i), multiples(i + 1), row_of(k), width, n, width);
   }
   return growth / size;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "hb/anderson.hpp"
@@ -67,7 +68,9 @@ class Iteration {
         C_(A1_.data() + A_.size(), N_, n_ * m_),
         C1_(C_.data() + A_.size(), N_, n_ * m_),
         P_(forward_.samples().data(), N_, n_ * m_),
-        R_(P_.data() + P_.size(), N_, n_ * m_) {
+        R_(P_.data() + P_.size(), N_, n_ * m_),
+        x_(VectorXd::Zero(n_ * m_ * 2 * 2 * (H_ + 1))) {
+    alpha_.setZero();
     P_.setZero();
     R_.setZero();
     const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
@@ -94,11 +97,20 @@ class Iteration {
         }
   }
 
+  // Starts from what fewer samples gave.
+  void start_from(const Iteration& coarse) {
+    amplification_ = coarse.amplification_;
+    for (Index half = 0; half < 2 * n_ * m_; ++half)
+      x_.segment(half * 2 * (H_ + 1), 2 * (coarse.H_ + 1)) =
+          coarse.x_.segment(half * 2 * (coarse.H_ + 1), 2 * (coarse.H_ + 1));
+  }
+
   // Solves for A, C; false if it diverges, or would take too long. `change` is then a bound on the remaining error of
   // alpha.
   bool run(double tolerance, int& iterations) {
     constexpr int most_iterations = 80, window = 8;
-    VectorXd x = VectorXd::Zero(n_ * m_ * 2 * 2 * (H_ + 1)), f(x.size()), last_x, last_f;
+    VectorXd f(x_.size()), last_x, last_f;
+    VectorXd& x = x_;
     Anderson anderson(x.size());
     bool mixing = false;
     double previous = HUGE_VAL, best = HUGE_VAL;
@@ -124,7 +136,6 @@ class Iteration {
       last_f = f;
       // Rounding reached: nothing is left to gain.
       if (change <= goal || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
-        amplification_ = 1;
         for (const double secant : secants) amplification_ = std::max(amplification_, secant);
         change_ = change + tail(x);
         needs_more_samples_ = !(tail(x) <= std::max(1e-13, tolerance) * scale);
@@ -257,7 +268,10 @@ class Iteration {
     const auto A = [&](Index j, Index l) { return A_.col(j + n_ * l).array(); };
     const auto C = [&](Index j, Index l) { return C_.col(j + n_ * l).array(); };
 
-    for (int pass = 0; pass < (diagonal_damping_ ? 1 : 3); ++pass) {
+    // Where damping couples, alpha and beta depend on P and R, which depend on them.
+    constexpr int most_passes = 40;
+    for (int pass = 0; pass < most_passes; ++pass) {
+      const MatrixXd last_alpha = diagonal_damping_ ? MatrixXd() : alpha_;
       for (Index l = 0; l < m_; ++l)
         for (Index s = 0; s < m_; ++s) {
           auto alpha = alpha_.col(s + m_ * l).array();
@@ -284,6 +298,8 @@ class Iteration {
             R -= C(j, s) * beta_.col(s + m_ * l).array();
           }
         }
+      if (diagonal_damping_ || (alpha_ - last_alpha).cwiseAbs().maxCoeff() <= 2 * eps * alpha_.cwiseAbs().maxCoeff())
+        break;
     }
 
     auto out = forward_.samples();
@@ -334,6 +350,7 @@ class Iteration {
   MatrixXd alpha_, beta_;  // N x m*m
   fourier::RealTransform back_, forward_;
   Eigen::Map<MatrixXd> A_, A1_, C_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
+  VectorXd x_;  // see A_of, C_of
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
   bool needs_more_samples_ = false;
@@ -363,17 +380,21 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
     return all;
   }
   ReducedSystem reduced;
-  const Index start = fourier::fast_length(2 * system.K.num_harmonics() + 16);
-  for (Index N = start; N <= 4 * start && N <= 4096; N *= 2) {
-    Iteration iteration(system, p, N);
-    if (iteration.run(tolerance, reduced.iterations)) {
+  // Products need more than the harmonics of K; how many shows.
+  const Index start = fourier::fast_length(2 * system.K.num_harmonics() + 4);
+  std::unique_ptr<Iteration> coarse;
+  for (Index N = start; N <= 4 * start && N <= 4096; N = fourier::fast_length(N + 1)) {
+    auto iteration = std::make_unique<Iteration>(system, p, N);
+    if (coarse) iteration->start_from(*coarse);
+    if (iteration->run(tolerance, reduced.iterations)) {
       const int iterations = reduced.iterations;
-      reduced = iteration.result();
+      reduced = iteration->result();
       reduced.iterations = iterations;
       return reduced;
     }
     // Only a tail that has not decayed is worth a finer grid; divergence is not.
-    if (!iteration.needs_more_samples()) break;
+    if (!iteration->needs_more_samples()) break;
+    coarse = std::move(iteration);
   }
   return reduced;
 }

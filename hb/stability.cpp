@@ -116,8 +116,42 @@ double sufficient(const ScaledSystem& system, std::span<const Index> kept, doubl
   return 1e-3 * tolerance * smallest;
 }
 
-// Slaving the others to more than half of the modes costs more than propagating them all.
-bool too_many(const std::vector<Index>& together, Index I) { return 2 * Index(together.size()) > I; }
+// Slaving the others to them costs more than propagating all modes: cells as many as the fastest one needs, each with a
+// dense elimination.
+bool too_many(const ScaledSystem& system, const std::vector<Index>& together) {
+  const VectorXd w2 = system.mean_diagonal();
+  const auto work = [](double modes, double fastest2) {
+    return modes * modes * modes * std::max(12.0, 0.8 * std::sqrt(fastest2));
+  };
+  double fastest2 = 0;
+  for (const Index s : together) fastest2 = std::max(fastest2, std::abs(w2(s)));
+  return 2 * work(double(together.size()), fastest2) > work(double(system.num_modes()), w2.cwiseAbs().maxCoeff());
+}
+
+// Above this resonance strength reductions converge slowly, if at all (by experience with rods in bands of
+// instability).
+constexpr double strong_resonance = 3e-4;
+
+// Slaves the others to `together` and to the modes that pull at these, which are added to it until that converges;
+// empty where too many would have to be kept.
+std::optional<ReducedSystem> slave_to_resonant(const ScaledSystem& system, std::vector<Index>& together,
+                                               double tolerance) {
+  Index next = 0;
+  const auto with_next = [&] {
+    std::vector<Index> more = together;
+    more.push_back(next);
+    return more;
+  };
+  while (resonance_strength(system, together).maxCoeff(&next) > strong_resonance && !too_many(system, with_next()))
+    together = with_next();
+  while (!too_many(system, together)) {
+    ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
+    if (reduced.converged) return reduced;
+    resonance_strength(system, together).maxCoeff(&next);
+    together = with_next();
+  }
+  return std::nullopt;
+}
 
 // Exponents of one mode that are known better than those of a whole list take their place. A list that has lost them,
 // because they decay too fast for it, gets them.
@@ -164,20 +198,11 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
   }
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
-    while (!too_many(together, I)) {
-      const ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
-      if (reduced.converged) {
-        search.exponents = reduced_exponents(reduced, tolerance);
-        name_modes(search.exponents, system, together);
-        start_together = reduced.start;
-        break;
-      }
-      const VectorXd strength = resonance_strength(system, together);
-      Index next = 0;
-      strength.maxCoeff(&next);
-      together.push_back(next);
-    }
-    if (too_many(together, I)) {
+    if (const auto reduced = slave_to_resonant(system, together, tolerance)) {
+      search.exponents = reduced_exponents(*reduced, tolerance);
+      name_modes(search.exponents, system, together);
+      start_together = reduced->start;
+    } else {
       search = propagate_all(system, tolerance);
       for (const Exponents& pair : alone) sharpen(search.exponents, pair);
       return search;
@@ -274,16 +299,14 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
     }
     together.push_back(slowest);
   }
-  while (!too_many(together, I)) {
-    const ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
-    if (reduced.converged) {
-      Search search;
-      search.exponents = reduced_exponents(reduced, tolerance, true);
-      name_modes(search.exponents, system, together);
-      double growth = -HUGE_VAL;
-      for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
-        growth = std::max(growth, search.exponents.s[i].real() - search.exponents.error[i]);
-      if (!(std::max(reduced.others_below, search.exponents.others_below) < growth)) break;
+  if (const auto reduced = slave_to_resonant(system, together, tolerance)) {
+    Search search;
+    search.exponents = reduced_exponents(*reduced, tolerance, true);
+    name_modes(search.exponents, system, together);
+    double growth = -HUGE_VAL;
+    for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
+      growth = std::max(growth, search.exponents.s[i].real() - search.exponents.error[i]);
+    if (std::max(reduced->others_below, search.exponents.others_below) < growth) {
       search.method = StabilityMethod::slaving;
       search.evidence = fmt::format("{} modes kept, the others slaved to them and bounded below the leading exponent",
                                     together.size());
@@ -291,10 +314,6 @@ std::optional<Search> leading(const ScaledSystem& system, double tolerance, cons
       search.complete = true;
       return search;
     }
-    const VectorXd strength = resonance_strength(system, together);
-    Index next = 0;
-    strength.maxCoeff(&next);
-    together.push_back(next);
   }
   if (I > most_modes_propagated) return std::nullopt;
   return propagate_all(system, tolerance, true);

@@ -347,6 +347,8 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
   };
   notice_kind(unstable_above ? b : a);
   const double wanted = options.tolerance * std::max(std::abs(low), std::abs(high));
+  StabilityOptions sharp = options.stability;
+  sharp.tolerance = std::min(sharp.tolerance, boundary_tolerance);
   const double kappa1 = 0.2 / (high - low);
   const int half = static_cast<int>(std::ceil(std::log2((high - low) / (2 * wanted))));
   const int most = std::max(half, 0) + 1;
@@ -365,7 +367,7 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
     }
     if (!(x > low && x < high)) x = middle;
     if (!(x > low && x < high)) break;
-    const std::optional<StabilitySample> sample = stability_sample(at, x, options.stability);
+    const std::optional<StabilitySample> sample = stability_sample(at, x, sharp);
     if (!sample || !std::isfinite(sample->stability.growth_rate)) break;
     const double f = value(*sample);
     const bool above = (f > 0) == unstable_above;  // x lies on b's side

@@ -143,6 +143,63 @@ Sweep sweep(const TurnMaps& maps, const MatrixXd& from) {
   return result;
 }
 
+// How far a change of cell i reaches each diagonal block: N x blocks, |W_i| |V_(i-1)| with V_i the columns that span
+// the block's invariant subspace in the frame Q_i and W_i the rows of V_i^-1. V is unit upper triangular by blocks and
+// R_i V_(i-1) = V_i D_i with D the diagonal blocks of R: solved from the last cell to the first, which contracts, since
+// what leads grows more over a turn. Infinite where that does not settle.
+template <int size>
+MatrixXd reach(const Sweep& sweep) {
+  using Square = Eigen::Matrix<double, size, size>;
+  using Rows = Eigen::Matrix<double, size, size, Eigen::RowMajor>;
+  const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
+  const auto blocks = Index(sweep.ends.size());
+  const auto begin = [&](Index b) { return b == 0 ? 0 : sweep.ends[std::size_t(b - 1)]; };
+  const auto width = [&](Index b) { return sweep.ends[std::size_t(b)] - begin(b); };
+  // 1 for a block that nothing else is mixed with, whatever its width.
+  const auto length = [](const auto& block, Index p) { return std::sqrt(block.squaredNorm() - double(p - 1)); };
+  const Square turned = sweep.turned;
+  MatrixXd right(N, blocks), left(N, blocks);
+  Rows V = Rows::Identity(n, n), W(n, n), D(n, n), before;
+  constexpr int most_turns = 8;
+  for (int turn = 0; turn < most_turns; ++turn) {
+    before = V;
+    V = turned.transpose() * (V * turned).eval();
+    for (Index b = 0; b < blocks; ++b) {
+      V.block(begin(b), 0, n - begin(b), sweep.ends[std::size_t(b)]).setZero();
+      V.diagonal().segment(begin(b), width(b)).setOnes();
+    }
+    for (Index i = N - 1; i >= 0; --i) {
+      const auto R = sweep.R.middleCols<size>(n * i, n);
+      // The first turn only settles V.
+      if (turn > 0) {
+        W.setIdentity();
+        for (Index r = n - 2; r >= 0; --r)
+          for (Index c = r + 1; c < n; ++c) W.row(r) -= V(r, c) * W.row(c);
+        for (Index b = 0; b < blocks; ++b) left(i, b) = length(W.middleRows(begin(b), width(b)), width(b));
+      }
+      D.setZero();
+      for (Index b = 0; b < blocks; ++b)
+        D.block(begin(b), begin(b), width(b), width(b)) = R.block(begin(b), begin(b), width(b), width(b));
+      V = (blocks == n ? Rows(V * D.diagonal().asDiagonal()) : Rows(V.lazyProduct(D)));
+      for (Index r = n - 1; r >= 0; --r) {
+        for (Index c = r + 1; c < n; ++c) V.row(r) -= R(r, c) * V.row(c);
+        const bool vanishes = !(std::abs(R(r, r)) > 1e-290);
+        V.row(r) *= vanishes ? 0 : 1 / R(r, r);
+        if (vanishes) V(r, r) = 1;
+      }
+      if (turn > 0)
+        for (Index b = 0; b < blocks; ++b) right(i, b) = length(V.middleCols(begin(b), width(b)), width(b));
+    }
+    bool settled = turn > 0;
+    for (Index b = 0; b < blocks; ++b) {
+      const auto columns = V.middleCols(begin(b), width(b));
+      settled = settled && (columns - before.middleCols(begin(b), width(b))).norm() <= 0.1 * columns.norm();
+    }
+    if (settled) return 1.2 * right.cwiseProduct(left);
+  }
+  return MatrixXd::Constant(N, blocks, HUGE_VAL);
+}
+
 // Product of the diagonal blocks of R, |M| = 1, its size kept apart as a logarithm, and what a change of the cell maps
 // does to it.
 struct BlockProduct {
@@ -182,10 +239,10 @@ struct Product {
   Size size() const { return {std::max(M.norm(), 1e-300), exponent}; }
 };
 
-// A cell map known to `cell_error` of its own size, block or not, changes the product by
-// sum_i |behind_i| |Phi_i| |before_i|. A leading subspace that has not quite come back is a change of the last cell.
+// A block whose cell map i is known to errors(i) of the size of the whole map changes by
+// sum_i |behind_i| errors(i) |Phi_i| |before_i|.
 template <int size, int most = size>
-BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell_error) {
+BlockProduct block_product(const Sweep& sweep, Index begin, Index p, const VectorXd& errors) {
   using Square = Eigen::Matrix<double, size, size, Eigen::ColMajor, most, most>;
   const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
   const auto block = [&](Index i) { return sweep.R.block<size, size>(begin, n * i + begin, p, p); };
@@ -203,7 +260,7 @@ BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell
   Size bound;
   double change = 0;
   for (Index i = N - 1; i >= 0; --i) {
-    const double norm = whole(i), error = cell_error + (i == N - 1 ? sweep.closing : 0);
+    const double norm = whole(i), error = errors(i);
     const Size b = behind.size(), &a = before[std::size_t(i)];
     const double term = a.value * (norm / total.value) * b.value;
     change += error * std::min(std::ldexp(term, a.exponent + b.exponent - total.exponent), 1e200);
@@ -221,7 +278,7 @@ BlockProduct block_product(const Sweep& sweep, Index begin, Index p, double cell
 // partial products. Changes are carried over the turn entry by entry; Gershgorin's discs then hold an eigenvalue each
 // where they are apart. Empty where not, or where eigenvectors are too close.
 template <int size>
-std::optional<InexactEigenvalues> framed_eigenvalues(const Sweep& sweep, Index begin, Index p, double cell_error,
+std::optional<InexactEigenvalues> framed_eigenvalues(const Sweep& sweep, Index begin, Index p, const VectorXd& errors,
                                                      const MatrixXd& M, double log_size) {
   using Square = Eigen::Matrix<cplx, size, size>;
   using Real = Eigen::Matrix<double, size, size>;
@@ -239,8 +296,7 @@ std::optional<InexactEigenvalues> framed_eigenvalues(const Sweep& sweep, Index b
     const Column d = next.colwise().norm().transpose();
     F = next * d.cwiseInverse().asDiagonal();
     const Square inverse = F.inverse();
-    const double error = (cell_error + (i == N - 1 ? sweep.closing : 0)) * sweep.R.middleCols(n * i, n).norm();
-    const Column pulled = error * inverse.rowwise().norm();
+    const Column pulled = errors(i) * sweep.R.middleCols(n * i, n).norm() * inverse.rowwise().norm();
     const Eigen::RowVector<double, size> carried = g.transpose() + change.colwise().sum();
     change = d.asDiagonal() * change + pulled * carried;
     g = g.cwiseProduct(d);
@@ -284,6 +340,44 @@ std::optional<InexactEigenvalues> framed_eigenvalues(const Sweep& sweep, Index b
   return result;
 }
 
+// Whether the disc of one eigenvalue is small and touches no other one.
+bool apart(const InexactEigenvalues& mu, Index one) {
+  for (Index j = 0; j < mu.value.size(); ++j)
+    if (j != one && !(std::abs(mu.value(j) - mu.value(one)) > mu.radius(j) + 10 * mu.radius(one))) return false;
+  return mu.radius(one) < 0.1 * std::abs(mu.value(one));
+}
+
+// Relative change of the leading eigenvalue mu of the turn's map M to first order, v and w its right and left vectors,
+//     sum_i errors(i) |Phi_i| |w_i| |v_(i-1)|/|w_i' Phi_i v_(i-1)|,
+// carried through the cells: growth inside the turn that is taken back before its end does not count here either.
+template <int size>
+double leading_change(const Sweep& sweep, const VectorXd& errors, const MatrixXd& M, cplx mu) {
+  using Column = Eigen::Matrix<cplx, size, 1>;
+  using Square = Eigen::Matrix<cplx, size, size>;
+  const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
+  const Eigen::PartialPivLU<Square> shifted(M.cast<cplx>() - mu * cplx(1 + 1e-12, 1e-12) * MatrixXd::Identity(n, n));
+  Column v = Column::Ones(n), w = v;
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    v = shifted.solve(v).normalized();
+    w = shifted.transpose().solve(w).normalized();
+  }
+  const double at_end = std::abs((w.transpose() * v).value());
+  std::vector<Column, Eigen::aligned_allocator<Column>> before(static_cast<std::size_t>(N));
+  for (Index i = 0; i < N; ++i) {
+    before[std::size_t(i)] = v;
+    v = (sweep.R.middleCols<size>(n * i, n).template cast<cplx>() * v).normalized();
+  }
+  // Rounding of the eigenvalue of the product.
+  double change = 8 * eps * double(n) / (at_end * std::abs(mu));
+  for (Index i = N - 1; i >= 0; --i) {
+    const auto Phi = sweep.R.middleCols<size>(n * i, n);
+    const Column back = Phi.transpose().template cast<cplx>() * w;
+    change += errors(i) * Phi.norm() / std::abs((back.transpose() * before[std::size_t(i)]).value());
+    w = back.normalized();
+  }
+  return change;
+}
+
 template <int size>
 TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_only, const MatrixXd& subspaces) {
   const Index n = maps.num_states();
@@ -294,24 +388,42 @@ TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_on
   const auto lose = [&](double bound) {
     result.others_below = std::isnan(bound) ? HUGE_VAL : std::max(result.others_below, bound);
   };
-  Index begin = 0;
+  const bool split = swept.ends.size() > 1;
+  MatrixXd reaches;
+  if constexpr (size != 2)
+    if (split) reaches = reach<size>(swept);
+  Index begin = 0, block = -1;
   for (const Index end : swept.ends) {
     const Index p = end - begin, from = begin;
-    const auto [M, log_size, change, log_bound] =
-        p == n ? block_product<size>(swept, begin, p, cell_error)
-               : block_product<Eigen::Dynamic, size>(swept, begin, p, cell_error);
+    ++block;
+    // A leading subspace that has not quite come back is a change of the last cell.
+    VectorXd errors = VectorXd::Constant(maps.num_cells, cell_error);
+    errors(maps.num_cells - 1) += swept.closing;
+    if (split) errors = errors.cwiseProduct(reaches.col(block));
+    const auto [M, log_size, change, log_bound] = p == n ? block_product<size>(swept, begin, p, errors)
+                                                         : block_product<Eigen::Dynamic, size>(swept, begin, p, errors);
     begin = end;
     if (n == 2) return discriminant(M, log_size, change, maps.damping_trace);
     if (!(change < 0.5)) {
       lose(log_bound / two_pi);
       continue;
     }
-    InexactEigenvalues mu = inexact_eigenvalues(M, change);
+    InexactEigenvalues mu = inexact_eigenvalues(M, change, leading_only);
     constexpr double sharp = 1e-10;
     if (p > 1 && !at_once && !((mu.radius.array() / mu.value.array().abs()).maxCoeff() < sharp)) {
-      const auto framed = p == 2 ? framed_eigenvalues<2>(swept, from, p, cell_error, M, log_size)
-                                 : framed_eigenvalues<Eigen::Dynamic>(swept, from, p, cell_error, M, log_size);
+      const auto framed = p == 2 ? framed_eigenvalues<2>(swept, from, p, errors, M, log_size)
+                                 : framed_eigenvalues<Eigen::Dynamic>(swept, from, p, errors, M, log_size);
       if (framed && framed->radius.maxCoeff() < mu.radius.maxCoeff()) mu = *framed;
+    }
+    if constexpr (size != 2) {
+      Index first = 0;
+      const double largest = mu.value.cwiseAbs().maxCoeff(&first);
+      if (at_once && apart(mu, first)) {
+        // Beyond the first order while the disc is small.
+        const double radius = 2 * leading_change<size>(swept, errors, M, mu.value(first)) * largest;
+        for (Index j = 0; j < p; ++j)
+          if ((j == first || mu.value(j) == std::conj(mu.value(first))) && radius < mu.radius(j)) mu.radius(j) = radius;
+      }
     }
     for (Index j = 0; j < p; ++j) {
       const double radius = mu.radius(j), modulus = std::abs(mu.value(j));

@@ -56,20 +56,22 @@ void compare(const Stability& result, const std::vector<FloquetExponent>& exact,
   }
 }
 
+void run_trial(stress::Family family, std::uint64_t seed, int trial, Tally& tally) {
+  stress::Random random(seed * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family));
+  const stress::Trial t = stress::random_trial(family, random, trial % 20 == 19 ? 20 : 4);
+  const std::vector<FloquetExponent> exact = reference::floquet_exponents(t.system, t.speed);
+  for (const bool leading_only : {false, true}) {
+    const Stability result = analyse_stability(t.system, t.speed, {.leading_only = leading_only});
+    compare(result, exact, t.speed,
+            "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " I " +
+                std::to_string(t.system.num_modes()) + (leading_only ? " leading" : ""),
+            tally);
+  }
+}
+
 void run(stress::Family family, int trials) {
   Tally tally;
-  for (int trial = 0; trial < stress::multiplied(trials); ++trial) {
-    stress::Random random(stress::seed() * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family));
-    const stress::Trial t = stress::random_trial(family, random, trial % 20 == 19 ? 20 : 4);
-    const std::vector<FloquetExponent> exact = reference::floquet_exponents(t.system, t.speed);
-    for (const bool leading_only : {false, true}) {
-      const Stability result = analyse_stability(t.system, t.speed, {.leading_only = leading_only});
-      compare(result, exact, t.speed,
-              "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " I " +
-                  std::to_string(t.system.num_modes()) + (leading_only ? " leading" : ""),
-              tally);
-    }
-  }
+  for (int trial = 0; trial < stress::multiplied(trials); ++trial) run_trial(family, stress::seed(), trial, tally);
   std::printf(
       "family %2d: %d verdicts, %d undecided, %d wrong, %d bars uncovered, %d beyond the reference, "
       "largest error/bar %.2g\n",
@@ -77,15 +79,17 @@ void run(stress::Family family, int trials) {
 }
 
 // The frequency domain against the same reference; its windows limit it to moderate frequencies.
+void run_hill_trial(stress::Family family, std::uint64_t seed, int trial, Tally& tally) {
+  stress::Random random(seed * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family) + 60);
+  const stress::Trial t = stress::random_trial(family, random, 2);
+  compare(analyse_stability(t.system, t.speed, {.method = StabilityMethod::hill}),
+          reference::floquet_exponents(t.system, t.speed), t.speed,
+          "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " by Hill", tally);
+}
+
 void run_hill(stress::Family family, int trials) {
   Tally tally;
-  for (int trial = 0; trial < stress::multiplied(trials); ++trial) {
-    stress::Random random(stress::seed() * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family) + 60);
-    const stress::Trial t = stress::random_trial(family, random, 2);
-    compare(analyse_stability(t.system, t.speed, {.method = StabilityMethod::hill}),
-            reference::floquet_exponents(t.system, t.speed), t.speed,
-            "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " by Hill", tally);
-  }
+  for (int trial = 0; trial < stress::multiplied(trials); ++trial) run_hill_trial(family, stress::seed(), trial, tally);
   std::printf("family %2d by Hill: %d verdicts, %d undecided, %d wrong, %d bars uncovered, largest error/bar %.2g\n",
               int(family), tally.verdicts, tally.undecided, tally.wrong, tally.uncovered, tally.clearance);
 }
@@ -102,6 +106,31 @@ INSTANTIATE_TEST_SUITE_P(Families, StabilityStress, testing::Range(0, stress::nu
 class HillStress : public testing::TestWithParam<int> {};
 
 TEST_P(HillStress, NoVerdictIsWrongAndEveryBarCovers) { run_hill(static_cast<stress::Family>(GetParam()), 3); }
+
+// Nearly parallel Floquet vectors of exponents far apart: their condition belongs to the bar.
+TEST(StabilityBars, NearlyParallelFloquetVectors) {
+  Tally tally;
+  run_trial(stress::Family::defective, 2031, 7, tally);
+  EXPECT_EQ(tally.uncovered, 0);
+  EXPECT_EQ(tally.unsettled, 0);
+}
+
+// A reduction that goes on with more samples while the damping couples: the equations it is tested by are implicit.
+TEST(StabilityBars, CoupledDampingWithMoreSamples) {
+  Tally tally;
+  run_trial(stress::Family::unsymmetric, 5020, 4, tally);
+  run_trial(stress::Family::unsymmetric, 5002, 7, tally);
+  EXPECT_EQ(tally.uncovered, 0);
+  EXPECT_EQ(tally.unsettled, 0);
+}
+
+// Modulation beyond the mean: rows just outside a window are not dominated by their diagonal.
+TEST(StabilityBars, HillWindowUnderStrongModulation) {
+  Tally tally;
+  run_hill_trial(stress::Family::strong, 3032, 5, tally);
+  EXPECT_EQ(tally.uncovered, 0);
+  EXPECT_EQ(tally.unsettled, 0);
+}
 
 // Not those of hundreds of harmonics, whose dense windows are slow.
 std::vector<int> families_of_few_harmonics() {
