@@ -103,14 +103,15 @@ MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
   const Index H = series.num_harmonics(), N = num_cells, n = series.num_components();
   if (H == 0) return series.c.col(0).real().transpose().replicate(stages * N, 1);
   const auto& shifts = stage_shifts(N, H);
-  fourier::RealTransform& transform = fourier::thread_transform(N, stages * n);
-  auto spectrum = transform.spectrum();
-  spectrum.setZero();
-  for (Index q = 0; q < n; ++q)
+  fourier::RealTransform& transform = fourier::thread_transform(N, stages);
+  MatrixXd values(stages * N, n);
+  for (Index q = 0; q < n; ++q) {
+    auto spectrum = transform.spectrum();
+    spectrum.setZero();
     for (Index k = 0; k <= H; ++k) {
       const Index r = k % N;
       const Eigen::Array<cplx, stages, 1> c = series.c(q, k) * shifts.col(k);
-      auto bin = spectrum.row(2 * r <= N ? r : N - r).segment<stages>(stages * q).transpose().array();
+      auto bin = spectrum.row(2 * r <= N ? r : N - r).transpose().array();
       if (k == 0)
         bin.real() += c.real();
       else if (r == 0 || 2 * r == N)
@@ -120,8 +121,10 @@ MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
       else
         bin += c.conjugate();
     }
-  transform.backward();
-  return Eigen::Map<const MatrixXd>(transform.samples().data(), stages * N, n);
+    transform.backward();
+    values.col(q) = transform.samples().reshaped();
+  }
+  return values;
 }
 
 // Rows are eliminated in pairs, with four pivots at a time: twice as much arithmetic as loads.

@@ -42,19 +42,36 @@ Partition partition(Index I, std::span<const Index> slow) {
   return p;
 }
 
+// How far one step of the coupling reaches: the highest harmonic that is not a hundredth of the largest of its entry of
+// K, nor so small that its square is below rounding.
+Index reach_of_coupling(const ScaledSystem& system) {
+  const Index I = system.num_modes();
+  const VectorXd w2 = system.mean_diagonal().cwiseAbs();
+  Index reach = 1;
+  for (Index j = 0; j < I; ++j)
+    for (Index i = 0; i < I; ++i) {
+      const VectorXd size = system.K.c.row(i + I * j).tail(system.K.num_harmonics()).cwiseAbs().transpose();
+      const double strong = std::max(0.01 * size.maxCoeff(), 1e-7 * std::sqrt(w2(i) * w2(j)));
+      for (Index k = system.K.num_harmonics(); k > reach; --k)
+        if (size(k - 1) > strong) reach = k;
+    }
+  return reach;
+}
+
 // One attempt with N samples of the turn.
 class Iteration {
   // Samples of k_ij over the turn.
   auto K(Index i, Index j) const { return K_.col(i + I_ * j).array(); }
 
  public:
-  Iteration(const ScaledSystem& system, const Partition& p, Index num_samples)
+  Iteration(const ScaledSystem& system, const Partition& p, Index num_samples, Index reach)
       : S_(p.S),
         F_(p.F),
         m_(Index(p.S.size())),
         n_(Index(p.F.size())),
         N_(num_samples),
         H_((num_samples - 1) / 2),
+        reach_(reach),
         G_(system.G),
         diagonal_damping_(system.diagonal_damping),
         I_(system.num_modes()),
@@ -239,8 +256,10 @@ class Iteration {
     return largest;
   }
 
-  // What the last quarter of the harmonics carries: the truncation's share.
-  double tail(const VectorXd& x) const { return kappa_ * norm(x, H_ + 1 - std::max<Index>(1, H_ / 4)); }
+  // What the last harmonics carry, as many as one step of the coupling reaches: the truncation's share.
+  double tail(const VectorXd& x) const {
+    return kappa_ * norm(x, std::max<Index>(0, H_ + 1 - std::max(reach_, H_ / 4)));
+  }
 
   // Residual of the two invariance equations, pushed through the inverse of their constant part:
   //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
@@ -342,7 +361,7 @@ class Iteration {
   }
 
   std::vector<Index> S_, F_;
-  Index m_, n_, N_, H_;
+  Index m_, n_, N_, H_, reach_;
   const MatrixXd& G_;
   bool diagonal_damping_;
   Index I_;
@@ -381,10 +400,12 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
   }
   ReducedSystem reduced;
   // Products need more than the harmonics of K; how many shows.
-  const Index start = fourier::fast_length(2 * system.K.num_harmonics() + 4);
+  constexpr Index fewest_samples = 32;
+  const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
+  const Index reach = reach_of_coupling(system);
   std::unique_ptr<Iteration> coarse;
   for (Index N = start; N <= 4 * start && N <= 4096; N = fourier::fast_length(N + 1)) {
-    auto iteration = std::make_unique<Iteration>(system, p, N);
+    auto iteration = std::make_unique<Iteration>(system, p, N, reach);
     if (coarse) iteration->start_from(*coarse);
     if (iteration->run(tolerance, reduced.iterations)) {
       const int iterations = reduced.iterations;

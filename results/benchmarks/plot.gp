@@ -22,3 +22,16 @@ do for [quantity in "steady growth"] {
       using 1:2 with linespoints title method noenhanced
   }
 }
+
+# What propagates a turn best, from propagators.csv.
+set ylabel "|growth rate - reference| / max(|reference|, Omega)"
+systems = system("awk -F, '!/^#/ && NR > 2 && !seen[$1]++ { print $1 }' propagators.csv")
+do for [name in systems] {
+  rows = sprintf("awk -F, '$1 == \"%s\"' propagators.csv", name)
+  methods = system(rows . " | awk -F, '!seen[$3]++ { print $3 }'")
+  set output sprintf("%s_propagators.svg", name)
+  set title sprintf("%s: 8, 16, .. equal cells over a turn", name) noenhanced
+  plot for [method in methods] \
+    sprintf("< %s | awk -F, '$3 == \"%s\" { print $7 \",\" ($5 > 1e-17 ? $5 : 1e-17) }'", rows, method) \
+    using 1:2 with linespoints title method noenhanced
+}

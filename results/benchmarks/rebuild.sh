@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Error against run time of every method: error_against_time.csv and one picture per system and quantity; scaling.csv.
+# Error against run time of every method: error_against_time.csv and one picture per system and quantity; scaling.csv; propagators.csv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-../../tools/build.sh release hb_error_against_time hb_scaling >/dev/null
+../../tools/build.sh release hb_error_against_time hb_propagators hb_scaling >/dev/null
 ../../build/release/bin/hb_scaling >scaling.csv
 ../../build/release/bin/hb_error_against_time >error_against_time.csv
+../../build/release/bin/hb_propagators >propagators.csv
 gnuplot plot.gp

@@ -53,8 +53,9 @@ enum class Family {
   falling,  // negative mean stiffness
   strong,  // modulation beyond the mean
   alike,  // modes alike, in frequency or damping, coupled weakly or not at all
+  sparse,  // one harmonic far above zero, and a trace of the first one, which makes the period a whole turn
 };
-constexpr int num_families = 15;
+constexpr int num_families = 16;
 
 struct Trial {
   HillSystem system;
@@ -77,7 +78,9 @@ inline Trial random_trial(Family family, Random& random, Eigen::Index most_modes
   const Index least = pair ? 2 : 1;
   Index I = random.integer(
       least, std::max(least, family == Family::fast || wide ? std::min<Index>(2, most_modes) : most_modes));
-  const Index P = wide ? random.integer(8, family == Family::many_harmonics ? 200 : 80) : random.integer(1, 6);
+  const Index P = wide                       ? random.integer(8, family == Family::many_harmonics ? 200 : 80)
+                  : family == Family::sparse ? random.integer(2, 40)
+                                             : random.integer(1, 6);
   double modulation = 0.8 * random.power(-3, 0);
   if (family == Family::strong) modulation = random(1, 4);
   const double decay = family == Family::many_harmonics ? random(0.8, 0.97) : random(0.2, 0.7);
@@ -113,6 +116,8 @@ inline Trial random_trial(Family family, Random& random, Eigen::Index most_modes
       for (Index j = 0; j <= i; ++j) {
         double size = modulation * w(i) * w(j) / double(1 + i - j) * std::pow(decay, double(k));
         if (family == Family::discontinuous) size = modulation * w(i) * w(j) / double(k);
+        if (family == Family::sparse)
+          size = modulation * w(i) * w(j) / double(1 + i - j) * (k == P ? 1 : k == 1 ? random.power(-12, -2) : 0);
         if (family == Family::alike && i != j) size *= random.chance(0.5) ? 0 : random.power(-6, 0);
         const std::complex<double> value(0.5 * size * random(-1, 1), 0.5 * size * random(-1, 1));
         detail::add(s, i, j, k, value);
