@@ -1,10 +1,12 @@
 // Reference for tests: Floquet exponents by propagation over one turn in long double, Radau IIA with 12 stages (order
-// 23, stiffly accurate), every exponent with the change that more cells make. Shares nothing with the engine but types.
+// 23, stiffly accurate), every exponent with the change that more cells and another first angle make. Shares nothing
+// with the engine but types.
 #pragma once
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -118,7 +120,8 @@ inline Equation equation(const HillSystem& system, double speed) {
   return e;
 }
 
-inline std::vector<Complex> turn(const Equation& e, Eigen::Index cells) {
+// Over the turn that begins at the angle `start`.
+inline std::vector<Complex> turn(const Equation& e, Eigen::Index cells, Real start = 0) {
   const Eigen::Index I = e.I, s = stages;
   const auto& [c, A] = tableau();
   const Eigen::Matrix<Real, stages, stages> A2 = A * A;
@@ -129,7 +132,7 @@ inline std::vector<Complex> turn(const Equation& e, Eigen::Index cells) {
   Real log_size = 0;
   for (Eigen::Index n = 0; n < cells; ++n) {
     for (Eigen::Index i = 0; i < s; ++i) {
-      const RealMatrix K = e.at((Real(n) + c[std::size_t(i)]) * h);
+      const RealMatrix K = e.at(start + (Real(n) + c[std::size_t(i)]) * h);
       for (Eigen::Index j = 0; j < s; ++j) M.block(i * I, j * I, I, I) = h * A(i, j) * e.G + h * h * A2(i, j) * K;
       M.block(i * I, i * I, I, I).diagonal().array() += 1;
       right.block(i * I, 0, I, I) = -K;
@@ -182,17 +185,24 @@ inline std::vector<FloquetExponent> floquet_exponents(const HillSystem& system, 
   }
   const Real bandwidth = Real(e.cosine.size());
   const auto cells = Eigen::Index(std::ceil(1.3L * std::max(fastest, bandwidth / 2))) + 10;
-  const std::vector<Complex> coarse = detail::turn(e, cells), fine = detail::turn(e, cells + cells / 3 + 3);
+  const Eigen::Index more = cells + cells / 3 + 3;
+  const std::vector<Complex> fine = detail::turn(e, more);
+  // The same turn begun elsewhere rounds differently.
+  const std::array<std::vector<Complex>, 2> others = {detail::turn(e, cells), detail::turn(e, more, 2.5L)};
   Real leading = -HUGE_VALL;
   for (const Complex s : fine) leading = std::max(leading, s.real());
   std::vector<FloquetExponent> result;
   for (const Complex s : fine) {
     if (s.real() < leading - 30 / (2 * std::numbers::pi_v<Real>)) continue;
-    Real nearest = HUGE_VALL;
-    for (const Complex other : coarse) nearest = std::min(nearest, detail::distance(s, other));
+    Real change = 0;
+    for (const std::vector<Complex>& list : others) {
+      Real nearest = HUGE_VALL;
+      for (const Complex other : list) nearest = std::min(nearest, detail::distance(s, other));
+      change = std::max(change, nearest);
+    }
     // Rounding of the product, a hundred times epsilon of its largest multiplier; more where both runs differ by more.
     const Real noise = 1e-17L * std::exp(2 * std::numbers::pi_v<Real> * (leading - s.real()));
-    result.push_back({s * Real(speed), (2 * nearest + noise + 1e-18L * std::abs(s)) * Real(speed)});
+    result.push_back({s * Real(speed), (2 * change + noise + 1e-18L * std::abs(s)) * Real(speed)});
   }
   std::sort(result.begin(), result.end(),
             [](const FloquetExponent& a, const FloquetExponent& b) { return a.value.real() > b.value.real(); });
