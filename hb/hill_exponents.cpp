@@ -21,7 +21,6 @@ constexpr Index most_unknowns = 600;
 struct Found {
   cplx s;
   double error;
-  VectorXcd state;
 };
 
 // Harmonics -N..N; unknowns of one harmonic stand together.
@@ -90,15 +89,9 @@ class Window {
     }
     if (through > 0) effect += back * through / (1 - std::min(outer_coupling(s), 1.0));
     const double slope = std::abs(z.dot(derivative(s, x)));
-    Found found{s, 4 * effect / slope, VectorXcd(2 * I_)};
-    if (std::isnan(found.error)) return std::nullopt;
-    found.state.setZero();
-    for (Index k = -N_; k <= N_; ++k) {
-      const VectorXcd part = x.segment((k + N_) * I_, I_);
-      found.state.head(I_) += part;
-      found.state.tail(I_) += (s + cplx(0, double(k))) * part;
-    }
-    return found;
+    const double error = 4 * effect / slope;
+    if (std::isnan(error)) return std::nullopt;
+    return Found{s, error};
   }
 
  private:
@@ -178,13 +171,10 @@ HillExponents hill_exponents(const ScaledSystem& system) {
     return best && std::isfinite(best->error) ? best : std::nullopt;
   };
   HillExponents result;
-  result.start = MatrixXcd(2 * I, 0);
   const auto add = [&](const Found& found, Index mode) {
     result.s.push_back(found.s);
     result.error.push_back(found.error);
     result.mode.push_back(mode);
-    result.start.conservativeResize(Eigen::NoChange, result.start.cols() + 1);
-    result.start.rightCols(1) = found.state;
   };
   for (Index i = 0; i < I; ++i) {
     const cplx root = std::sqrt(cplx(b(i) * b(i) / 4 - w2(i), 0));
@@ -195,7 +185,7 @@ HillExponents hill_exponents(const ScaledSystem& system) {
     // Its partner: the conjugate, unless s and conj s differ by a whole number of turns; then the other real one.
     const double twice = 2 * first->s.imag();
     if (std::abs(twice - std::round(twice)) > 1e-6 + 2 * first->error) {
-      add({std::conj(first->s), first->error, first->state.conjugate()}, i);
+      add({std::conj(first->s), first->error}, i);
       continue;
     }
     const std::optional<Found> second = exponent(-b(i) - std::conj(first->s), i);

@@ -15,7 +15,6 @@ struct HillExponents {
   std::vector<std::complex<double>> s;  // per radian of crank angle, imaginary part not folded
   std::vector<double> error;  // see below
   std::vector<Eigen::Index> mode;  // whose window it was found in
-  Eigen::MatrixXcd start;  // states (x, x') at tau = 0, a column each: 2I of them, spanning, if complete
 };
 
 // With L(s)_kl = ((s + ik)^2 + (s + ik) G) delta_kl + K_(k-l): Newton's method from the roots of each mode's mean

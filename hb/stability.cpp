@@ -91,15 +91,14 @@ Search propagate_all(const ScaledSystem& system, double tolerance, bool leading_
 }
 
 // True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.
-template <class Matrix>
-bool spans(const ScaledSystem& system, Matrix states) {
+bool spans(const ScaledSystem& system, MatrixXd states) {
   const Index I = system.num_modes();
   if (!states.allFinite()) return false;
   const VectorXd w2 = system.mean_diagonal();
   for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
   states.colwise().normalize();
   // Far above the errors of the subspaces.
-  return Eigen::PartialPivLU<Matrix>(states).rcond() > 1e-8;
+  return Eigen::PartialPivLU<MatrixXd>(states).rcond() > 1e-8;
 }
 
 // Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
@@ -233,22 +232,22 @@ Search by_slaving(const ScaledSystem& system, double tolerance) {
 Search by_hill(const ScaledSystem& system) {
   const HillExponents hill = hill_exponents(system);
   Search search;
-  search.complete = hill.start.cols() == 2 * system.num_modes() && spans(system, hill.start);
+  // From two modes the iteration may have gone to one exponent. Distinct ones have independent vectors: 2I are all.
   const auto found_before = [&](std::size_t i) {
     for (std::size_t k = 0; k < search.exponents.s.size(); ++k) {
       const cplx apart = search.exponents.s[k] - hill.s[i];
       const double turn = std::abs(apart.imag() - std::round(apart.imag()));
-      if (std::hypot(apart.real(), turn) <= search.exponents.error[k] + hill.error[i] + 1e-12) return true;
+      if (std::hypot(apart.real(), turn) <= search.exponents.error[k] + hill.error[i] + 1e-10) return true;
     }
     return false;
   };
   for (std::size_t i = 0; i < hill.s.size(); ++i) {
-    // From two modes the iteration may have gone to one exponent.
-    if (!search.complete && found_before(i)) continue;
+    if (found_before(i)) continue;
     search.exponents.add(hill.s[i], hill.error[i]);
     search.exponents.mode.push_back(hill.mode[i]);
     search.exponents.frequency.push_back(std::abs(hill.s[i].imag()));
   }
+  search.complete = Index(search.exponents.s.size()) == 2 * system.num_modes();
   search.method = StabilityMethod::hill;
   search.evidence = "each exponent by Newton's method on the Hill equations, in a window centred on its mode";
   return search;

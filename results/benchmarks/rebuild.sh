@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Error against run time of every method: error_against_time.csv and one picture per system and quantity; scaling.csv; propagators.csv.
+# Error against run time of every method: error_against_time.csv, propagators.csv and a picture per system; scaling.csv.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 

@@ -132,6 +132,14 @@ TEST(StabilityBars, HillWindowUnderStrongModulation) {
   EXPECT_EQ(tally.unsettled, 0);
 }
 
+// Newton's method from two modes goes to one exponent, another one is missed: what was found is not all.
+TEST(StabilityBars, HillIterationsThatMeet) {
+  Tally tally;
+  run_hill_trial(stress::Family::strong, 8033, 5, tally);
+  EXPECT_EQ(tally.uncovered, 0);
+  EXPECT_EQ(tally.undecided, 1);
+}
+
 // Not those of hundreds of harmonics, whose dense windows are slow.
 std::vector<int> families_of_few_harmonics() {
   std::vector<int> families;
