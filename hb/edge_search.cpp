@@ -57,8 +57,7 @@ std::vector<StabilityBoundary> EdgeSearch::boundaries(const SystemAt& along, con
     const double near = boundary.x - std::copysign(std::max(4 * boundary.error, 1e-9 * std::abs(room)), room);
     std::vector<StabilityBoundary> further;
     if (std::abs(room) > 1e-3 * std::abs(b.x - a.x)) {
-      if (std::optional<StabilitySample> s = stability_sample(along, near, options_.stability);
-          s && !is_unstable(*s)) {
+      if (std::optional<StabilitySample> s = stability_sample(along, near, options_.stability); s && !is_unstable(*s)) {
         const Tracked edge = tracked(std::move(*s), p, q);
         const Tracked &low = rising ? stable : edge, &high = rising ? edge : stable;
         const StabilitySample* before = &low.sample;
@@ -107,8 +106,8 @@ StabilityBoundary EdgeSearch::located(const SystemAt& along, const StabilitySamp
 // An exponent does not tell the side of the resonance k Omega = 2 omega on which it lies: omega and k Omega - omega
 // fold to one number. Its distance d from k Omega/2 does not need the side: beside a tongue of centre x0 and
 // half-width w, d^2 = c^2 ((x - x0)^2 - w^2), a parabola whose vertex is the centre.
-std::optional<StabilitySample> EdgeSearch::at_centre(const SystemAt& along, const Tracked& a, const Tracked& b, std::size_t mode,
-                                         double k) const {
+std::optional<StabilitySample> EdgeSearch::at_centre(const SystemAt& along, const Tracked& a, const Tracked& b,
+                                                     std::size_t mode, double k) const {
   const auto squared = [&](const StabilitySample& s) {
     double nearest = HUGE_VAL;
     for (const Exponent& e : s.stability.exponents) {
@@ -149,7 +148,8 @@ std::optional<StabilitySample> EdgeSearch::at_centre(const SystemAt& along, cons
 }
 
 // Tongues of single modes between two stable ends, beside what look_between finds.
-std::vector<StabilitySample> EdgeSearch::look_at_centres(const SystemAt& along, const Tracked& a, const Tracked& b) const {
+std::vector<StabilitySample> EdgeSearch::look_at_centres(const SystemAt& along, const Tracked& a,
+                                                         const Tracked& b) const {
   std::vector<StabilitySample> found;
   ResonanceStrength strength(along, a.sample.x, b.sample.x, options_.max_order);
   for (std::size_t m = 0; m < a.modes.size(); ++m) {

@@ -305,7 +305,8 @@ struct Turn {
           }
         }
       for (Index lane = 0; lane < lanes; ++lane)
-        if (!(growth(lane) <= most_growth)) pivoted(first + lane);
+        if (!(growth(lane) <= most_growth && cells.middleCols(2 * m * (first + lane), 2 * m).allFinite()))
+          pivoted(first + lane);
     }
   }
 };

@@ -34,19 +34,6 @@ Index resolved_harmonics(const ReducedSystem& reduced, double negligible) {
   return k;
 }
 
-// Leaves out trailing harmonics that together are no larger than `allowed` anywhere; returns what they add up to.
-double drop_tail(FourierSeries& series, double allowed) {
-  Index H = series.num_harmonics();
-  double sum = 0;
-  for (; H > 0; --H) {
-    const double more = sum + 2 * series.c.col(H).cwiseAbs().maxCoeff();
-    if (!(more <= allowed)) break;
-    sum = more;
-  }
-  series = fourier::resized(series, H);
-  return sum;
-}
-
 // Of one mode by its phase function; empty if that does not settle.
 std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance) {
   const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
@@ -79,14 +66,7 @@ std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tol
 }  // namespace
 
 // Exponents of a reduced system by propagation with growing numbers of cells.
-Exponents propagated_exponents(const ReducedSystem& system, double tolerance, bool leading_only) {
-  ReducedSystem reduced = system;
-  // Harmonics that do not matter beside the errors of the others, or the tolerance, need no samples.
-  const auto lean = [&](FourierSeries& series, double& error) {
-    error += drop_tail(series, std::max(0.5 * error, 1e-6 * tolerance));
-  };
-  lean(reduced.alpha, reduced.alpha_error);
-  lean(reduced.beta, reduced.beta_error);
+Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
   const Index m = reduced.num_modes;
   // Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
   VectorXd W(m);
@@ -108,10 +88,11 @@ Exponents propagated_exponents(const ReducedSystem& system, double tolerance, bo
     nothing.others_below = HUGE_VAL;
     return nothing;
   }
-  // Eight stages resolve three harmonics a cell.
+  // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
+  // agree by chance.
   constexpr Index fewest_cells = 12;
-  Index least = std::max(
-      {fewest_cells, Index(std::ceil(0.8 * fastest)), (resolved_harmonics(reduced, 1e-3 * tolerance) + 2) / 3});
+  Index least =
+      std::max({fewest_cells, Index(std::ceil(0.8 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance) + 1});
   // The phase of one oscillator comes out to (0.61 w/cells)^15 of a turn (measured).
   if (m == 1 && reduced.alpha.c(0, 0).real() > 0) {
     const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
@@ -126,6 +107,8 @@ Exponents propagated_exponents(const ReducedSystem& system, double tolerance, bo
   Index enough = 0;  // cells for the leading one
   Exponents result;
   std::optional<TurnExponents> coarse;
+  Index coarse_cells = 0;
+  std::vector<double> coarse_change;  // of coarse exponents from those before
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
   while (cells <= most && work(double(cells)) < most_work) {
@@ -134,20 +117,29 @@ Exponents propagated_exponents(const ReducedSystem& system, double tolerance, bo
     const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
     TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only,
                                         coarse ? coarse->subspaces : MatrixXd());
+    std::vector<double> change;
     if (coarse) {
       result.s = fine.s;
       result.others_below = fine.others_below;
       result.error.assign(fine.s.size(), HUGE_VAL);
+      change.assign(fine.s.size(), HUGE_VAL);
       for (std::size_t i = 0; i < fine.s.size(); ++i) {
         // The nearest coarse exponent; angles modulo 1.
         double nearest = HUGE_VAL;
-        for (const cplx other : coarse->s) {
-          double turn = std::abs(fine.s[i].imag() - other.imag());
+        std::size_t its = 0;
+        for (std::size_t k = 0; k < coarse->s.size(); ++k) {
+          double turn = std::abs(fine.s[i].imag() - coarse->s[k].imag());
           turn = std::min(turn, std::abs(1 - turn));
-          nearest = std::min(nearest, std::hypot(fine.s[i].real() - other.real(), turn));
+          const double distance = std::hypot(fine.s[i].real() - coarse->s[k].real(), turn);
+          if (!(distance < nearest)) continue;
+          nearest = distance;
+          its = k;
         }
-        // Order 15 would make the finer one 75 times nearer at least; nothing of that is claimed.
-        result.error[i] = nearest + fine.error[i] + damping_error;
+        change[i] = nearest;
+        // Two that agree by chance do not make up for the step before, which order 15 shrinks.
+        const double before =
+            coarse_change.empty() ? 0 : coarse_change[its] * std::pow(double(coarse_cells) / double(cells), 15);
+        result.error[i] = std::max(nearest, before) + fine.error[i] + damping_error;
       }
       if (result.s.empty()) break;
       // At rounding more cells gain nothing.
@@ -160,6 +152,8 @@ Exponents propagated_exponents(const ReducedSystem& system, double tolerance, bo
       if (done) break;
     }
     coarse = std::move(fine);
+    coarse_cells = cells;
+    coarse_change = std::move(change);
     cells = radau_cells(cells + 1);
   }
   if (result.s.empty() && coarse) {

@@ -42,20 +42,17 @@ Partition partition(Index I, std::span<const Index> slow) {
   return p;
 }
 
-// How far one step of the coupling reaches: the highest harmonic that is not a hundredth of the largest of its entry of
-// K, nor so small that its square is below rounding.
-Index reach_of_coupling(const ScaledSystem& system) {
-  const Index I = system.num_modes();
-  const VectorXd w2 = system.mean_diagonal().cwiseAbs();
-  Index reach = 1;
-  for (Index j = 0; j < I; ++j)
-    for (Index i = 0; i < I; ++i) {
-      const VectorXd size = system.K.c.row(i + I * j).tail(system.K.num_harmonics()).cwiseAbs().transpose();
-      const double strong = std::max(0.01 * size.maxCoeff(), 1e-7 * std::sqrt(w2(i) * w2(j)));
-      for (Index k = system.K.num_harmonics(); k > reach; --k)
-        if (size(k - 1) > strong) reach = k;
-    }
-  return reach;
+// Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
+void drop_tail(FourierSeries& series, double& error) {
+  Index H = series.num_harmonics();
+  double sum = 0;
+  for (; H > 0; --H) {
+    const double more = sum + 2 * series.c.col(H).cwiseAbs().maxCoeff();
+    if (!(more <= 0.5 * error)) break;
+    sum = more;
+  }
+  series = fourier::resized(series, H);
+  error += sum;
 }
 
 // One attempt with N samples of the turn.
@@ -64,14 +61,13 @@ class Iteration {
   auto K(Index i, Index j) const { return K_.col(i + I_ * j).array(); }
 
  public:
-  Iteration(const ScaledSystem& system, const Partition& p, Index num_samples, Index reach)
+  Iteration(const ScaledSystem& system, const Partition& p, Index num_samples)
       : S_(p.S),
         F_(p.F),
         m_(Index(p.S.size())),
         n_(Index(p.F.size())),
         N_(num_samples),
         H_((num_samples - 1) / 2),
-        reach_(reach),
         G_(system.G),
         diagonal_damping_(system.diagonal_damping),
         I_(system.num_modes()),
@@ -88,6 +84,7 @@ class Iteration {
         R_(P_.data() + P_.size(), N_, n_ * m_),
         x_(VectorXd::Zero(n_ * m_ * 2 * 2 * (H_ + 1))) {
     alpha_.setZero();
+    beta_.setZero();
     P_.setZero();
     R_.setZero();
     const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
@@ -117,13 +114,25 @@ class Iteration {
   // Starts from what fewer samples gave.
   void start_from(const Iteration& coarse) {
     amplification_ = coarse.amplification_;
+    change_ = coarse.change_;
     for (Index half = 0; half < 2 * n_ * m_; ++half)
       x_.segment(half * 2 * (H_ + 1), 2 * (coarse.H_ + 1)) =
           coarse.x_.segment(half * 2 * (coarse.H_ + 1), 2 * (coarse.H_ + 1));
   }
 
-  // Solves for A, C; false if it diverges, or would take too long. `change` is then a bound on the remaining error of
-  // alpha.
+  // Whether the start solves the equations with these samples, twice as many as it was found with: then nothing was
+  // folded back or cut off that matters.
+  bool solved_by_start(double tolerance) {
+    VectorXd f(x_.size());
+    correction(x_, f);
+    const double change = kappa_ * norm(f), scale = alpha_.cwiseAbs().maxCoeff() + 1;
+    const bool solved = change <= std::max(std::max(1e-13, tolerance) * scale, 4 * change_);
+    change_ = change;
+    return solved;
+  }
+
+  // Solves for A, C with these samples; false if it diverges, or would take too long. change_ is then what remains of
+  // alpha's error but for that of too few samples.
   bool run(double tolerance, int& iterations) {
     constexpr int most_iterations = 80, window = 8;
     VectorXd f(x_.size()), last_x, last_f;
@@ -154,9 +163,8 @@ class Iteration {
       // Rounding reached: nothing is left to gain.
       if (change <= goal || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
         for (const double secant : secants) amplification_ = std::max(amplification_, secant);
-        change_ = change + tail(x);
-        needs_more_samples_ = !(tail(x) <= std::max(1e-13, tolerance) * scale);
-        return !needs_more_samples_;
+        change_ = change;
+        return true;
       }
       if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 15) return false;
       // At the pace of the last iterations it would not arrive; the first ones only show divergence.
@@ -187,12 +195,12 @@ class Iteration {
     reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * A_.cwiseAbs().maxCoeff());
     reduced.beta_error =
         iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * C_.cwiseAbs().maxCoeff());
+    drop_tail(reduced.alpha, reduced.alpha_error);
+    drop_tail(reduced.beta, reduced.beta_error);
     reduced.others_below = others_below();
     reduced.start = start();
     return reduced;
   }
-
-  bool needs_more_samples() const { return needs_more_samples_; }
 
   double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
 
@@ -242,23 +250,18 @@ class Iteration {
     return {reinterpret_cast<const cplx*>(x.data()) + (q * 2 + 1) * (H_ + 1), H_ + 1};
   }
 
-  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k; harmonics from `first` on.
-  double norm(const VectorXd& x, Index first = 0) const {
+  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k.
+  double norm(const VectorXd& x) const {
     double largest = 0;
     for (Index part = 0; part < n_ * m_; ++part) {
       double sum = 0;
       for (Index half = 2 * part; half < 2 * part + 2; ++half) {
         const double* z = x.data() + half * 2 * (H_ + 1);
-        for (Index k = first; k <= H_; ++k) sum += std::sqrt(z[2 * k] * z[2 * k] + z[2 * k + 1] * z[2 * k + 1]);
+        for (Index k = 0; k <= H_; ++k) sum += std::sqrt(z[2 * k] * z[2 * k] + z[2 * k + 1] * z[2 * k + 1]);
       }
       largest = std::max(largest, 2 * sum);
     }
     return largest;
-  }
-
-  // What the last harmonics carry, as many as one step of the coupling reaches: the truncation's share.
-  double tail(const VectorXd& x) const {
-    return kappa_ * norm(x, std::max<Index>(0, H_ + 1 - std::max(reach_, H_ / 4)));
   }
 
   // Residual of the two invariance equations, pushed through the inverse of their constant part:
@@ -291,6 +294,7 @@ class Iteration {
     constexpr int most_passes = 40;
     for (int pass = 0; pass < most_passes; ++pass) {
       const MatrixXd last_alpha = diagonal_damping_ ? MatrixXd() : alpha_;
+      const MatrixXd last_beta = diagonal_damping_ ? MatrixXd() : beta_;
       for (Index l = 0; l < m_; ++l)
         for (Index s = 0; s < m_; ++s) {
           auto alpha = alpha_.col(s + m_ * l).array();
@@ -317,8 +321,15 @@ class Iteration {
             R -= C(j, s) * beta_.col(s + m_ * l).array();
           }
         }
-      if (diagonal_damping_ || (alpha_ - last_alpha).cwiseAbs().maxCoeff() <= 2 * eps * alpha_.cwiseAbs().maxCoeff())
-        break;
+      if (diagonal_damping_) break;
+      const auto settled = [](const MatrixXd& now, const MatrixXd& last) {
+        return (now - last).cwiseAbs().maxCoeff() <= 4 * eps * now.cwiseAbs().maxCoeff();
+      };
+      if (settled(alpha_, last_alpha) && settled(beta_, last_beta)) break;
+      if (pass + 1 == most_passes) {
+        f.setConstant(HUGE_VAL);
+        return;
+      }
     }
 
     auto out = forward_.samples();
@@ -361,7 +372,7 @@ class Iteration {
   }
 
   std::vector<Index> S_, F_;
-  Index m_, n_, N_, H_, reach_;
+  Index m_, n_, N_, H_;
   const MatrixXd& G_;
   bool diagonal_damping_;
   Index I_;
@@ -372,7 +383,6 @@ class Iteration {
   VectorXd x_;  // see A_of, C_of
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
-  bool needs_more_samples_ = false;
   double kappa_ = 0, change_ = 0, amplification_ = 1;
 };
 
@@ -396,26 +406,24 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
       }
     all.alpha_error = 4 * eps * system.K.c.cwiseAbs().rowwise().sum().maxCoeff();
     all.beta_error = 4 * eps * system.G.cwiseAbs().maxCoeff();
+    drop_tail(all.alpha, all.alpha_error);
     return all;
   }
   ReducedSystem reduced;
-  // Products need more than the harmonics of K; how many shows.
-  constexpr Index fewest_samples = 32;
+  // Few samples for the iteration; twice as many judge what it gave.
+  constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
-  const Index reach = reach_of_coupling(system);
-  std::unique_ptr<Iteration> coarse;
-  for (Index N = start; N <= 4 * start && N <= 4096; N = fourier::fast_length(N + 1)) {
-    auto iteration = std::make_unique<Iteration>(system, p, N, reach);
-    if (coarse) iteration->start_from(*coarse);
-    if (iteration->run(tolerance, reduced.iterations)) {
-      const int iterations = reduced.iterations;
-      reduced = iteration->result();
-      reduced.iterations = iterations;
-      return reduced;
-    }
-    // Only a tail that has not decayed is worth a finer grid; divergence is not.
-    if (!iteration->needs_more_samples()) break;
-    coarse = std::move(iteration);
+  auto iteration = std::make_unique<Iteration>(system, p, start);
+  for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
+    if (2 * N > most_samples) break;
+    auto finer = std::make_unique<Iteration>(system, p, 2 * N);
+    finer->start_from(*iteration);
+    iteration = std::move(finer);
+    if (!iteration->solved_by_start(tolerance)) continue;
+    const int iterations = reduced.iterations;
+    reduced = iteration->result();
+    reduced.iterations = iterations;
+    break;
   }
   return reduced;
 }

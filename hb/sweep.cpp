@@ -347,6 +347,7 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
   };
   notice_kind(unstable_above ? b : a);
   const double wanted = options.tolerance * std::max(std::abs(low), std::abs(high));
+  // The boundary is no better known than the growth rate.
   StabilityOptions sharp = options.stability;
   sharp.tolerance = std::min(sharp.tolerance, boundary_tolerance);
   const double kappa1 = 0.2 / (high - low);

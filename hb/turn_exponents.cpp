@@ -349,13 +349,14 @@ bool apart(const InexactEigenvalues& mu, Index one) {
 
 // Relative change of the leading eigenvalue mu of the turn's map M to first order, v and w its right and left vectors,
 //     sum_i errors(i) |Phi_i| |w_i| |v_(i-1)|/|w_i' Phi_i v_(i-1)|,
-// carried through the cells: growth inside the turn that is taken back before its end does not count here either.
+// carried through the cells: growth inside the turn that is taken back before its end does not count here either. No
+// other eigenvalue lies within ten times `radius`.
 template <int size>
-double leading_change(const Sweep& sweep, const VectorXd& errors, const MatrixXd& M, cplx mu) {
+double leading_change(const Sweep& sweep, const VectorXd& errors, const MatrixXd& M, cplx mu, double radius) {
   using Column = Eigen::Matrix<cplx, size, 1>;
   using Square = Eigen::Matrix<cplx, size, size>;
   const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
-  const Eigen::PartialPivLU<Square> shifted(M.cast<cplx>() - mu * cplx(1 + 1e-12, 1e-12) * MatrixXd::Identity(n, n));
+  const Eigen::PartialPivLU<Square> shifted(M.cast<cplx>() - (mu + 0.1 * radius) * MatrixXd::Identity(n, n));
   Column v = Column::Ones(n), w = v;
   for (int iteration = 0; iteration < 3; ++iteration) {
     v = shifted.solve(v).normalized();
@@ -420,7 +421,7 @@ TurnExponents exponents(const TurnMaps& maps, double cell_error, bool leading_on
       const double largest = mu.value.cwiseAbs().maxCoeff(&first);
       if (at_once && apart(mu, first)) {
         // Beyond the first order while the disc is small.
-        const double radius = 2 * leading_change<size>(swept, errors, M, mu.value(first)) * largest;
+        const double radius = 2 * leading_change<size>(swept, errors, M, mu.value(first), mu.radius(first)) * largest;
         for (Index j = 0; j < p; ++j)
           if ((j == first || mu.value(j) == std::conj(mu.value(first))) && radius < mu.radius(j)) mu.radius(j) = radius;
       }
