@@ -53,7 +53,7 @@ enum class Family {
   falling,  // negative mean stiffness
   strong,  // modulation beyond the mean
   alike,  // modes alike, in frequency or damping, coupled weakly or not at all
-  sparse,  // one harmonic far above zero, and a trace of the first one, which makes the period a whole turn
+  sparse,  // the first harmonic and one far above: one of them strong, the other a trace
 };
 constexpr int num_families = 16;
 
@@ -84,6 +84,7 @@ inline Trial random_trial(Family family, Random& random, Eigen::Index most_modes
   double modulation = 0.8 * random.power(-3, 0);
   if (family == Family::strong) modulation = random(1, 4);
   const double decay = family == Family::many_harmonics ? random(0.8, 0.97) : random(0.2, 0.7);
+  const bool first_strong = family == Family::sparse && random.chance(0.5);
   const double w1 = family == Family::fast ? random.power(1.5, 4) : random.power(-0.7, 1);
   const bool beam = random.chance(0.5);
 
@@ -116,8 +117,11 @@ inline Trial random_trial(Family family, Random& random, Eigen::Index most_modes
       for (Index j = 0; j <= i; ++j) {
         double size = modulation * w(i) * w(j) / double(1 + i - j) * std::pow(decay, double(k));
         if (family == Family::discontinuous) size = modulation * w(i) * w(j) / double(k);
-        if (family == Family::sparse)
-          size = modulation * w(i) * w(j) / double(1 + i - j) * (k == P ? 1 : k == 1 ? random.power(-12, -2) : 0);
+        if (family == Family::sparse) {
+          const double trace = first_strong ? random.power(-4, -1.5) : random.power(-12, -2);
+          size = modulation * w(i) * w(j) / double(1 + i - j);
+          size *= k == (first_strong ? 1 : P) ? 1 : k == 1 || k == P ? trace : 0;
+        }
         if (family == Family::alike && i != j) size *= random.chance(0.5) ? 0 : random.power(-6, 0);
         const std::complex<double> value(0.5 * size * random(-1, 1), 0.5 * size * random(-1, 1));
         detail::add(s, i, j, k, value);

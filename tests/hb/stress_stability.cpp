@@ -132,6 +132,44 @@ TEST(StabilityBars, HillWindowUnderStrongModulation) {
   EXPECT_EQ(tally.unsettled, 0);
 }
 
+// A hundredth of the coupling in harmonic 42, whose square, harmonic 84, would fold back onto a resonance of 128
+// samples.
+TEST(StabilityBars, WeakHighHarmonicFoldsBack) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(2, 2);
+  system.damping = 1e-9 * system.mass;
+  system.stiffness[0] = FourierSeries(4, 42);
+  const double w1 = 22.0604193408155, w2 = 2.13 * 42;
+  system.stiffness[0].c.col(0) << w1 * w1, 0, 0, w2 * w2;
+  system.stiffness[0].c.col(1) << 0, 100, 100, 0;
+  system.stiffness[0].c.col(42) << 0, 0.99, 0.99, 0;
+  const std::vector<FloquetExponent> exact = reference::floquet_exponents(system, 1);
+  Tally tally;
+  for (const StabilityMethod method : {StabilityMethod::automatic, StabilityMethod::slaving})
+    for (const double tolerance : {1e-5, 1e-6, 1e-9})
+      compare(analyse_stability(system, 1, {.tolerance = tolerance, .method = method}), exact, 1, to_string(method),
+              tally);
+  EXPECT_EQ(tally.wrong + tally.uncovered, 0);
+  EXPECT_EQ(tally.unsettled, 0);
+}
+
+// A harmonic that is a multiple of two numbers of cells leaves nearly the same error with both.
+TEST(StabilityBars, HarmonicThatIsAMultipleOfTheCells) {
+  for (const int P : {16, 32}) {
+    HillSystem system;
+    system.mass = Eigen::MatrixXd::Ones(1, 1);
+    system.damping = Eigen::MatrixXd::Constant(1, 1, 0.062752404990364871);
+    system.stiffness[0] = FourierSeries(1, P);
+    system.stiffness[0].c(0) = -0.89110830343395819;
+    system.stiffness[0].c(1) = 1e-9;
+    system.stiffness[0].c(P) = std::polar(0.014436744560169476, 4.1247034418087773);
+    Tally tally;
+    compare(analyse_stability(system, 1), reference::floquet_exponents(system, 1), 1, "P " + std::to_string(P), tally);
+    EXPECT_EQ(tally.uncovered, 0);
+    EXPECT_EQ(tally.unsettled, 0);
+  }
+}
+
 // Newton's method from two modes goes to one exponent, another one is missed: what was found is not all.
 TEST(StabilityBars, HillIterationsThatMeet) {
   Tally tally;
