@@ -107,14 +107,6 @@ class HillStress : public testing::TestWithParam<int> {};
 
 TEST_P(HillStress, NoVerdictIsWrongAndEveryBarCovers) { run_hill(static_cast<stress::Family>(GetParam()), 3); }
 
-// Nearly parallel Floquet vectors of exponents far apart: their condition belongs to the bar.
-TEST(StabilityBars, NearlyParallelFloquetVectors) {
-  Tally tally;
-  run_trial(stress::Family::defective, 2031, 7, tally);
-  EXPECT_EQ(tally.uncovered, 0);
-  EXPECT_EQ(tally.unsettled, 0);
-}
-
 // A reduction that goes on with more samples while the damping couples: the equations it is tested by are implicit.
 TEST(StabilityBars, CoupledDampingWithMoreSamples) {
   Tally tally;
