@@ -1,4 +1,5 @@
-# find_package(hb) gives the targets hb::lib and hb::hb; headers are included as "lib/rod.hpp", "hb/stability.hpp".
+# find_package(hb) gives the targets hb::lib, hb::engine and hb::hb; headers are included as "hb/lib/rod/rod.hpp",
+# "hb/engine/exponents/stability.hpp": the tree's "lib/..." is installed under hb/, so that no name but hb is taken.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -6,9 +7,16 @@ set(HB_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hb)
 
 install(TARGETS hb_lib hb_engine EXPORT hb_targets)
 install(EXPORT hb_targets NAMESPACE hb:: FILE hb-targets.cmake DESTINATION ${HB_PACKAGE_DIR})
-foreach(folder lib hb)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/hb/${folder}
-    FILES_MATCHING PATTERN "*.hpp")
+
+file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/lib/*.hpp ${PROJECT_SOURCE_DIR}/hb/*.hpp)
+foreach(header IN LISTS headers)
+  file(READ ${PROJECT_SOURCE_DIR}/${header} text)
+  string(REPLACE "#include \"lib/" "#include \"hb/lib/" text "${text}")
+  string(REGEX REPLACE "^lib/" "hb/lib/" place ${header})
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/include/${place} CONTENT "${text}" @ONLY)
+  cmake_path(GET place PARENT_PATH folder)
+  install(FILES ${PROJECT_BINARY_DIR}/include/${place} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
 endforeach()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/hb-config.cmake.in ${PROJECT_BINARY_DIR}/hb-config.cmake

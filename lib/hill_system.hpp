@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "lib/fourier.hpp"
+#include "lib/fourier/fourier.hpp"
 
 namespace hb {
 

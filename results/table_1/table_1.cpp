@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "hb/steady_state.hpp"
-#include "lib/fourier.hpp"
-#include "lib/joint_forces.hpp"
-#include "lib/kinematics.hpp"
-#include "lib/linkage.hpp"
-#include "lib/rod.hpp"
-#include "lib/scene.hpp"
+#include "hb/engine/steady/steady_state.hpp"
+#include "lib/fourier/fourier.hpp"
+#include "lib/linkage/joint_forces.hpp"
+#include "lib/linkage/kinematics.hpp"
+#include "lib/linkage/linkage.hpp"
+#include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lib/scene.hpp"
+#include "lib/scene/scene.hpp"
 #include "tests/fuzz/scene_mutations.hpp"
 
 namespace {

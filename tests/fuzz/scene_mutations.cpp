@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "lib/kinematics.hpp"
-#include "lib/scene.hpp"
+#include "lib/linkage/kinematics.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace hb::fuzz {
 

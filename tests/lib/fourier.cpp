@@ -1,4 +1,4 @@
-#include "lib/fourier.hpp"
+#include "lib/fourier/fourier.hpp"
 
 #include <gtest/gtest.h>
 

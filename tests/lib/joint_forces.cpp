@@ -1,4 +1,4 @@
-#include "lib/joint_forces.hpp"
+#include "lib/linkage/joint_forces.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "lib/rod.hpp"
-#include "tests/dense_steady_state.hpp"
-#include "tests/six_link.hpp"
+#include "lib/rod/rod.hpp"
+#include "tests/support/dense_steady_state.hpp"
+#include "tests/support/six_link.hpp"
 
 namespace {
 

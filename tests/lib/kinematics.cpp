@@ -1,12 +1,12 @@
-#include "lib/kinematics.hpp"
+#include "lib/linkage/kinematics.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "tests/random_linkage.hpp"
-#include "tests/six_link.hpp"
+#include "tests/support/random_linkage.hpp"
+#include "tests/support/six_link.hpp"
 
 namespace {
 

@@ -1,8 +1,8 @@
-#include "lib/linkage.hpp"
+#include "lib/linkage/linkage.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/six_link.hpp"
+#include "tests/support/six_link.hpp"
 
 namespace {
 

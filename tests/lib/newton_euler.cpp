@@ -1,5 +1,5 @@
 // The library against an independent model (tests/newton_euler.hpp), on random linkages of every kind.
-#include "tests/newton_euler.hpp"
+#include "tests/support/newton_euler.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@
 #include <map>
 #include <numbers>
 
-#include "lib/fourier.hpp"
+#include "lib/fourier/fourier.hpp"
 #include "lib/hill_system.hpp"
-#include "lib/joint_forces.hpp"
-#include "lib/kinematics.hpp"
-#include "lib/rod.hpp"
-#include "tests/random_linkage.hpp"
+#include "lib/linkage/joint_forces.hpp"
+#include "lib/linkage/kinematics.hpp"
+#include "lib/rod/rod.hpp"
+#include "tests/support/random_linkage.hpp"
 
 namespace hb {
 namespace {

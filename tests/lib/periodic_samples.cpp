@@ -1,4 +1,4 @@
-#include "lib/periodic_samples.hpp"
+#include "lib/fourier/periodic_samples.hpp"
 
 #include <gtest/gtest.h>
 

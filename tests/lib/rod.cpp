@@ -1,12 +1,12 @@
-#include "lib/rod.hpp"
+#include "lib/rod/rod.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "tests/dense_steady_state.hpp"
-#include "tests/six_link.hpp"
+#include "tests/support/dense_steady_state.hpp"
+#include "tests/support/six_link.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "lib/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 #include <gtest/gtest.h>
 

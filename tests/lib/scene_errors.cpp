@@ -5,7 +5,7 @@
 #include <fstream>
 #include <limits>
 
-#include "lib/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 using namespace hb;
 

@@ -1,4 +1,4 @@
-#include "lib/section.hpp"
+#include "lib/rod/section.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "lib/scene.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace {
 

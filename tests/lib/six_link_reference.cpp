@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
-#include "lib/fourier.hpp"
-#include "lib/linkage.hpp"
-#include "tests/newton_euler.hpp"
+#include "lib/fourier/fourier.hpp"
+#include "lib/linkage/linkage.hpp"
+#include "tests/support/newton_euler.hpp"
 
 namespace hb {
 namespace {

@@ -1,13 +1,13 @@
-#include "lib/time_domain_rod.hpp"
+#include "lib/rod/time_domain_rod.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "lib/rod.hpp"
-#include "tests/random_linkage.hpp"
-#include "tests/six_link.hpp"
+#include "lib/rod/rod.hpp"
+#include "tests/support/random_linkage.hpp"
+#include "tests/support/six_link.hpp"
 
 namespace hb {
 namespace {

@@ -1,7 +1,7 @@
 #include "cases.hpp"
 
-#include "lib/rod.hpp"
-#include "lib/scene.hpp"
+#include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
 #include "synthetic.hpp"
 
 namespace hb::benchmarks {

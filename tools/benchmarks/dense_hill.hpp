@@ -2,8 +2,8 @@
 // the solvers and, refined at more harmonics, reference for their error.
 #pragma once
 
-#include "hb/scaled_system.hpp"
-#include "lib/fourier.hpp"
+#include "hb/engine/system/scaled_system.hpp"
+#include "lib/fourier/fourier.hpp"
 
 namespace hb::benchmarks {
 

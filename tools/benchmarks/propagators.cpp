@@ -11,10 +11,10 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "cases.hpp"
-#include "hb/radau_turn.hpp"
-#include "hb/scaled_system.hpp"
-#include "hb/stability.hpp"
-#include "hb/turn_exponents.hpp"
+#include "hb/engine/exponents/radau_turn.hpp"
+#include "hb/engine/system/scaled_system.hpp"
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/exponents/turn_exponents.hpp"
 #include "timing.hpp"
 
 namespace hb::benchmarks {

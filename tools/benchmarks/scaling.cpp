@@ -9,9 +9,9 @@
 #include <string>
 
 #include "dense_hill.hpp"
-#include "hb/radau_turn.hpp"
-#include "hb/stability_map.hpp"
-#include "hb/steady_state.hpp"
+#include "hb/engine/exponents/radau_turn.hpp"
+#include "hb/engine/boundaries/stability_map.hpp"
+#include "hb/engine/steady/steady_state.hpp"
 #include "synthetic.hpp"
 #include "timing.hpp"
 

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "dense_hill.hpp"
-#include "hb/stability.hpp"
-#include "hb/steady_state.hpp"
-#include "lib/rod.hpp"
-#include "lib/scene.hpp"
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/steady/steady_state.hpp"
+#include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
 
 namespace hb::benchmarks {
 

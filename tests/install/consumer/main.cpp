@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "hb/scaled_system.hpp"
-#include "lib/fourier.hpp"
+#include "hb/engine/system/scaled_system.hpp"
+#include "hb/lib/fourier/fourier.hpp"
 
 int main() {
   // f(tau) = 1 + cos tau + sin 2 tau: c_0 = 1, c_1 = 1/2, c_2 = -i/2.

@@ -1,0 +1,206 @@
+#include "hb/analysis/bench_rod.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <numbers>
+
+#include "hb/engine/time/fixed_step.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+// The orbit at the reference's angles, from N samples of which N is a multiple or a divisor.
+double error_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& reference) {
+  const Eigen::Index n = std::min(q.cols(), reference.cols());
+  double difference = 0;
+  for (Eigen::Index j = 0; j < n; ++j)
+    difference = std::max(
+        difference, (q.col(j * (q.cols() / n)) - reference.col(j * (reference.cols() / n))).cwiseAbs().maxCoeff());
+  const double error = difference / reference.cwiseAbs().maxCoeff();
+  return std::isfinite(error) ? error : INFINITY;
+}
+
+Eigen::MatrixXd at_angles(const FourierSeries& series, Eigen::Index N) {
+  Eigen::MatrixXd values(series.num_components(), N);
+  for (Eigen::Index j = 0; j < N; ++j)
+    values.col(j) = fourier::evaluate(series, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N));
+  return values;
+}
+
+// Repeats until 50 ms or 200 runs have passed, at least once; shortest and median time of one run.
+void time_row(Row& row, const std::function<void()>& work) {
+  std::vector<double> times;
+  const auto start = Clock::now();
+  do {
+    const auto begin = Clock::now();
+    work();
+    times.push_back(seconds_since(begin));
+  } while (seconds_since(start) < 0.05 && times.size() < 200);
+  std::sort(times.begin(), times.end());
+  row.seconds = times.front();
+  row.median_seconds = times[times.size() / 2];
+}
+
+constexpr int given_harmonics[] = {1, 2, 4, 6, 8, 12, 16, 24, 32, 48, 64};
+constexpr double asked_tolerances[] = {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12};
+constexpr double shooting_tolerances[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
+constexpr double marching_tolerances[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11};
+constexpr int steps_a_turn[] = {128, 512, 2048, 8192, 32768, 131072, 524288};
+// The error is measured against a reference that errs itself.
+const Row* fastest(const RodBench& bench, double error, bool harmonic_balance) {
+  const Row* best = nullptr;
+  for (const Row& row : bench.rows)
+    if (row.harmonic_balance == harmonic_balance && row.error + bench.reference_error <= error &&
+        (best == nullptr || row.seconds < best->seconds))
+      best = &row;
+  return best;
+}
+
+}  // namespace
+
+// The reference, then every method (harmonic balance in two ways, the others in two kinds each).
+std::size_t bench_cases() {
+  return 1 + std::size(given_harmonics) + std::size(asked_tolerances) +
+         2 * (std::size(shooting_tolerances) + std::size(marching_tolerances) + std::size(steps_a_turn));
+}
+
+RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const BenchOptions& with, Progress& progress) {
+  const double time_limit = with.time_limit;
+  const double speed = system.speed;
+  RodBench bench;
+  bench.name = rod.name;
+  ShootingOptions tight;
+  tight.integrator = Integrator::collocation;
+  tight.tolerance = 1e-13;
+  tight.time_limit = 10 * time_limit;
+  const ShootingResult reference = solve_by_shooting(system, tight);
+  progress.advance();
+  if (reference.orbit.q.size() == 0 || !(reference.orbit.q.cwiseAbs().maxCoeff() > 0)) {
+    bench.notes.push_back("no reference: " +
+                          (reference.message.empty() ? "the rod carries no load" : reference.message));
+    return bench;
+  }
+  const Eigen::MatrixXd& exact = reference.orbit.q;
+  bench.reference_error = reference.q_error;
+  bench.verdict = reference.verdict;
+  const auto note = [&](const std::string& sentence) { bench.notes.push_back(sentence); };
+
+  const auto series_row = [&](const char* method, const SteadyOptions& options, double asked) {
+    Row row{rod.name, method, asked, 0, 0, 0, 0, true};
+    SteadyState state;
+    time_row(row, [&] { state = solve_steady_state(rod.system, speed, options); });
+    progress.advance();
+    if (state.status == SteadyStatus::singular) return;
+    row.size = state.num_harmonics;
+    row.error = error_of(at_angles(state.q, exact.cols()), exact);
+    bench.rows.push_back(row);
+  };
+  for (const int H : given_harmonics)
+    series_row("harmonic balance, given harmonics", {.tolerance = 1e-14, .num_harmonics = H, .method = with.method}, 0);
+  for (const double tolerance : asked_tolerances)
+    series_row("harmonic balance, automatic", {.tolerance = tolerance, .method = with.method}, tolerance);
+
+  for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
+    for (const double tolerance : shooting_tolerances) {
+      Row row{rod.name, std::string("shooting, ") + to_string(integrator), tolerance};
+      ShootingResult result;
+      time_row(row, [&] {
+        result =
+            solve_by_shooting(system, {.integrator = integrator, .time_limit = time_limit, .single_run = tolerance});
+      });
+      progress.advance();
+      if (result.orbit.q.size() == 0) {
+        note(fmt::format("{} at {:.0e}: {}", row.method, tolerance, result.message));
+        continue;
+      }
+      row.size = result.steps;
+      row.error = error_of(result.orbit.q, exact);
+      bench.rows.push_back(row);
+    }
+  }
+  if (bench.verdict == Verdict::unstable) {
+    note("marching: the motion is unstable, no integration from rest settles on the periodic state");
+    return bench;
+  }
+  for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
+    for (const double tolerance : marching_tolerances) {
+      Row row{rod.name, std::string("marching, ") + to_string(integrator), tolerance};
+      MarchingResult result;
+      time_row(row, [&] {
+        result = march_from_rest(system, {.tolerance = tolerance,
+                                          .integrator_tolerance = tolerance / 10,
+                                          .integrator = integrator,
+                                          .time_limit = time_limit,
+                                          .growth_rate = reference.growth_rate});
+      });
+      progress.advance();
+      if (result.status != ShootingStatus::converged) {
+        note(fmt::format("{} at {:.0e}: {}", row.method, tolerance,
+                         result.message.empty() ? to_string(result.status) : result.message));
+        continue;
+      }
+      row.size = result.steps;
+      row.error = error_of(result.orbit.q, exact);
+      bench.rows.push_back(row);
+    }
+  }
+  for (const FixedStep method : {FixedStep::newmark, FixedStep::runge_kutta}) {
+    const char* name = method == FixedStep::newmark ? "marching, Newmark" : "marching, Runge-Kutta 4";
+    const int order = method == FixedStep::newmark ? 2 : 4;
+    double seconds_before = 0;
+    for (const int steps : steps_a_turn) {
+      progress.advance();
+      if (4 * seconds_before > time_limit) {
+        note(fmt::format("{} with {} steps a turn: would take about {:.0f} s, more than the time limit", name, steps,
+                         4 * seconds_before));
+        break;
+      }
+      // The transient is followed well below the error of such steps, h^order or more.
+      const double h = 2 * std::numbers::pi / steps;
+      const double settled = std::max(0.1 * std::pow(h, order), 1e-12);
+      Row row{rod.name, name};
+      MarchingResult result;
+      time_row(row, [&] { result = march_fixed_step(system, method, steps, settled, 100000, time_limit); });
+      if (result.status != ShootingStatus::converged) {
+        note(fmt::format("{} with {} steps a turn: {}", name, steps, result.message));
+        if (result.status == ShootingStatus::time_limit) break;
+        continue;
+      }
+      seconds_before = row.seconds;
+      row.size = result.steps;
+      row.error = error_of(result.orbit.q, exact);
+      bench.rows.push_back(row);
+    }
+  }
+  return bench;
+}
+
+std::string ratio_sentence(const RodBench& bench, double error) {
+  if (!(bench.reference_error < error))
+    return fmt::format("at {:.0e}: not known, the reference itself has an error of {:.1e}", error,
+                       bench.reference_error);
+  const Row* series = fastest(bench, error, true);
+  const Row* integration = fastest(bench, error, false);
+  if (series == nullptr && integration == nullptr) return fmt::format("at {:.0e}: no method reaches it", error);
+  if (series == nullptr)
+    return fmt::format("at {:.0e}: only {} reaches it, in {:.3g} s", error, integration->method, integration->seconds);
+  if (integration == nullptr)
+    return fmt::format("at {:.0e}: only harmonic balance reaches it, in {:.3g} s", error, series->seconds);
+  const double ratio = integration->seconds / series->seconds;
+  const std::string how =
+      ratio >= 1 ? fmt::format("{:.3g} times as long", ratio) : fmt::format("shorter by a factor of {:.3g}", 1 / ratio);
+  return fmt::format("at {:.0e}: harmonic balance {:.3g} s, the fastest integration ({}) {:.3g} s, {}", error,
+                     series->seconds, integration->method, integration->seconds, how);
+}
+
+}  // namespace hb::tools

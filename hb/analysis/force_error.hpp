@@ -1,0 +1,23 @@
+// How accurate joint forces and driving torque are: by comparison with the forces of better responses.
+#pragma once
+
+#include <vector>
+
+#include "lib/linkage/joint_forces.hpp"
+
+namespace hb::tools {
+
+// Estimated errors of joint forces (any component at any joint) and of the driving torque, relative to the largest of
+// each over the turn.
+struct ForceErrors {
+  double force = 0, torque = 0;  // for the modes kept: sampling of the turn, harmonics of the response, rounding
+  double force_cut = 0, torque_cut = 0;  // from cutting the Ritz series
+};
+
+// `forces` belong to responses whose relative error is `response_error`; `more_harmonics` and `more_modes` are better
+// ones of the same rods.
+[[nodiscard]] ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces,
+                                       double response_error, const std::vector<LinkResponse>& more_harmonics,
+                                       const std::vector<LinkResponse>& more_modes);
+
+}  // namespace hb::tools

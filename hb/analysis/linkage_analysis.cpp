@@ -1,0 +1,380 @@
+#include "hb/analysis/linkage_analysis.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+#include "tools/command/command.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/scene_report.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+constexpr Eigen::Index first_auto_modes = 3;
+constexpr Eigen::Index max_auto_modes = 60;
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+bool wants_modes_error(const Only& only) { return only.steady || only.shape; }
+
+// What was asked for and exists in the scene: a [hill] system has no joints and no shape.
+Only available(const SceneModel& model, Only only) {
+  if (!model.linkage()) only.reactions = only.shape = false;
+  return only;
+}
+
+bool is_auto(const Settings& settings) { return std::holds_alternative<AutoModes>(settings.modes); }
+
+Eigen::Index start_modes(const Settings& settings) {
+  return is_auto(settings) ? first_auto_modes : std::get<int>(settings.modes);
+}
+
+const Body& link_of(const SceneModel& model, const RodModel& rod) { return *body_at(*model.linkage(), rod.link); }
+
+const RodCoefficients& coefficients_of(const SceneModel& model, const RodModel& rod) {
+  return model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+}
+
+SteadyOptions steady_options(const Settings& settings) {
+  SteadyOptions options;
+  options.tolerance = settings.tolerance;
+  options.method = settings.steady_method;
+  options.bound = settings.bound;
+  // The difference between two numbers of modes must not drown in the error of either.
+  if (is_auto(settings)) options.tolerance = std::max(0.05 * settings.tolerance, 1e-14);
+  return options;
+}
+
+// Exponents need fewer digits than q: the asked tolerance loosens them, it does not tighten them.
+StabilityOptions stability_options(const Settings& settings) {
+  StabilityOptions options;
+  options.method = settings.stability_method;
+  options.tolerance = std::max(options.tolerance, 10 * settings.tolerance);
+  options.verdict_only = settings.only.verdict;
+  return options;
+}
+
+std::string steady_note(const SteadyState& state, Eigen::Index num_modes) {
+  return fmt::format("{} modes, {} harmonics, {}, {} iterations", num_modes, state.num_harmonics,
+                     method_text(state.method), state.iterations);
+}
+
+// The rod's system with another number of modes than it was made for.
+HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Index num_modes) {
+  if (num_modes == rod.system.num_modes()) return rod.system;
+  if (num_modes == rod.finer.num_modes()) return rod.finer;
+  return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
+}
+
+// Modes that the growth rate needs: as many as leave it within the tolerance when there are more, to `max_auto_modes`.
+Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
+                              RodResult& result, std::vector<Stage>& stages) {
+  // As for the deflection; usually the growth rate settles like I^-4 or faster.
+  constexpr double safety = 2;
+  StabilityOptions options = stability_options(settings);
+  options.tolerance = std::clamp(0.01 * settings.tolerance, 1e-12, options.tolerance);
+  options.leading_only = true;
+  Stopwatch watch;
+  const auto growth = [&](Eigen::Index modes) {
+    return analyse_stability(system_with(model, rod, modes), speed, options);
+  };
+  Eigen::Index I = rod.system.num_modes();
+  Stability coarse = growth(I);
+  double previous = HUGE_VAL;
+  while (true) {
+    const Eigen::Index more = comparison_modes(I);
+    Stability fine = growth(more);
+    const double change = std::abs(fine.growth_rate - coarse.growth_rate),
+                 bars = fine.growth_error + coarse.growth_error;
+    // Changes that do not shrink are carried on, in proportion to the number of the mode: every mode that is added may
+    // be damped less than the one before it.
+    const bool shrinks = change <= previous / 2 && previous < HUGE_VAL;
+    const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
+    const double steps = shrinks ? 1 : std::max(1.0, (square(max_auto_modes) - square(I)) / (square(more) - square(I)));
+    const double scale = std::max(std::abs(fine.growth_rate), speed);
+    result.growth_modes_error = (safety * steps * change + bars) / scale;
+    if (*result.growth_modes_error <= settings.tolerance || I == max_auto_modes) break;
+    I = std::min(more, max_auto_modes);
+    coarse = I == more ? std::move(fine) : growth(I);
+    previous = change;
+  }
+  stages.push_back({"modes for the growth rate of " + rod.name, watch.seconds(), fmt::format("{} modes", I)});
+  return I;
+}
+
+// Steady state with I modes, and the error of its cut where asked; in auto mode the number of modes grows until that
+// error is within the tolerance or `max_auto_modes` is reached.
+void solve_steady(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings, bool with_cut,
+                  Eigen::Index I, RodResult& result, std::vector<Stage>& stages) {
+  const SteadyOptions options = steady_options(settings);
+  const bool grows = is_auto(settings) && rod.link >= 0;
+  Stopwatch watch;
+  SteadyState state = solve_steady_state(system_with(model, rod, I), speed, options);
+  stages.push_back({"steady state of " + rod.name, watch.seconds(), steady_note(state, I)});
+
+  if (rod.link >= 0 && (with_cut || grows)) {
+    const Body& link = link_of(model, rod);
+    const RodCoefficients& coefficients = coefficients_of(model, rod);
+    while (state.status != SteadyStatus::singular) {
+      Stopwatch finer_watch;
+      const Eigen::Index more = comparison_modes(I);
+      SteadyState finer_state = solve_steady_state(system_with(model, rod, more), speed, options);
+      if (finer_state.status == SteadyStatus::singular) break;
+      result.modes_error = cut_error(link, coefficients, speed, state.q, finer_state.q);
+      result.more_modes = finer_state.q;
+      stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
+      if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
+      I = std::min(more, max_auto_modes);
+      state = I == more ? std::move(finer_state) : solve_steady_state(system_with(model, rod, I), speed, options);
+    }
+  }
+  result.num_modes = I;
+  for (Eigen::Index i = 0; i < state.q.num_components(); ++i) result.max_abs.push_back(fourier::max_abs(state.q, i));
+  result.steady = std::move(state);
+}
+
+// The steady state of a rod once more, with half as many harmonics again.
+FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
+                                  const RodResult& result) {
+  SteadyOptions options = steady_options(settings);
+  options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
+  const SteadyState state = solve_steady_state(system_with(model, rod, result.num_modes), speed, options);
+  return state.status == SteadyStatus::singular ? result.steady->q : state.q;
+}
+
+std::string unresolved_text(const Scene& scene, const LinkageCoefficients& coefficients, TransmissionAngle worst,
+                            std::size_t dyad) {
+  const Linkage& linkage = std::get<Linkage>(scene.model);
+  return fmt::format(
+      "{}: tolerance not reached: dyad {} ({}, {}) passes within {:.3g} deg of a dead centre at crank angle {:.4g} "
+      "deg, "
+      "nearer than {} crank angles a turn, the limit, can show: Fourier coefficients of {:.1e} of the largest are left "
+      "over, allowed 1e-10. Nothing was computed; `hb scene` draws the linkage",
+      scene.file.string(), dyad + 1, linkage.dyads[dyad].coupler.name,
+      body_name(linkage, closing_index(static_cast<int>(dyad))), worst.smallest * degrees_per_radian,
+      worst.crank_angle * degrees_per_radian, coefficients.num_samples, coefficients.tail);
+}
+
+[[noreturn]] void refuse_unresolved(const Scene& scene, const LinkageCoefficients& coefficients) {
+  const Linkage& linkage = std::get<Linkage>(scene.model);
+  std::size_t dyad = 0;
+  TransmissionAngle worst = transmission_angle(linkage, 0);
+  for (std::size_t d = 1; d < linkage.dyads.size(); ++d) {
+    const TransmissionAngle angle = transmission_angle(linkage, static_cast<int>(d));
+    if (!(angle.smallest < worst.smallest)) continue;
+    dyad = d;
+    worst = angle;
+  }
+  throw UnresolvedLinkage(unresolved_text(scene, coefficients, worst, dyad), static_cast<int>(dyad), worst.crank_angle);
+}
+
+std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& computed, const Settings& settings) {
+  std::vector<std::string> sentences;
+  if (rod.steady) {
+    if (rod.steady->status == SteadyStatus::singular) {
+      sentences.push_back(
+          fmt::format("{}: no unique periodic solution at this speed (resonance without damping)", rod.name));
+    } else if (!(rod.steady->error_bound <= settings.tolerance)) {
+      sentences.push_back(fmt::format("{}: the steady state's error bound {:.1e} exceeds the tolerance {:.1e}",
+                                      rod.name, rod.steady->error_bound, settings.tolerance));
+    }
+  }
+  if (is_auto(settings) && rod.modes_error && !(*rod.modes_error <= settings.tolerance)) {
+    sentences.push_back(fmt::format("{}: with {} modes the error of the cut is {:.1e}, above the tolerance {:.1e}",
+                                    rod.name, rod.num_modes, *rod.modes_error, settings.tolerance));
+  }
+  if (rod.growth_modes_error && !(*rod.growth_modes_error <= settings.tolerance)) {
+    sentences.push_back(
+        fmt::format("{}: with {} modes the growth rate's error of the cut is {:.1e} of the larger of "
+                    "itself and the speed, above the tolerance {:.1e}",
+                    rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
+  }
+  if (computed.stability && rod.stability && !rod.stability->converged) {
+    const double relative = stability_options(settings).tolerance;
+    sentences.push_back(
+        fmt::format("{}: the growth rate's error {:.1e} exceeds {:.0e} of the larger of itself and the "
+                    "speed, which was asked",
+                    rod.name, rod.stability->growth_error, relative));
+  }
+  return sentences;
+}
+
+}  // namespace
+
+Eigen::Index comparison_modes(Eigen::Index num_modes) { return num_modes + std::max<Eigen::Index>(3, num_modes / 2); }
+
+double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                 const FourierSeries& finer) {
+  // The error of I modes falls at least like I^-3, and I grows by half: the difference is at least 1 - 1.5^-3 = 0.7 of
+  // the error. The factor 2 covers that and neighbouring modes of unequal weight (chosen by experiment).
+  constexpr double safety = 2;
+  // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic.
+  const Eigen::Index num_x = std::max<Eigen::Index>(33, 4 * finer.num_components() + 1);
+  const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
+  // A power of two, whose transform is planned at once.
+  const auto num_samples =
+      static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(4 * std::max<Eigen::Index>(16, harmonics))));
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
+  const Eigen::MatrixXd w = rod_field(link, rod, speed, q, x, num_samples).w;
+  const Eigen::MatrixXd w_finer = rod_field(link, rod, speed, finer, x, num_samples).w;
+  const double scale = w_finer.cwiseAbs().maxCoeff();
+  if (scale == 0) return 0;
+  return safety * ((w - w_finer).cwiseAbs().maxCoeff() / scale);
+}
+
+void require_resolved(const Scene& scene, const LinkageCoefficients& coefficients) {
+  if (!coefficients.resolved) refuse_unresolved(scene, coefficients);
+}
+
+SceneModel make_model(Scene scene, const Settings& settings) {
+  SceneModel model;
+  model.scene = std::move(scene);
+  Stopwatch watch;
+  std::vector<std::string> names;
+  if (const auto* hill = std::get_if<HillSystem>(&model.scene.model)) {
+    RodModel rod;
+    rod.name = "system";
+    rod.system = *hill;
+    names.push_back(rod.name);
+    model.rods.push_back(std::move(rod));
+  } else {
+    const Linkage& linkage = *model.linkage();
+    for (const int link : elastic_links(linkage)) {
+      RodModel rod;
+      rod.name = body_name(linkage, link);
+      rod.link = link;
+      names.push_back(rod.name);
+      model.rods.push_back(std::move(rod));
+    }
+  }
+
+  for (const std::string& name : settings.rods) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      throw UsageError(fmt::format(
+          "--rods: found \"{}\", allowed: {}", name,
+          names.empty() ? "nothing, the scene has no elastic links" : fmt::format("{}", fmt::join(names, ", "))));
+    }
+  }
+  if (!settings.rods.empty()) {
+    const auto asked = [&](const RodModel& rod) {
+      return std::find(settings.rods.begin(), settings.rods.end(), rod.name) != settings.rods.end();
+    };
+    // Joint forces carry the vibration of every rod, reported or not.
+    const bool all_needed = available(model, settings.only).reactions;
+    for (RodModel& rod : model.rods) {
+      rod.reported = asked(rod);
+      if (!rod.reported && !all_needed) {
+        model.stages.push_back({"rod " + rod.name, 0, "not asked for", true});
+      }
+    }
+    if (!all_needed) std::erase_if(model.rods, [](const RodModel& rod) { return !rod.reported; });
+  }
+
+  if (const Linkage* linkage = model.linkage(); linkage && !model.rods.empty()) {
+    model.coefficients = linkage_coefficients(*linkage);
+    require_resolved(model.scene, model.coefficients);
+    model.stages.push_back(
+        {"coefficients of the geometry", watch.seconds(),
+         fmt::format("{} crank angles, tail {:.1e}", model.coefficients.num_samples, model.coefficients.tail)});
+    Stopwatch ritz_watch;
+    const std::vector<int>& links = model.coefficients.links;
+    for (RodModel& rod : model.rods) {
+      rod.coefficients = static_cast<int>(std::find(links.begin(), links.end(), rod.link) - links.begin());
+      const Body& link = link_of(model, rod);
+      const Eigen::Index I = start_modes(settings);
+      rod.system = ritz_system(link, coefficients_of(model, rod), I);
+      if (rod.reported && wants_modes_error(settings.only)) {
+        rod.finer = ritz_system(link, coefficients_of(model, rod), comparison_modes(I));
+      }
+    }
+    model.stages.push_back({"Ritz matrices", ritz_watch.seconds(), ""});
+  }
+  return model;
+}
+
+SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings) {
+  SpeedResult result;
+  result.speed = speed;
+  const Only only = result.computed = available(model, settings.only);
+  std::vector<Stage>& stages = result.stages;
+  const bool auto_modes = is_auto(settings);
+
+  for (const RodModel& rod : model.rods) {
+    RodResult entry;
+    entry.name = rod.name;
+    entry.link = rod.link;
+    entry.reported = rod.reported;
+    entry.num_modes = rod.system.num_modes();
+    const bool shows_cut = rod.reported && wants_modes_error(only);
+    if (auto_modes && rod.link >= 0 && rod.reported && only.stability && !only.verdict)
+      entry.num_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
+    if (only.steady || only.shape || only.reactions || auto_modes) {
+      solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry.num_modes, entry, stages);
+      if (!shows_cut) entry.modes_error.reset();
+    } else {
+      stages.push_back({"steady state of " + rod.name, 0, "not asked for", true});
+    }
+    const bool solved = entry.steady && entry.steady->status != SteadyStatus::singular;
+
+    if (!only.shape || !rod.reported) {
+      if (rod.link >= 0) stages.push_back({"shape of " + rod.name, 0, "not asked for", true});
+    } else if (solved) {
+      Stopwatch watch;
+      entry.shape = rod_shape(link_of(model, rod), coefficients_of(model, rod), speed, entry.steady->q);
+      stages.push_back({"shape of " + rod.name, watch.seconds(), ""});
+    }
+
+    if (!only.stability || !rod.reported) {
+      stages.push_back({"stability of " + rod.name, 0, "not asked for", true});
+    } else {
+      const StabilityOptions options = stability_options(settings);
+      Stopwatch watch;
+      entry.stability = analyse_stability(system_with(model, rod, entry.num_modes), speed, options);
+      stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});
+    }
+    for (std::string& sentence : shortfalls_of(entry, only, settings)) result.shortfalls.push_back(std::move(sentence));
+    result.rods.push_back(std::move(entry));
+  }
+
+  if (!only.reactions) {
+    if (model.linkage()) stages.push_back({"joint forces", 0, "not asked for", true});
+    return result;
+  }
+  for (const RodResult& rod : result.rods) {
+    if (rod.steady->status != SteadyStatus::singular) continue;
+    stages.push_back({"joint forces", 0, rod.name + " has no periodic solution", true});
+    return result;
+  }
+  Stopwatch watch;
+  std::vector<LinkResponse> responses, more_modes;
+  double response_error = 0;
+  for (const RodResult& rod : result.rods) {
+    responses.push_back({rod.link, rod.steady->q});
+    more_modes.push_back({rod.link, rod.more_modes.c.size() > 0 ? rod.more_modes : rod.steady->q});
+    response_error = std::max(response_error, rod.steady->error_bound);
+  }
+  result.forces = joint_forces(*model.linkage(), speed, responses);
+  stages.push_back({"joint forces", watch.seconds(), ""});
+  Stopwatch error_watch;
+  std::vector<LinkResponse> more_harmonics;
+  for (std::size_t r = 0; r < model.rods.size(); ++r)
+    more_harmonics.push_back(
+        {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
+  result.force_errors =
+      force_errors(*model.linkage(), speed, *result.forces, response_error, more_harmonics, more_modes);
+  stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
+  return result;
+}
+
+}  // namespace hb::tools

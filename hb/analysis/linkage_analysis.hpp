@@ -1,0 +1,104 @@
+// A scene at one speed: steady state, stability, shape of its rods and joint forces, of which only what is asked for
+// is computed. What depends on geometry alone is in SceneModel, computed once.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/steady/steady_state.hpp"
+#include "lib/linkage/joint_forces.hpp"
+#include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
+#include "tools/command/common_flags.hpp"
+#include "hb/analysis/force_error.hpp"
+
+namespace hb::tools {
+
+// One stage of the work, for --stats.
+struct Stage {
+  std::string name;  // "steady state of AB"
+  double seconds = 0;
+  std::string note;  // what was done, or why it was skipped; may be empty
+  bool skipped = false;
+};
+
+struct RodModel {
+  std::string name;  // "system" for a [hill] scene
+  int link = -1;  // body number; -1 for a [hill] scene
+  int coefficients = -1;  // place in LinkageCoefficients::rods
+  bool reported = true;  // false: solved only because joint forces need it
+  HillSystem system;  // with the number of modes asked for (auto: the number to start from)
+  HillSystem finer;  // with comparison_modes; empty if the error of the cut is not asked for
+};
+
+struct SceneModel {
+  Scene scene;
+  LinkageCoefficients coefficients;  // empty for a [hill] scene
+  std::vector<RodModel> rods;
+  std::vector<Stage> stages;
+
+  const Linkage* linkage() const { return std::get_if<Linkage>(&scene.model); }
+};
+
+struct RodResult {
+  std::string name;
+  int link = -1;
+  bool reported = true;
+  Eigen::Index num_modes = 0;
+  std::optional<SteadyState> steady;
+  std::vector<Extremum> max_abs;  // of each q_i over the turn
+  // Estimated max |error of w| / max |w| over rod and turn from cutting the Ritz series, quasi-static tail included.
+  std::optional<double> modes_error;
+  // With modes = "auto": estimated error of the growth rate from cutting the Ritz series, relative to the larger of
+  // itself and the speed.
+  std::optional<double> growth_modes_error;
+  std::optional<RodShape> shape;
+  std::optional<Stability> stability;
+  FourierSeries more_modes;  // the steady state with more modes, where the error of the cut was looked at
+};
+
+struct SpeedResult {
+  double speed = 0;  // rad per unit time
+  Only computed;  // what was asked for and exists in this scene
+  std::vector<RodResult> rods;
+  std::optional<JointForces> forces;
+  std::optional<ForceErrors> force_errors;
+  std::vector<std::string> shortfalls;  // one sentence for each thing that missed its tolerance; empty: all reached
+  std::vector<Stage> stages;
+};
+
+// A linkage that turns through, but so near a dead centre that no number of crank angles allowed shows its motion.
+class UnresolvedLinkage : public ObstructedLinkage {
+ public:
+  using ObstructedLinkage::ObstructedLinkage;
+};
+
+// Throws UnresolvedLinkage where the turn is not resolved.
+void require_resolved(const Scene& scene, const LinkageCoefficients& coefficients);
+
+// Throws UsageError for a name in settings.rods that is not an elastic link, and UnresolvedLinkage.
+[[nodiscard]] SceneModel make_model(Scene scene, const Settings& settings);
+
+[[nodiscard]] SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings);
+
+// The cut of the Ritz series leaves a visible part of the deflection out.
+[[nodiscard]] inline bool needs_more_modes(const RodResult& rod) {
+  return rod.modes_error && !(*rod.modes_error <= 0.01);
+}
+
+// Exponents that were looked for, not resolved and not listed, of 2I.
+[[nodiscard]] inline Eigen::Index unresolved_exponents(const RodResult& rod) {
+  if (rod.stability->method == StabilityMethod::bound) return 0;
+  return 2 * rod.num_modes - static_cast<Eigen::Index>(rod.stability->exponents.size());
+}
+
+// Number of modes that I modes are compared with to see the error of the cut: I + max(3, I/2).
+[[nodiscard]] Eigen::Index comparison_modes(Eigen::Index num_modes);
+
+// Estimate described at RodResult::modes_error from two solutions of the same rod, the second with more modes.
+[[nodiscard]] double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                               const FourierSeries& finer);
+
+}  // namespace hb::tools

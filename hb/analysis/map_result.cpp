@@ -1,0 +1,140 @@
+#include "hb/analysis/map_result.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace hb::tools {
+namespace {
+
+constexpr std::size_t max_lines = 10;
+
+// Least stable point of all rods: unstable before undecided before stable, then by growth.
+MapPoint worse(const MapPoint& a, const MapPoint& b) {
+  if (a.source == MapSource::missing || b.source == MapSource::missing) return {};
+  const auto rank = [](const MapPoint& p) {
+    return p.verdict == Verdict::unstable ? 2 : p.verdict == Verdict::undecided;
+  };
+  MapPoint result = b.growth_rate > a.growth_rate ? b : a;
+  if (rank(a) != rank(b)) result.verdict = rank(a) > rank(b) ? a.verdict : b.verdict;
+  if (a.source == MapSource::interpolated || b.source == MapSource::interpolated) {
+    result.source = MapSource::interpolated;
+  }
+  result.converged = a.converged && b.converged;
+  return result;
+}
+
+std::vector<MissingPoints> missing_points(const ScenePlane& plane, const StabilityMap& map) {
+  // The message names the angle, which differs from place to place: the dyad tells reasons apart.
+  std::map<std::pair<int, std::string>, MissingPoints> reasons;
+  // Every reason of a large hole need not be asked for at every point.
+  constexpr std::size_t max_asked = 5000;
+  std::vector<std::size_t> places;
+  for (std::size_t p = 0; p < map.points.size(); ++p) {
+    if (map.points[p].source == MapSource::missing) places.push_back(p);
+  }
+  const std::size_t stride = 1 + places.size() / max_asked;
+  std::pair<int, std::string> key;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const double x = map.x[places[n] % map.x.size()], y = map.y[places[n] / map.x.size()];
+    if (n % stride == 0) {
+      const auto why = plane.absence(x, y);
+      const std::string message = why ? why->message : "the system's mass is singular";
+      key = {why ? why->dyad : -1, why && why->dyad >= 0 ? "" : message};
+      if (!reasons.count(key)) reasons[key] = {0, x, y, message};
+    }
+    ++reasons[key].count;
+  }
+  std::vector<MissingPoints> result;
+  for (auto& [ignored, points] : reasons) result.push_back(std::move(points));
+  std::stable_sort(result.begin(), result.end(),
+                   [](const MissingPoints& a, const MissingPoints& b) { return a.count > b.count; });
+  return result;
+}
+
+}  // namespace
+
+std::size_t boundary_points_not_reached(const MapResult& result) {
+  std::size_t count = 0;
+  for (const StabilityMap& map : result.maps) count += map.not_converged;
+  return count;
+}
+
+StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
+                     const MapOptions& search) {
+  const MapSystemAt at = [&plane, rod](double u, double v) { return plane.system(rod, u, v); };
+  return stability_map(at, std::move(x), std::move(y), search);
+}
+
+std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
+                                       const MapOptions& search) {
+  struct Place {
+    std::size_t rod;
+    double x, y;
+  };
+  std::vector<Place> places;
+  for (std::size_t r = 0; r < maps.size(); ++r) {
+    for (const BoundaryCurve& curve : maps[r].boundaries) {
+      for (const BoundaryPoint& p : curve.points) places.push_back({r, p.x, p.y});
+    }
+  }
+  std::vector<bool> hidden(places.size(), false);
+  if (maps.size() > 1) {
+    StabilityOptions options = search.search.stability;
+    options.leading_only = true;
+    hidden = computed_parts<bool>(
+        search.parts, places.size(),
+        [&](std::size_t k) {
+          for (std::size_t r = 0; r < maps.size(); ++r) {
+            if (r == places[k].rod) continue;
+            const std::optional<ScaledSystem> system = plane.system(r, places[k].x, places[k].y);
+            if (system && analyse_stability(*system, options).verdict == Verdict::unstable) return true;
+          }
+          return false;
+        },
+        [](auto& visit, bool& is_hidden) { visit_as_number(visit, is_hidden); });
+  }
+  std::vector<RodCurve> result;
+  std::size_t k = 0;
+  for (std::size_t r = 0; r < maps.size(); ++r) {
+    for (const BoundaryCurve& curve : maps[r].boundaries) {
+      RodCurve piece{r, {curve.kind, false, {}}};
+      bool whole = true;
+      for (const BoundaryPoint& p : curve.points) {
+        if (!hidden[k++]) {
+          piece.curve.points.push_back(p);
+          continue;
+        }
+        whole = false;
+        if (!piece.curve.points.empty()) result.push_back(piece);
+        piece.curve.points.clear();
+      }
+      piece.curve.closed = curve.closed && whole;
+      if (!piece.curve.points.empty()) result.push_back(std::move(piece));
+    }
+  }
+  return result;
+}
+
+MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x, const PlaneAxis& y_axis,
+                      std::vector<double> y, const MapOptions& search) {
+  MapResult result;
+  result.x_axis = x_axis;
+  result.y_axis = y_axis;
+  result.rods = plane.rods();
+  for (std::size_t r = 0; r < result.rods.size(); ++r) result.maps.push_back(rod_map(plane, r, x, y, search));
+  result.worst = result.maps.front().points;
+  for (std::size_t r = 1; r < result.maps.size(); ++r) {
+    for (std::size_t p = 0; p < result.worst.size(); ++p) {
+      result.worst[p] = worse(result.worst[p], result.maps[r].points[p]);
+    }
+  }
+  result.boundaries = worst_boundaries(plane, result.maps, search);
+  result.lines =
+      resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
+                      {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()}, max_lines);
+  result.missing = missing_points(plane, result.maps.front());
+  return result;
+}
+
+}  // namespace hb::tools

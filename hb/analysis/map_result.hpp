@@ -1,0 +1,59 @@
+// A stability map of a scene: every elastic link by itself, the worst of them, and what belongs on the picture.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "hb/engine/boundaries/stability_map.hpp"
+#include "hb/analysis/resonance_lines.hpp"
+#include "hb/analysis/scene_plane.hpp"
+
+namespace hb::tools {
+
+struct RodCurve {
+  std::size_t rod = 0;
+  BoundaryCurve curve;
+};
+
+// Points without a system for one reason.
+struct MissingPoints {
+  std::size_t count = 0;
+  double x = 0, y = 0;  // the first
+  std::string message;  // there
+};
+
+struct DampingCurves {
+  double factor = 1;  // on the internal damping
+  std::vector<RodCurve> boundaries;
+};
+
+struct MapResult {
+  PlaneAxis x_axis, y_axis;
+  std::vector<std::string> rods;
+  std::vector<StabilityMap> maps;  // one per rod
+  std::vector<MapPoint> worst;  // largest growth over the rods; x fastest
+  std::vector<RodCurve> boundaries;  // of the worst: each rod's where no other rod is unstable
+  std::vector<DampingCurves> damping;  // both ends of a damping range
+  std::vector<ResonanceLine> lines;  // of the first rod
+  std::vector<MissingPoints> missing;
+
+  const std::vector<double>& x() const { return maps.front().x; }
+  const std::vector<double>& y() const { return maps.front().y; }
+};
+
+// Of all rods, the error beyond 1e-10 relative.
+[[nodiscard]] std::size_t boundary_points_not_reached(const MapResult& result);
+
+// Boundaries of the worst rod alone.
+[[nodiscard]] std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
+                                                     const MapOptions& search);
+
+[[nodiscard]] StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x,
+                                   std::vector<double> y, const MapOptions& search);
+
+// Everything but the damping range.
+[[nodiscard]] MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x,
+                                    const PlaneAxis& y_axis, std::vector<double> y, const MapOptions& search);
+
+}  // namespace hb::tools

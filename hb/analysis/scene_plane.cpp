@@ -1,0 +1,441 @@
+#include "hb/analysis/scene_plane.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+
+#include "lib/rod/rod.hpp"
+#include "tools/command/command.hpp"
+#include "hb/analysis/linkage_analysis.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t num_powers = 3;
+
+// Relative to the entries of a matrix; the Fourier coefficients of a geometry carry rounding of a few 1e-14.
+constexpr double interpolation_tolerance = 1e-13;
+constexpr std::array<Index, 5> degrees_1d = {2, 4, 8, 16, 32};
+constexpr std::array<Index, 3> degrees_2d = {2, 4, 8};
+constexpr int max_depth_1d = 5, max_depth_2d = 2;
+
+// The numbers of a Hill system in one vector: mass, damping, then per power the harmonics of the stiffness.
+struct Layout {
+  Index num_modes = 0;
+  std::array<Index, num_powers> columns{};  // harmonics + 1; 0: no such power
+
+  Index matrix() const { return num_modes * num_modes; }
+  Index size() const { return (2 + 2 * (columns[0] + columns[1] + columns[2])) * matrix(); }
+  void widen(const HillSystem& system) {
+    num_modes = system.num_modes();
+    for (std::size_t p = 0; p < num_powers; ++p) columns[p] = std::max(columns[p], system.stiffness[p].c.cols());
+  }
+};
+
+VectorXd packed(const HillSystem& system, const Layout& layout) {
+  VectorXd v = VectorXd::Zero(layout.size());
+  const Index n = layout.matrix();
+  v.head(n) = system.mass.reshaped();
+  v.segment(n, n) = system.damping.reshaped();
+  Index start = 2 * n;
+  for (std::size_t p = 0; p < num_powers; ++p) {
+    const Eigen::MatrixXcd& c = system.stiffness[p].c;
+    v.segment(start, c.size()) = c.real().reshaped();
+    v.segment(start + n * layout.columns[p], c.size()) = c.imag().reshaped();
+    start += 2 * n * layout.columns[p];
+  }
+  return v;
+}
+
+HillSystem unpacked(const VectorXd& v, const Layout& layout) {
+  const Index I = layout.num_modes, n = layout.matrix();
+  HillSystem system;
+  system.mass = v.head(n).reshaped(I, I);
+  system.damping = v.segment(n, n).reshaped(I, I);
+  Index start = 2 * n;
+  for (std::size_t p = 0; p < num_powers; ++p) {
+    const Index columns = layout.columns[p];
+    if (columns == 0) continue;
+    Eigen::MatrixXcd c(n, columns);
+    c.real() = v.segment(start, n * columns).reshaped(n, columns);
+    c.imag() = v.segment(start + n * columns, n * columns).reshaped(n, columns);
+    system.stiffness[p] = FourierSeries(std::move(c));
+    start += 2 * n * columns;
+  }
+  return system;
+}
+
+// Per entry (i, k) of each matrix sqrt(d_i d_k) with d the largest of the diagonal, or its own largest value.
+VectorXd scales(const VectorXd& v, const Layout& layout) {
+  const Index I = layout.num_modes, n = layout.matrix();
+  VectorXd scale(v.size());
+  const auto block = [&](Index start, Index columns) {
+    if (columns == 0) return;
+    VectorXd own = v.segment(start, n * columns).reshaped(n, columns).cwiseAbs().rowwise().maxCoeff();
+    for (Index k = 0; k < I; ++k) {
+      for (Index i = 0; i < I; ++i) {
+        const double geometric = std::sqrt(own(i + I * i) * own(k + I * k));
+        scale.segment(start, n * columns)
+            .reshaped(n, columns)
+            .row(i + I * k)
+            .setConstant(std::max(geometric, own(i + I * k)));
+      }
+    }
+  };
+  block(0, 1);
+  block(n, 1);
+  Index start = 2 * n;
+  for (const Index columns : layout.columns) {
+    block(start, 2 * columns);
+    start += 2 * n * columns;
+  }
+  return scale;
+}
+
+// Chebyshev-Lobatto nodes on [-1, 1] and the matrix from values there to coefficients of T_0 .. T_n.
+VectorXd lobatto_nodes(Index n) {
+  VectorXd nodes(n + 1);
+  for (Index k = 0; k <= n; ++k) nodes(k) = n == 0 ? 0 : std::sin(std::numbers::pi * double(2 * k - n) / double(2 * n));
+  return nodes;
+}
+
+VectorXd chebyshev(double t, Index n) {
+  VectorXd T(n + 1);
+  T(0) = 1;
+  if (n > 0) T(1) = t;
+  for (Index k = 2; k <= n; ++k) T(k) = 2 * t * T(k - 1) - T(k - 2);
+  return T;
+}
+
+MatrixXd to_coefficients(Index n) {
+  if (n == 0) return MatrixXd::Ones(1, 1);
+  // c_j = 2/n sum'' f(t_k) T_j(t_k), both ends of both sums halved.
+  MatrixXd D(n + 1, n + 1);
+  const VectorXd nodes = lobatto_nodes(n);
+  for (Index k = 0; k <= n; ++k) D.row(k) = chebyshev(nodes(k), n).transpose() * (2.0 / double(n));
+  D.row(0) *= 0.5;
+  D.row(n) *= 0.5;
+  D.col(0) *= 0.5;
+  D.col(n) *= 0.5;
+  return D;
+}
+
+struct Box {
+  std::array<double, 2> low{}, high{};
+
+  double unit(std::size_t axis, double v) const {
+    const double width = high[axis] - low[axis];
+    return width > 0 ? ((v - low[axis]) - (high[axis] - v)) / width : 0;
+  }
+  double value(std::size_t axis, double t) const { return 0.5 * ((1 - t) * low[axis] + (1 + t) * high[axis]); }
+  bool contains(double u, double v) const { return u >= low[0] && u <= high[0] && v >= low[1] && v <= high[1]; }
+};
+
+// Part of the plane of scene numbers: interpolated, divided further, or (neither) computed place by place.
+struct Patch {
+  Box box;
+  std::array<Index, 2> degree{};
+  std::vector<Layout> layouts;  // per rod
+  std::vector<MatrixXd> coefficients;  // per rod: numbers x products of Chebyshev polynomials, first axis fastest
+  std::vector<Patch> parts;
+
+  bool interpolates() const { return !coefficients.empty(); }
+};
+
+}  // namespace
+
+struct ScenePlane::Implementation {
+  SceneSource source;
+  std::vector<Override> overrides;
+  std::array<PlaneAxis, 2> axes;
+  PlaneOptions options;
+  std::optional<Scene> corner;
+  std::vector<std::string> names;  // of all rods asked for
+  std::array<bool, 2> varies{};  // the axis is a scene number
+  Patch root;
+  std::size_t id = 0;
+  std::atomic<std::size_t> computed = 0;
+  std::size_t patches = 0;
+
+  std::vector<Override> overrides_at(double u, double v) const {
+    std::vector<Override> all = overrides;
+    if (varies[0]) all.push_back(number_override(axes[0].path, u));
+    if (varies[1]) all.push_back(number_override(axes[1].path, v));
+    return all;
+  }
+
+  bool asked(const std::string& name) const {
+    return options.rods.empty() || std::find(options.rods.begin(), options.rods.end(), name) != options.rods.end();
+  }
+
+  // Systems of the rods, those of links multiplied by EJ (stability does not see it).
+  std::vector<HillSystem> systems_from_scene(double u, double v) {
+    ++computed;
+    const Scene scene = source.with(overrides_at(u, v));
+    if (const auto* hill = std::get_if<HillSystem>(&scene.model)) return {*hill};
+    const Linkage& linkage = std::get<Linkage>(scene.model);
+    const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+    require_resolved(scene, coefficients);
+    std::vector<HillSystem> systems;
+    for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
+      if (!asked(body_name(linkage, coefficients.links[r]))) continue;
+      const Body& link = *body_at(linkage, coefficients.links[r]);
+      HillSystem system = ritz_system(link, coefficients.rods[r], options.num_modes);
+      const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
+      system.mass *= EJ;
+      system.damping *= EJ;
+      for (FourierSeries& series : system.stiffness) series.c *= EJ;
+      systems.push_back(std::move(system));
+    }
+    return systems;
+  }
+
+  // The last place of each thread is kept: a search along the speed stays at one place.
+  const std::vector<HillSystem>* systems_directly(double u, double v) {
+    struct Last {
+      std::size_t id = 0;
+      double u = 0, v = 0;
+      std::optional<std::vector<HillSystem>> systems;
+    };
+    thread_local Last last;
+    if (last.id != id || last.u != u || last.v != v) {
+      last = {id, u, v, std::nullopt};
+      try {
+        last.systems = systems_from_scene(u, v);
+      } catch (const SceneError&) {
+      }
+    }
+    return last.systems ? &*last.systems : nullptr;
+  }
+
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
+    if (options.parallel_for) {
+      options.parallel_for(count, work);
+    } else {
+      for (std::size_t k = 0; k < count; ++k) work(k);
+    }
+  }
+
+  using Samples = std::vector<std::optional<std::vector<HillSystem>>>;
+
+  Samples samples_at(const std::vector<std::array<double, 2>>& places) {
+    Samples samples(places.size());
+    for_each(places.size(), [&](std::size_t k) {
+      try {
+        samples[k] = systems_from_scene(places[k][0], places[k][1]);
+      } catch (const SceneError&) {
+      }
+    });
+    return samples;
+  }
+
+  bool interpolate(Patch& patch, Index degree) {
+    const std::array<Index, 2> n = {varies[0] ? degree : 0, varies[1] ? degree : 0};
+    std::vector<std::array<double, 2>> places;
+    const VectorXd first = lobatto_nodes(n[0]), second = lobatto_nodes(n[1]);
+    for (Index j = 0; j <= n[1]; ++j) {
+      for (Index i = 0; i <= n[0]; ++i) places.push_back({patch.box.value(0, first(i)), patch.box.value(1, second(j))});
+    }
+    // Places between the nodes, spread by the golden section and the square root of 2.
+    constexpr int num_checks = 6;
+    const std::size_t num_nodes = places.size();
+    for (int k = 1; k <= num_checks; ++k) {
+      double whole = 0;
+      const double s = std::modf(k * std::numbers::phi, &whole), t = std::modf(k * std::numbers::sqrt2, &whole);
+      places.push_back({patch.box.value(0, 2 * s - 1), patch.box.value(1, 2 * t - 1)});
+    }
+    const Samples samples = samples_at(places);
+    for (const auto& sample : samples) {
+      if (!sample) return false;
+    }
+    patch.degree = n;
+    const MatrixXd Dx = to_coefficients(n[0]), Dy = to_coefficients(n[1]);
+    for (std::size_t r = 0; r < samples[0]->size(); ++r) {
+      Layout layout;
+      for (const auto& sample : samples) layout.widen((*sample)[r]);
+      MatrixXd values(layout.size(), static_cast<Index>(num_nodes));
+      for (std::size_t k = 0; k < num_nodes; ++k) values.col(static_cast<Index>(k)) = packed((*samples[k])[r], layout);
+      MatrixXd coefficients = MatrixXd::Zero(values.rows(), values.cols());
+      const Index rows = n[0] + 1;
+      for (Index l = 0; l <= n[1]; ++l) {
+        for (Index j = 0; j <= n[1]; ++j) {
+          coefficients.middleCols(rows * l, rows) += Dy(j, l) * (values.middleCols(rows * j, rows) * Dx);
+        }
+      }
+      for (std::size_t k = num_nodes; k < places.size(); ++k) {
+        const VectorXd truth = packed((*samples[k])[r], layout);
+        const VectorXd error = (coefficients * products(patch, places[k][0], places[k][1]) - truth).cwiseAbs();
+        if (!(error.array() <= interpolation_tolerance * scales(truth, layout).array()).all()) {
+          patch.coefficients.clear();
+          patch.layouts.clear();
+          return false;
+        }
+      }
+      patch.layouts.push_back(layout);
+      patch.coefficients.push_back(std::move(coefficients));
+    }
+    ++patches;
+    return true;
+  }
+
+  static VectorXd products(const Patch& patch, double u, double v) {
+    const VectorXd first = chebyshev(patch.box.unit(0, u), patch.degree[0]);
+    const VectorXd second = chebyshev(patch.box.unit(1, v), patch.degree[1]);
+    return (first * second.transpose()).reshaped();
+  }
+
+  void divide(Patch& patch, int depth) {
+    const bool both = varies[0] && varies[1];
+    if (both) {
+      for (const Index degree : degrees_2d) {
+        if (interpolate(patch, degree)) return;
+      }
+    } else {
+      for (const Index degree : degrees_1d) {
+        if (interpolate(patch, degree)) return;
+      }
+    }
+    if (depth == (both ? max_depth_2d : max_depth_1d)) return;
+    for (int half_v = 0; half_v < (varies[1] ? 2 : 1); ++half_v) {
+      for (int half_u = 0; half_u < (varies[0] ? 2 : 1); ++half_u) {
+        Patch part;
+        part.box = patch.box;
+        const std::array<int, 2> half = {half_u, half_v};
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+          if (!varies[axis]) continue;
+          const double middle = patch.box.value(axis, 0);
+          (half[axis] == 0 ? part.box.high : part.box.low)[axis] = middle;
+        }
+        divide(part, depth + 1);
+        patch.parts.push_back(std::move(part));
+      }
+    }
+  }
+
+  double speed_at(double x, double y) const {
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double v = axis == 0 ? x : y;
+      if (axes[axis].role == PlaneAxis::Role::rpm) return speed_from_rpm(v, corner->units);
+      if (axes[axis].role == PlaneAxis::Role::omega) return v;
+    }
+    return options.speed;
+  }
+};
+
+ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y,
+                       PlaneOptions options)
+    : self_(new Implementation{
+          std::move(source), std::move(overrides), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
+  static std::atomic<std::size_t> next_id = 1;
+  Implementation& s = *self_;
+  s.id = next_id++;
+  Box& box = s.root.box;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    s.varies[axis] = s.axes[axis].role == PlaneAxis::Role::scene_number;
+    if (!s.varies[axis]) continue;
+    box.low[axis] = s.axes[axis].from;
+    box.high[axis] = s.axes[axis].to;
+  }
+  // A wrong number shows at a corner; a linkage that does not turn through there may do so elsewhere.
+  std::optional<ObstructedLinkage> obstructed;
+  const auto look_at = [&](double u, double v) {
+    try {
+      Scene scene = s.source.with(s.overrides_at(u, v));
+      if (!s.corner) s.corner = std::move(scene);
+    } catch (const ObstructedLinkage& error) {
+      if (!obstructed) obstructed = error;
+    }
+  };
+  for (const double u : {box.low[0], box.high[0]}) {
+    for (const double v : {box.low[1], box.high[1]}) look_at(u, v);
+  }
+  constexpr int places = 16;
+  for (int k = 0; k <= places && !s.corner; ++k) {
+    for (int l = 0; l <= places && !s.corner; ++l) {
+      look_at(box.value(0, 2.0 * k / places - 1), box.value(1, 2.0 * l / places - 1));
+    }
+  }
+  if (!s.corner) throw ObstructedLinkage(*obstructed);
+
+  if (const auto* linkage = std::get_if<Linkage>(&s.corner->model)) {
+    std::vector<std::string> all;
+    for (const int link : elastic_links(*linkage)) all.push_back(body_name(*linkage, link));
+    if (all.empty()) throw UsageError("the scene has no elastic links: nothing can become unstable");
+    for (const std::string& name : s.options.rods) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) {
+        throw UsageError(fmt::format("--rods: found \"{}\", allowed: {}", name, fmt::join(all, ", ")));
+      }
+    }
+    for (const std::string& name : all) {
+      if (s.asked(name)) s.names.push_back(name);
+    }
+  } else {
+    s.names.push_back("system");
+    for (const std::string& name : s.options.rods) {
+      if (name != "system") throw UsageError(fmt::format("--rods: found \"{}\", allowed: system", name));
+    }
+    s.options.rods.clear();
+  }
+  if (s.varies[0] || s.varies[1]) {
+    s.divide(s.root, 0);
+  } else {
+    s.interpolate(s.root, 0);
+  }
+}
+
+ScenePlane::~ScenePlane() = default;
+ScenePlane::ScenePlane(ScenePlane&&) noexcept = default;
+
+const Scene& ScenePlane::scene() const { return *self_->corner; }
+const std::vector<std::string>& ScenePlane::rods() const { return self_->names; }
+double ScenePlane::speed(double x, double y) const { return self_->speed_at(x, y); }
+
+std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double y) const {
+  Implementation& s = *self_;
+  const double u = s.varies[0] ? x : 0, v = s.varies[1] ? y : 0;
+  const Patch* patch = &s.root;
+  while (!patch->parts.empty()) {
+    const auto part =
+        std::find_if(patch->parts.begin(), patch->parts.end(), [&](const Patch& p) { return p.box.contains(u, v); });
+    if (part == patch->parts.end()) break;
+    patch = &*part;
+  }
+  try {
+    if (patch->interpolates() && patch->box.contains(u, v)) {
+      const VectorXd numbers = patch->coefficients[rod] * Implementation::products(*patch, u, v);
+      return scale_system(unpacked(numbers, patch->layouts[rod]), s.speed_at(x, y));
+    }
+    const std::vector<HillSystem>* systems = s.systems_directly(u, v);
+    if (!systems) return std::nullopt;
+    return scale_system((*systems)[rod], s.speed_at(x, y));
+  } catch (const std::invalid_argument&) {  // singular mass in between
+    return std::nullopt;
+  }
+}
+
+std::optional<ScenePlane::Absence> ScenePlane::absence(double x, double y) const {
+  const double u = self_->varies[0] ? x : 0, v = self_->varies[1] ? y : 0;
+  try {
+    (void)self_->systems_from_scene(u, v);
+  } catch (const ObstructedLinkage& error) {
+    return Absence{error.what(), error.dyad};
+  } catch (const SceneError& error) {
+    return Absence{error.what(), -1};
+  }
+  return std::nullopt;
+}
+
+std::string ScenePlane::evidence() const {
+  return fmt::format("{} geometries computed, {} interpolating patches", self_->computed.load(), self_->patches);
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,63 @@
+// A scene over two of its numbers: the systems of its elastic links at any place (x, y), cheap enough to be asked for
+// at every step of a search. The speed may be one of the two. Other numbers enter through interpolation: the Ritz
+// matrices, multiplied by EJ, are polynomials in stiffnesses, masses and dampings and analytic in lengths, so that few
+// Chebyshev nodes give them to rounding; where they do not, each place is computed from the scene.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/engine/system/scaled_system.hpp"
+#include "hb/engine/boundaries/stability_map.hpp"
+#include "lib/scene/scene.hpp"
+
+namespace hb::tools {
+
+// Calls work(0) .. work(count - 1), each once, in any order.
+using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
+
+struct PlaneAxis {
+  enum class Role { rpm, omega, scene_number };
+  Role role = Role::scene_number;
+  std::string path;
+  double from = 0, to = 0;
+};
+
+struct PlaneOptions {
+  Eigen::Index num_modes = 5;
+  double speed = 0;               // rad per unit time, where no axis is the speed
+  std::vector<std::string> rods;  // names asked for; empty: all
+  ParallelFor parallel_for;
+};
+
+class ScenePlane {
+ public:
+  // Throws SceneError where the scene is wrong at a corner of the plane, UsageError for a name in options.rods that is
+  // not an elastic link.
+  ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y, PlaneOptions options);
+  ~ScenePlane();
+  ScenePlane(ScenePlane&&) noexcept;
+
+  [[nodiscard]] const Scene& scene() const;  // at a corner
+  [[nodiscard]] const std::vector<std::string>& rods() const;
+  [[nodiscard]] double speed(double x, double y) const;  // rad per unit time
+  // Empty where the scene has no system. From any thread.
+  [[nodiscard]] std::optional<ScaledSystem> system(std::size_t rod, double x, double y) const;
+  // Why there is none: the message of the scene at that place; a linkage that does not turn through has its dyad.
+  struct Absence {
+    std::string message;
+    int dyad = -1;
+  };
+  [[nodiscard]] std::optional<Absence> absence(double x, double y) const;
+  // One sentence, for --stats.
+  [[nodiscard]] std::string evidence() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> self_;
+};
+
+}  // namespace hb::tools

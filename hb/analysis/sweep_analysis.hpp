@@ -1,0 +1,121 @@
+// A scene along one parameter: everything at the points asked for, and what lies between them: resonance peaks and
+// unstable bands, both located.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/engine/steady/response_peak.hpp"
+#include "hb/engine/boundaries/sweep.hpp"
+#include "hb/analysis/linkage_analysis.hpp"
+
+namespace hb::tools {
+
+class SharedWork;
+
+struct Axis {
+  enum class Kind { rpm, omega, parameter };
+  Kind kind = Kind::rpm;
+  std::string path = "rpm";  // "rpm", "omega", or a scene number's path
+  std::vector<double> values;  // ascending
+};
+
+// The scene with the axis at one value.
+struct ScenePlace {
+  std::shared_ptr<const SceneModel> model;  // null: no linkage there
+  double speed = 0;  // rad per unit time
+  std::string problem;  // why there is none
+};
+
+// Immutable; free to share by threads.
+class SweepScene {
+ public:
+  // `fixed_speed` (rad per unit time; `fixed_rpm` as given) is used where the axis is not the speed. Throws SceneError
+  // or UsageError for what cannot be at any value; a linkage that does not close is a place's problem instead.
+  SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis, double fixed_speed,
+             double fixed_rpm);
+
+  [[nodiscard]] ScenePlace at(double x) const;
+  const Axis& axis() const { return axis_; }
+  double fixed_rpm() const { return fixed_rpm_; }
+  const Settings& settings() const { return settings_; }
+  const Scene& scene() const { return first_->scene; }  // at the first value that closes
+  const SceneModel& first() const { return *first_; }
+
+ private:
+  SceneSource source_;
+  std::vector<Override> overrides_;
+  Settings settings_;
+  Axis axis_;
+  double fixed_speed_, fixed_rpm_;
+  Units units_;
+  std::shared_ptr<const SceneModel> first_;
+};
+
+// Smallest and largest over the turn.
+struct TurnRange {
+  double min = 0, max = 0;
+};
+
+struct RodPoint {
+  std::optional<SteadyStatus> steady;  // empty: not asked for
+  int num_harmonics = 0;
+  double error_bound = 0, resonance_distance = 0;
+  std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
+  std::optional<double> deflection, bending_moment;  // largest over rod and turn
+  std::optional<StabilitySample> stability;
+};
+
+struct SweepPoint {
+  double x = 0, speed = 0;
+  std::string problem;  // no linkage at this x: why; everything below is empty then
+  std::vector<RodPoint> rods;
+  std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
+  std::optional<TurnRange> torque, torque_rigid;
+};
+
+// A local maximum of a rod's largest |q_i|.
+struct CriticalPoint {
+  std::size_t rod = 0;
+  int component = 0;  // i - 1: the q_i that peaks
+  int mode = -1;  // whose frequency is met; -1 if not known (stability not asked for)
+  int order = 0;  // n = omega/Omega, rounded; 0 if not known
+  double frequency = 0;  // of that mode there, rad per unit time
+  double damping = 0;  // its decay rate, 1/time
+  double speed = 0;
+  double prominence = 0;  // height above the higher of the two valleys beside it, relative to the peak
+  ResponsePeak peak;
+};
+
+struct SweepRod {
+  std::string name;
+  bool reported = true;  // false: solved only because joint forces need it
+  int num_modes = 0;
+  std::vector<StabilityBoundary> boundaries;
+  std::vector<UnstableBand> bands;
+};
+
+struct SweepResult {
+  Only computed;
+  std::vector<SweepRod> rods;
+  std::vector<SweepPoint> points;  // as asked for
+  std::vector<SweepPoint> refined;  // between them: at peaks with their flanks, and at boundaries; ascending
+  std::vector<CriticalPoint> critical;  // by rod, then ascending x
+  std::vector<std::string> joint_components;  // "AB.0 x"
+  std::vector<std::string> shortfalls;
+  std::vector<Stage> stages;
+};
+
+[[nodiscard]] SweepResult run_sweep(const SweepScene& scene, SharedWork& work);
+[[nodiscard]] SweepResult run_sweep(const SweepScene& scene);  // nothing kept
+
+// Points and refined points together, ascending.
+[[nodiscard]] std::vector<const SweepPoint*> all_points(const SweepResult& result);
+// Tracked modes of one rod at these points.
+[[nodiscard]] std::vector<std::vector<ModeState>> tracks(const SweepResult& result, std::size_t rod,
+                                                         const std::vector<const SweepPoint*>& points);
+
+}  // namespace hb::tools

@@ -1,0 +1,66 @@
+// One design of a scene over a speed range: the worst case of every metric, found between the speeds sampled.
+#pragma once
+
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/tune/tune_metric.hpp"
+#include "hb/analysis/tune/tune_quantities.hpp"
+
+namespace hb::tools {
+
+// Decay that a condition asks for, 1/time or per turn.
+struct RequiredDecay {
+  double bound = 0;
+  bool per_turn = false;
+  double at(double speed) const { return per_turn ? bound * speed / (2 * std::numbers::pi) : bound; }
+};
+
+// Response and margin over the speeds sampled, for pictures.
+struct DesignCurves {
+  std::vector<double> speed;
+  std::vector<std::string> rods;
+  Eigen::MatrixXd deflection;  // speeds x rods
+  Eigen::VectorXd growth;  // largest over the rods
+};
+
+class DesignAnalysis {
+ public:
+  // Keeps references to both. Bands of instability, and those that decay slower than required, are looked for also
+  // where narrow.
+  DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span, SectionHeights heights,
+                 std::vector<RequiredDecay> required = {});
+  ~DesignAnalysis();
+
+  // Throws UsageError for a name that the scene does not have.
+  [[nodiscard]] MetricValue value(const Metric& metric);
+  [[nodiscard]] DesignCurves curves();
+
+ private:
+  struct Sample;
+  struct Curve;
+  std::vector<Curve> curves_of(const Metric& metric);
+  double at(const Curve& curve, double speed);
+  double at_node(const Curve& curve, std::size_t node);
+  MetricValue worst(const Metric& metric, const std::vector<Curve>& curves);
+  MetricValue clearance(const Metric& metric);
+  void place_nodes();  // new ones on resonances
+  // At all nodes that do not have it yet.
+  void respond();
+  void need_forces();
+  void find_instabilities();  // adds nodes in narrow bands
+
+  const SceneModel& model_;
+  const Settings& settings_;
+  SpeedSpan span_;
+  SectionHeights heights_;
+  std::vector<RequiredDecay> required_;  // begins with none at all
+  std::vector<std::unique_ptr<Sample>> nodes_;  // ascending speed
+  bool placed_ = false;
+};
+
+}  // namespace hb::tools

@@ -1,0 +1,125 @@
+// Results as lists of numbers, so that a part of long work can be kept in a file or come from another process.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "hb/engine/boundaries/sweep.hpp"
+
+namespace hb {
+
+using Part = std::vector<double>;
+
+// part(0) .. part(count - 1), in this order. They may be computed in any order and by several threads, or be known from
+// elsewhere: each must depend on its index alone.
+using PartsOf = std::function<std::vector<Part>(std::size_t count, const std::function<Part(std::size_t)>& part)>;
+
+// Writes numbers one after the other, reads them in the same order. One function for both directions keeps them alike.
+class PartWriter {
+ public:
+  void operator()(double& value) { numbers.push_back(value); }
+  Part numbers;
+};
+
+class PartReader {
+ public:
+  explicit PartReader(const Part& numbers) : numbers_(numbers) {}
+  void operator()(double& value) {
+    if (next_ == numbers_.size()) throw std::out_of_range("part of a result: too short");
+    value = numbers_[next_++];
+  }
+  bool at_end() const { return next_ == numbers_.size(); }
+
+ private:
+  const Part& numbers_;
+  std::size_t next_ = 0;
+};
+
+template <class Visit, class Number>
+void visit_as_number(Visit& visit, Number& value) {
+  auto number = static_cast<double>(value);
+  visit(number);
+  value = static_cast<Number>(number);
+}
+
+// The size, then each element by `each`.
+template <class Visit, class Container, class Each>
+void visit_elements(Visit& visit, Container& container, Each&& each) {
+  auto size = static_cast<double>(container.size());
+  visit(size);
+  if (!(size >= 0 && size <= 1e6)) throw std::out_of_range("part of a result: a list of impossible size");
+  container.resize(static_cast<std::size_t>(size));
+  for (auto& element : container) each(element);
+}
+
+template <class Visit, class Value, class Each>
+void visit_if_there(Visit& visit, std::optional<Value>& value, Each&& each) {
+  double there = value ? 1 : 0;
+  visit(there);
+  if (there == 0) {
+    value.reset();
+  } else {
+    if (!value) value.emplace();
+    each(*value);
+  }
+}
+
+// Without what was done to get it (method, kept modes, evidence).
+template <class Visit>
+void visit_sample(Visit& visit, StabilitySample& sample) {
+  Stability& stability = sample.stability;
+  visit(sample.x);
+  visit(sample.speed);
+  visit_elements(visit, stability.exponents, [&](Exponent& exponent) {
+    double re = exponent.value.real(), im = exponent.value.imag();
+    visit(re);
+    visit(im);
+    exponent.value = {re, im};
+    visit(exponent.error);
+    visit_as_number(visit, exponent.mode);
+    visit(exponent.frequency);
+  });
+  visit(stability.growth_rate);
+  visit(stability.growth_error);
+  visit_as_number(visit, stability.verdict);
+  visit_as_number(visit, stability.converged);
+}
+
+template <class Visit>
+void visit_boundary(Visit& visit, StabilityBoundary& boundary) {
+  visit(boundary.x);
+  visit(boundary.error);
+  visit_as_number(visit, boundary.kind);
+  visit_as_number(visit, boundary.unstable_above);
+  visit_as_number(visit, boundary.converged);
+}
+
+// part(0) .. part(count - 1) by `parts` (empty: one after the other) of results that visit(visitor, result) writes and
+// reads as numbers.
+template <class Result, class Visit>
+std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
+                                   const std::function<Result(std::size_t)>& compute, const Visit& visit) {
+  const auto part = [&](std::size_t k) {
+    Result result = compute(k);
+    PartWriter writer;
+    visit(writer, result);
+    return std::move(writer.numbers);
+  };
+  std::vector<Result> found;
+  found.reserve(count);
+  if (!parts) {
+    for (std::size_t k = 0; k < count; ++k) found.push_back(compute(k));
+    return found;
+  }
+  for (const Part& numbers : parts(count, part)) {
+    PartReader reader(numbers);
+    Result result{};
+    visit(reader, result);
+    found.push_back(std::move(result));
+  }
+  return found;
+}
+
+}  // namespace hb

@@ -1,0 +1,59 @@
+// Stability of one system over two of its parameters x, y: growth rate and verdict on a grid, and the curves where the
+// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (look_between).
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "hb/engine/boundaries/boundary_curve.hpp"
+#include "hb/engine/boundaries/part.hpp"
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/boundaries/sweep.hpp"
+
+namespace hb {
+
+// Empty where there is no system (a linkage that does not close). Same place, same result; called from several threads
+// when the parts are computed by several.
+using MapSystemAt = std::function<std::optional<ScaledSystem>(double x, double y)>;
+
+struct MapOptions {
+  SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
+  std::size_t evaluate_all = 40000;  // grids of at most so many points are evaluated at every point
+  double sag = 5e-4;  // of a boundary's chord, relative to the map's width and height
+  bool curves_only = false;  // no grid values; the grid serves the search alone
+  PartsOf parts;  // who computes the parts of a step; empty: one after the other
+};
+
+enum class MapSource {
+  evaluated,
+  interpolated,  // inside a cell whose corners and edges have one verdict, growth bilinear
+  missing,  // no system here
+};
+
+struct MapPoint {
+  MapSource source = MapSource::missing;
+  double speed = 0;  // rad per unit time
+  double growth_rate = 0;  // 1/time
+  double growth_error = 0;  // bound where evaluated, NaN where interpolated
+  Verdict verdict = Verdict::undecided;
+  BoundaryKind kind = BoundaryKind::complex;  // of the leading exponent
+  bool converged = false;
+};
+
+struct StabilityMap {
+  std::vector<double> x, y;
+  std::vector<MapPoint> points;  // x fastest: point (i, j) is [i + nx j]
+  std::vector<BoundaryCurve> boundaries;
+  std::size_t samples = 0;  // places where the exponents were computed
+  std::size_t not_converged = 0;  // boundary points whose bracket stayed wider than asked
+
+  const MapPoint& at(std::size_t i, std::size_t j) const { return points[i + x.size() * j]; }
+};
+
+// x and y ascending, at least two values each; throws std::invalid_argument otherwise.
+[[nodiscard]] StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
+                                         const MapOptions& options = {});
+
+}  // namespace hb

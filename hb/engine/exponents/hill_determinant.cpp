@@ -1,0 +1,279 @@
+#include "hb/engine/exponents/hill_determinant.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "hb/engine/exponents/inexact_eigenvalues.hpp"
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+constexpr double eps = 2.220446049250313e-16;
+constexpr double pi = std::numbers::pi;
+constexpr Index most_unknowns = 1200;  // of the whole half window, and of the core and a block
+constexpr double settled = 1e-9;
+// A root of D nearer to s + ik than this leaves the row's divisor and the product of sines, where the two cancel.
+constexpr double near = 0.1;
+
+// ln(2 sinh pi z) without overflow.
+cplx log_two_sinh(cplx z) {
+  return z.real() >= 0 ? pi * z + std::log(1.0 - std::exp(-2 * pi * z))
+                       : -pi * z + std::log(1.0 - std::exp(2 * pi * z)) + cplx(0, pi);
+}
+
+// ln(2 sinh(pi z)/z) for small z.
+cplx log_two_sinh_over(cplx z) {
+  const cplx x2 = pi * pi * z * z;
+  return std::log(2 * pi * (1.0 + x2 / 6.0 * (1.0 + x2 / 20.0 * (1.0 + x2 / 42.0 * (1.0 + x2 / 72.0)))));
+}
+
+cplx log_determinant(const Eigen::PartialPivLU<MatrixXcd>& lu) {
+  cplx sum(0, lu.permutationP().determinant() < 0 ? pi : 0);
+  for (Index i = 0; i < lu.matrixLU().rows(); ++i) sum += std::log(lu.matrixLU()(i, i));
+  return sum;
+}
+
+}  // namespace
+
+HillDeterminant::HillDeterminant(const ScaledSystem& system)
+    : I_(system.num_modes()), P_(system.K.num_harmonics()), K_(system.K), p_(I_), p_other_(I_) {
+  if (!system.diagonal_damping) throw std::invalid_argument("HillDeterminant: the damping must be diagonal");
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  for (Index i = 0; i < I_; ++i) {
+    const cplx root = std::sqrt(cplx(b(i) * b(i) / 4 - w2(i), 0));
+    p_(i) = -b(i) / 2 + root;
+    p_other_(i) = -b(i) / 2 - root;
+    K_.c(i + I_ * i, 0) = 0;  // from here on E, what D leaves of K
+  }
+}
+
+HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
+  const auto E = [&](Index i, Index j, Index m) {
+    const cplx c = K_.c(i + I_ * j, std::abs(m));
+    return m >= 0 ? c : std::conj(c);
+  };
+  const auto D = [&](Index i, Index k) {
+    const cplx z = s + cplx(0, double(k));
+    return (z - p_(i)) * (z - p_other_(i));
+  };
+  // D without the roots that are near.
+  const auto divisor = [&](Index i, Index k) {
+    const cplx z = s + cplx(0, double(k));
+    cplx d = 1;
+    for (const cplx p : {p_(i), p_other_(i)})
+      if (std::abs(z - p) > near) d *= z - p;
+    return d;
+  };
+  // Rows k = from..to, columns l = left..right, each row over its divisor.
+  const auto block = [&](Index from, Index to, Index left, Index right) {
+    MatrixXcd A = MatrixXcd::Zero((to - from + 1) * I_, (right - left + 1) * I_);
+    for (Index k = from; k <= to; ++k)
+      for (Index l = std::max(left, k - P_); l <= std::min(right, k + P_); ++l)
+        for (Index i = 0; i < I_; ++i)
+          for (Index j = 0; j < I_; ++j)
+            A((k - from) * I_ + i, (l - left) * I_ + j) =
+                (E(i, j, k - l) + (k == l && i == j ? D(i, k) : cplx(0))) / divisor(i, k);
+    return A;
+  };
+
+  // Harmonics where the coupling is strong make up the core.
+  VectorXd pull = VectorXd::Zero(I_);
+  for (Index i = 0; i < I_; ++i)
+    for (Index j = 0; j < I_; ++j) pull(i) += 2 * K_.c.row(i + I_ * j).cwiseAbs().sum();
+  Index core = std::min(P_, H);
+  for (Index k = core; k <= H; ++k)
+    for (Index i = 0; i < I_; ++i)
+      if (pull(i) > 0.5 * std::min(std::abs(D(i, k)), std::abs(D(i, -k)))) core = k;
+
+  if ((2 * core + 1) * I_ > most_unknowns || P_ * I_ > most_unknowns) return {0, HUGE_VAL};
+
+  // S = A_nn - A_n,n+1 S_{n+1}^-1 A_n+1,n from the outermost harmonics to the core, on both sides.
+  cplx log_det = 0;
+  MatrixXcd A = block(-core, core, -core, core);
+  const Index step = std::max<Index>(P_, 1);
+  for (const Index side : {1, -1}) {
+    MatrixXcd S;
+    Index outer_from = 0, outer_to = 0;  // |k| of the block before
+    for (Index to = H; to > core;) {
+      const Index from = std::max(core + 1, to - step + 1);
+      const auto rows = [&](Index a, Index b) { return side > 0 ? std::pair(a, b) : std::pair(-b, -a); };
+      const auto [lo, hi] = rows(from, to);
+      MatrixXcd here = block(lo, hi, lo, hi);
+      if (S.size() > 0) {
+        const auto [olo, ohi] = rows(outer_from, outer_to);
+        const Eigen::PartialPivLU<MatrixXcd> lu(S);
+        log_det += log_determinant(lu);
+        here -= block(lo, hi, olo, ohi) * lu.solve(block(olo, ohi, lo, hi));
+      }
+      S = std::move(here);
+      outer_from = from;
+      outer_to = to;
+      to = from - 1;
+    }
+    if (S.size() > 0) {
+      const auto [olo, ohi] = side > 0 ? std::pair(outer_from, outer_to) : std::pair(-outer_to, -outer_from);
+      const Eigen::PartialPivLU<MatrixXcd> lu(S);
+      log_det += log_determinant(lu);
+      A -= block(-core, core, olo, ohi) * lu.solve(block(olo, ohi, -core, core));
+    }
+  }
+  const Eigen::PartialPivLU<MatrixXcd> lu(A);
+  log_det += log_determinant(lu);
+
+  // -1/2 sum E_ij,m E_ji,-m / (D_i(k) D_j(k - m)) over pairs of harmonics that are not both inside; D ~ -k^2 far out.
+  const Index far = 4 * H;
+  MatrixXcd inverse(I_, 2 * (far + P_) + 1);
+  for (Index k = -far - P_; k <= far + P_; ++k)
+    for (Index i = 0; i < I_; ++i) inverse(i, k + far + P_) = 1.0 / D(i, k);
+  cplx second = 0;
+  double trace = 0;
+  for (Index m = -P_; m <= P_; ++m)
+    for (Index i = 0; i < I_; ++i)
+      for (Index j = 0; j < I_; ++j) {
+        const cplx product = E(i, j, m) * E(j, i, -m);
+        if (product == 0.0) continue;
+        cplx sum = 0;
+        for (Index k = -far; k <= far; ++k)
+          if (std::abs(k) > H || std::abs(k - m) > H) sum += inverse(i, k + far + P_) * inverse(j, k - m + far + P_);
+        second -= 0.5 * product * sum;
+        trace += product.real();
+      }
+  second -= trace / (3 * std::pow(double(far) + 0.5, 3));
+
+  cplx sines = 0;
+  for (Index i = 0; i < I_; ++i)
+    for (const cplx p : {p_(i), p_other_(i)}) {
+      // s - p + ik with the k that makes it smallest: sinh pi (s - p) = (-1)^k sinh pi (s - p + ik).
+      const double k = -std::round((s - p).imag());
+      const cplx rest = s - p + cplx(0, k);
+      sines += cplx(0, pi * k) + (std::abs(rest) > near ? log_two_sinh(rest) : log_two_sinh_over(rest));
+    }
+  return {log_det + second + sines, 16 * eps * double(A.rows()) / lu.rcond()};
+}
+
+HillDeterminant::Value HillDeterminant::operator()(cplx s) const {
+  Index H = std::max<Index>(P_ + P_ / 2, 16);
+  if (H * I_ > most_unknowns) return {0, HUGE_VAL};
+  Value last = truncated(s, H);
+  while (std::isfinite(last.error)) {
+    H *= 2;
+    if (H * I_ > most_unknowns) return {last.log, HUGE_VAL};
+    Value next = truncated(s, H);
+    const cplx change = next.log - last.log;
+    const double size = std::abs(cplx(change.real(), std::remainder(change.imag(), 2 * pi)));
+    last = next;
+    // Terms of third order fall like H^-5: what is left is a small part of the change.
+    if (size <= settled || 2 * H * I_ > most_unknowns || !std::isfinite(size)) {
+      last.error += size;
+      return last;
+    }
+  }
+  return last;
+}
+
+HillDeterminant::Polynomial HillDeterminant::on_circle(double c) const {
+  // e^{2 pi I s} F at s = c + i (m + 1/2)/M, more points than the polynomial has coefficients.
+  const Index degree = 2 * I_, M = 4 * I_ + 4;
+  VectorXcd log_P(M / 2);
+  VectorXd error(M / 2);
+  for (Index m = 0; m < M / 2; ++m) {
+    const cplx s(c, (double(m) + 0.5) / double(M));
+    const Value F = (*this)(s);
+    log_P(m) = F.log + cplx(0, 2 * pi * double(I_) * s.imag());
+    error(m) = F.error;
+  }
+  const double largest = log_P.real().maxCoeff();
+  if (!std::isfinite(largest)) return {};
+  const VectorXcd P = (log_P.array() - largest).exp();
+  // Values at conjugate points are conjugate: coefficients are real.
+  VectorXd a = VectorXd::Zero(M);
+  for (Index r = 0; r < M; ++r)
+    for (Index m = 0; m < M / 2; ++m)
+      a(r) += 2 / double(M) * (P(m) * std::polar(1.0, -2 * pi * double(r) * (double(m) + 0.5) / double(M))).real();
+  const double change =
+      (P.cwiseAbs().cwiseProduct(error).maxCoeff() + a.tail(M - degree - 1).cwiseAbs().maxCoeff()) * double(degree + 1);
+  return {a.head(degree + 1), change};
+}
+
+Exponents HillDeterminant::roots_near(double c) const {
+  const auto [a, change] = on_circle(c);
+  Exponents result;
+  const Index degree = a.size() - 1;
+  if (degree < 1 || !(change < 0.1 * std::abs(a(degree)))) return result;
+  MatrixXd companion = MatrixXd::Zero(degree, degree);
+  companion.diagonal(-1).setOnes();
+  companion.col(degree - 1) = -a.head(degree) / a(degree);
+  // Of the last column: changes of the coefficients and of the one that they are divided by.
+  const double column = change / std::abs(a(degree)) * (1 + companion.col(degree - 1).norm());
+  const InexactEigenvalues roots = inexact_eigenvalues(companion, 1.2 * column);
+  for (Index j = 0; j < degree; ++j) {
+    const double size = std::abs(roots.value(j)), radius = roots.radius(j);
+    if (radius < size / 2)
+      result.add({c + std::log(size) / (2 * pi), std::arg(roots.value(j)) / (2 * pi)},
+                 radius / (2 * pi * (size - radius)));
+    else
+      result.others_below = std::max(result.others_below, c + std::log(size + radius) / (2 * pi));
+  }
+  return result;
+}
+
+std::optional<int> HillDeterminant::exponents_above(double c) const {
+  const auto [a, change] = on_circle(c);
+  if (a.size() == 0) return std::nullopt;
+  const Index degree = a.size() - 1;
+  const auto P = [&](double angle) {
+    const cplx z = std::polar(1.0, angle);
+    cplx sum = 0;
+    for (Index r = degree; r >= 0; --r) sum = sum * z + a(r);
+    return sum;
+  };
+  double slope = 0;  // largest |dP/d angle|
+  for (Index r = 0; r <= degree; ++r) slope += double(r) * std::abs(a(r));
+  constexpr Index most_points = Index(1) << 17;
+  for (Index N = 64; N <= most_points; N *= 4) {
+    // Between neighbours P changes by less than its size: the phase is followed.
+    const double step = 2 * pi / double(N);
+    double turned = 0;
+    bool followed = true;
+    cplx before = P(0);
+    for (Index n = 1; n <= N && followed; ++n) {
+      const cplx here = P(step * double(n));
+      followed = std::abs(before) > step * slope + 2 * change;
+      turned += std::arg(here / before);
+      before = here;
+    }
+    if (followed) return static_cast<int>(degree - std::lround(turned / (2 * pi)));
+  }
+  return std::nullopt;
+}
+
+Exponents HillDeterminant::exponents() const {
+  double c = std::max(p_.real().maxCoeff(), p_other_.real().maxCoeff());
+  Exponents result;
+  constexpr int most_circles = 6;
+  for (int circle = 0; circle < most_circles; ++circle) {
+    result = roots_near(c);
+    double leading = result.others_below;
+    for (const cplx s : result.s) leading = std::max(leading, s.real());
+    if (!std::isfinite(leading)) {
+      c += 0.5;  // the leading one lies too far outside
+      continue;
+    }
+    if (std::abs(leading - c) < 0.02 && !result.s.empty()) break;
+    c = leading;
+  }
+  return result;
+}
+
+}  // namespace hb

@@ -1,0 +1,28 @@
+// Propagation of x'' + beta(tau) x' + alpha(tau) x = 0 over one turn by Radau IIA collocation: stiffly accurate and
+// R(infinity) = 0, so unresolved fast modes vanish instead of faking a multiplier of 1.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lib/fourier/fourier.hpp"
+
+namespace hb {
+
+// Maps of the scaled state (W x, x') over consecutive cells of one turn, W = diag(scale).
+struct TurnMaps {
+  Eigen::Index num_cells = 0;  // N
+  Eigen::MatrixXd cells;  // 2m x 2m N, one map beside the other
+  Eigen::VectorXd scale;
+  double damping_trace = 0;  // mean over the turn of tr beta: minus the sum of all exponents (Liouville)
+
+  Eigen::Index num_states() const { return cells.rows(); }
+};
+
+// A number of cells that radau_turn takes, at least `least`; fixed numbers not far apart, whose tables are kept.
+[[nodiscard]] Eigen::Index radau_cells(Eigen::Index least);
+
+// s = 8 stages, order 15. alpha and beta have m*m components (column-major); num_cells is one of radau_cells.
+[[nodiscard]] TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Eigen::Index num_modes,
+                                  Eigen::Index num_cells);
+
+}  // namespace hb

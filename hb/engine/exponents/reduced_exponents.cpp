@@ -1,0 +1,182 @@
+#include "hb/engine/exponents/reduced_exponents.hpp"
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+
+#include "hb/engine/exponents/mathieu_determinant.hpp"
+#include "hb/engine/exponents/scalar_hill.hpp"
+#include "hb/engine/exponents/turn_exponents.hpp"
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+constexpr double eps = 2.220446049250313e-16;
+
+// Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
+double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
+
+// Harmonics of alpha and beta that the cells of a propagation have to resolve: the others together, each averaged over
+// its own short period, move no exponent by more than `negligible`.
+Index resolved_harmonics(const ReducedSystem& reduced, double negligible) {
+  Index k = std::max(reduced.alpha.num_harmonics(), reduced.beta.num_harmonics());
+  for (double sum = 0; k > 0; --k) {
+    if (k < reduced.alpha.c.cols()) sum += 2 * reduced.alpha.c.col(k).cwiseAbs().maxCoeff() / double(k);
+    if (k < reduced.beta.c.cols()) sum += 2 * reduced.beta.c.col(k).cwiseAbs().maxCoeff();
+    if (!(sum <= negligible)) break;
+  }
+  return k;
+}
+
+// Of one mode by its phase function; empty if that does not settle.
+std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance) {
+  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+  const double wanted =
+      std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
+  const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted);
+  if (!pair) return std::nullopt;
+  Exponents result;
+  for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
+  result.converged = true;
+  return result;
+}
+
+// Of one mode with a single harmonic and constant damping by Hill's determinant; empty if that misses the tolerance.
+std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tolerance) {
+  if (reduced.num_modes != 1 || reduced.alpha.num_harmonics() != 1 || reduced.beta.num_harmonics() != 0)
+    return std::nullopt;
+  const auto pair = mathieu_exponents({.w2 = reduced.alpha.c(0, 0).real(),
+                                       .q = std::abs(reduced.alpha.c(0, 1)),
+                                       .b = reduced.beta.c(0, 0).real(),
+                                       .stiffness_error = reduced.alpha_error,
+                                       .damping_error = reduced.beta_error});
+  if (!pair || !(pair->error[0] <= allowed(tolerance, pair->s[0]))) return std::nullopt;
+  Exponents result;
+  for (std::size_t i : {0, 1}) result.add(pair->s[i], pair->error[i]);
+  result.converged = true;
+  return result;
+}
+
+}  // namespace
+
+// Exponents of a reduced system by propagation with growing numbers of cells.
+Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+  const Index m = reduced.num_modes;
+  // Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
+  VectorXd W(m);
+  for (Index i = 0; i < m; ++i) W(i) = std::max(1.0, std::sqrt(std::abs(reduced.alpha.c(i + m * i, 0))));
+  double fastest2 = 1;
+  for (Index i = 0; i < m; ++i) {
+    double row = 0;
+    for (Index j = 0; j < m; ++j) row += fourier::wiener_norm(reduced.alpha, i + m * j) / (W(i) * W(j)) * W(i) * W(i);
+    fastest2 = std::max(fastest2, row);
+  }
+  const double fastest = std::sqrt(fastest2);
+  const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
+
+  // Beyond some seconds' work nothing is known.
+  constexpr double most_work = 1e8;
+  const auto work = [m](double cells) { return cells * double(m * m * m + 100); };
+  if (!(work(0.8 * fastest) < most_work)) {
+    Exponents nothing;
+    nothing.others_below = HUGE_VAL;
+    return nothing;
+  }
+  // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
+  // agree by chance.
+  constexpr Index fewest_cells = 12;
+  Index least =
+      std::max({fewest_cells, Index(std::ceil(0.8 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance) + 1});
+  // The phase of one oscillator comes out to (0.61 w/cells)^15 of a turn (measured).
+  if (m == 1 && reduced.alpha.c(0, 0).real() > 0) {
+    const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
+    const double needed = 0.61 * w * std::pow(allowed(tolerance, -b / 2), -1.0 / 15);
+    if (b < w && needed < 8.0 * double(least)) least = std::max(least, Index(std::ceil(needed)));
+  }
+  Index cells = radau_cells(least);
+  const Index most = std::max<Index>(512, 12 * cells);
+  // The other exponents are wanted too, but for so much work only.
+  constexpr double further_tolerance = 1e-9;
+  constexpr Index most_further = 4;
+  Index enough = 0;  // cells for the leading one
+  Exponents result;
+  std::optional<TurnExponents> coarse;
+  Index coarse_cells = 0;
+  std::vector<double> coarse_change;  // of coarse exponents from those before
+  // Effect on the real part of the mean damping, which the discriminant takes as given.
+  const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
+  while (cells <= most && work(double(cells)) < most_work) {
+    // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
+    // tested on strongly damped systems.
+    const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
+    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only,
+                                        coarse ? coarse->subspaces : MatrixXd());
+    std::vector<double> change;
+    if (coarse) {
+      result.s = fine.s;
+      result.others_below = fine.others_below;
+      result.error.assign(fine.s.size(), HUGE_VAL);
+      change.assign(fine.s.size(), HUGE_VAL);
+      for (std::size_t i = 0; i < fine.s.size(); ++i) {
+        // The nearest coarse exponent; angles modulo 1.
+        double nearest = HUGE_VAL;
+        std::size_t its = 0;
+        for (std::size_t k = 0; k < coarse->s.size(); ++k) {
+          double turn = std::abs(fine.s[i].imag() - coarse->s[k].imag());
+          turn = std::min(turn, std::abs(1 - turn));
+          const double distance = std::hypot(fine.s[i].real() - coarse->s[k].real(), turn);
+          if (!(distance < nearest)) continue;
+          nearest = distance;
+          its = k;
+        }
+        change[i] = nearest;
+        // Two that agree by chance do not make up for the step before, which order 15 shrinks.
+        const double before =
+            coarse_change.empty() ? 0 : coarse_change[its] * std::pow(double(coarse_cells) / double(cells), 15);
+        result.error[i] = std::max(nearest, before) + fine.error[i] + damping_error;
+      }
+      if (result.s.empty()) break;
+      // At rounding more cells gain nothing.
+      const auto at_rounding = [&](std::size_t i) { return result.error[i] <= 2 * fine.error[i]; };
+      result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
+      bool done = result.converged || at_rounding(0);
+      if (done && enough == 0) enough = cells;
+      for (std::size_t i = 1; i < fine.s.size() && !leading_only && cells < most_further * enough; ++i)
+        done = done && (at_rounding(i) || result.error[i] <= further_tolerance * std::max(std::abs(fine.s[i]), 1.0));
+      if (done) break;
+    }
+    coarse = std::move(fine);
+    coarse_cells = cells;
+    coarse_change = std::move(change);
+    cells = radau_cells(cells + 1);
+  }
+  if (result.s.empty() && coarse) {
+    result.s = coarse->s;
+    result.error.assign(coarse->s.size(), HUGE_VAL);
+    result.others_below = coarse->others_below;
+  }
+  return result;
+}
+
+// Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
+// propagation always settles.
+Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+  if (std::optional<Exponents> result = by_determinant(reduced, tolerance)) return *std::move(result);
+  const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
+  const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
+  constexpr double fast = 25;
+  if (phase_may_settle && frequency > fast)
+    if (std::optional<Exponents> result = by_phase(reduced, tolerance)) return *std::move(result);
+  Exponents result = propagated_exponents(reduced, tolerance, leading_only);
+  if (phase_may_settle && !(frequency > fast) && !result.converged)
+    if (std::optional<Exponents> better = by_phase(reduced, tolerance)) return *std::move(better);
+  return result;
+}
+
+}  // namespace hb

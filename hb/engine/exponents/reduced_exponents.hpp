@@ -1,0 +1,42 @@
+// Exponents of a system reduced to a few modes: of a single fast one by its phase function, else by propagation over a
+// turn with growing numbers of cells.
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <vector>
+
+#include "hb/engine/exponents/slaving.hpp"
+
+namespace hb {
+
+// Exponents per radian of crank angle (s = lambda/Omega) with their bars.
+struct Exponents {
+  std::vector<std::complex<double>> s;
+  std::vector<double> error;
+  std::vector<Eigen::Index> mode;  // see Exponent
+  std::vector<double> frequency;
+  double others_below = -HUGE_VAL;  // upper bound on Re s of those of the group that are not listed
+  bool converged = false;  // the leading one is as accurate as asked
+
+  void add(std::complex<double> value, double bar) {
+    s.push_back(value);
+    error.push_back(bar);
+  }
+  void append(const Exponents& other) {
+    s.insert(s.end(), other.s.begin(), other.s.end());
+    error.insert(error.end(), other.error.begin(), other.error.end());
+    mode.insert(mode.end(), other.mode.begin(), other.mode.end());
+    frequency.insert(frequency.end(), other.frequency.begin(), other.frequency.end());
+    others_below = std::max(others_below, other.others_below);
+  }
+};
+
+// `tolerance`: wanted relative to the leading exponent, or to a hundredth of the crank's speed if it is smaller. With
+// `leading_only` exponents far below the leading one are lost, and bounded.
+[[nodiscard]] Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only = false);
+
+// The same by propagation only.
+[[nodiscard]] Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only = false);
+
+}  // namespace hb

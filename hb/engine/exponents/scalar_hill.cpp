@@ -1,0 +1,127 @@
+#include "hb/engine/exponents/scalar_hill.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hb {
+
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+
+constexpr double eps = 2.220446049250313e-16;
+
+ArrayXd sampled(const FourierSeries& series, Index N) {
+  return fourier::synthesise(series, N).row(0).transpose().array();
+}
+
+// Harmonics up to the last one above rounding; what is cut away is added to `error`.
+FourierSeries above_rounding(const FourierSeries& series, double& error) {
+  const Index H = fourier::significant_harmonics(series, 2 * eps);
+  error += 2 * series.c.rightCols(series.num_harmonics() - H).cwiseAbs().sum();
+  return fourier::resized(series, H);
+}
+
+// -psi''/(2 psi) + 3/4 (psi'/psi)^2 = -L''/2 + L'^2/4 with L = ln psi, at N nodes.
+ArrayXd schwarzian(const FourierSeries& L, Index N) {
+  return -0.5 * sampled(fourier::derivative(L, 2), N) + 0.25 * sampled(fourier::derivative(L), N).square();
+}
+
+// Mean over the turn, and how much half the nodes change it.
+struct Mean {
+  double value, change;
+  explicit Mean(const ArrayXd& samples) : value(samples.mean()), change(0) {
+    double even = 0;
+    for (Index i = 0; i < samples.size(); i += 2) even += samples(i);
+    change = std::abs(even / double(samples.size() / 2) - value);
+  }
+};
+
+}  // namespace
+
+std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, const FourierSeries& given_beta,
+                                            double alpha_error, double beta_error, double tolerance) {
+  const FourierSeries alpha = above_rounding(given_alpha, alpha_error), beta = above_rounding(given_beta, beta_error);
+  const Index start = fourier::fast_length(4 * std::max({alpha.num_harmonics(), beta.num_harmonics(), Index(8)}) + 4);
+  for (Index N = start; N <= 4 * start; N *= 2) {
+    ArrayXd a = sampled(alpha, N), b = sampled(beta, N), b1 = sampled(fourier::derivative(beta), N);
+    const ArrayXd Q = a - b.square() / 4 - b1 / 2;
+    // sigma = +1: oscillating, psi real; sigma = -1: overdamped, psi = -i chi with chi real.
+    const double sigma = Q.minCoeff() > 0 ? 1 : -1;
+    if (!((sigma * Q).minCoeff() > 0)) return std::nullopt;
+
+    // psi2 = sigma (Q + correction) leaves the defect `left` at the nodes: how much the next correction differs.
+    FourierSeries L;
+    ArrayXd correction = ArrayXd::Zero(N), next = sigma * Q;
+    double left = HUGE_VAL;
+    for (int iteration = 0; iteration < 40; ++iteration) {
+      const FourierSeries log_psi = fourier::analyse((0.5 * next.log()).matrix().transpose());
+      const ArrayXd term = schwarzian(log_psi, N);
+      const double change = (term - correction).abs().maxCoeff();
+      if (!(change < 0.7 * left)) break;  // rounding reached, or an asymptotic expansion at its best
+      left = change;
+      L = log_psi;
+      correction = term;
+      next = sigma * (Q + term);
+      if (!next.allFinite() || !(next.minCoeff() > 0)) break;
+    }
+    if (!std::isfinite(left)) return std::nullopt;
+    // From here on psi = exp(L), L a trigonometric polynomial, is what it is; its defect at twice the nodes says how
+    // good it is, sampling included.
+    const Index M = 2 * N;
+    a = sampled(alpha, M), b = sampled(beta, M), b1 = sampled(fourier::derivative(beta), M);
+    const ArrayXd psi = sampled(L, M).exp(), psi2 = psi.square();
+    correction = schwarzian(L, M);
+    const double defect = (psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)).abs().maxCoeff();
+    const double floor = 2 * psi.minCoeff();
+    const double dQ = 2 * std::max(defect, left);
+    const double largest_b = b.abs().maxCoeff();
+    const Mean frequency(psi);
+    ExponentPair pair;
+    if (sigma > 0) {
+      const double error =
+          (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor +
+          beta_error + 4 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
+      pair.s = {std::complex<double>(-b.mean() / 2, frequency.value),
+                std::complex<double>(-b.mean() / 2, -frequency.value)};
+      pair.error = {error, error};
+    } else {
+      // r = -beta/2 +- chi - chi'/(2 chi); of the two the one that nearly cancels is
+      // chi - |beta|/2 = (chi^2 - beta^2/4)/(chi + |beta|/2) with chi^2 - beta^2/4 = -alpha + beta'/2 - correction.
+      const ArrayXd near = (-a + b1 / 2 - correction) / (psi + b.abs() / 2);
+      const double sign = b.mean() >= 0 ? 1 : -1;
+      const Mean mean(near);
+      const double slow = sign > 0 ? mean.value : -mean.value, fast = -b.mean() - slow;
+      if (b.minCoeff() * sign < 0) {  // |beta| is not smooth: no cancellation to avoid either
+        const double up = -b.mean() / 2 + frequency.value, down = -b.mean() / 2 - frequency.value;
+        pair.s = {up, down};
+        const double error = (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff())) / floor + beta_error +
+                             8 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
+        pair.error = {error, error};
+      } else {
+        // Residual of the slow root's own Riccati equation r' + r^2 + beta r + alpha: relative to alpha, not to beta^2.
+        const double reach = std::abs(slow) + near.abs().maxCoeff();
+        const double relative = 8 * eps * psi2.maxCoeff() / psi2.minCoeff();
+        // Rounding of psi^2 hides in `defect`, but harms `near` in proportion only.
+        const double slow_dQ = 2 * std::max(defect - 8 * eps * psi2.maxCoeff(), left);
+        const double slow_error = relative * near.abs().maxCoeff() + slow_dQ / floor + mean.change +
+                                  (alpha_error + beta_error * reach) / floor +
+                                  8 * eps * (reach + (a.abs().maxCoeff() + correction.abs().maxCoeff()) / floor);
+        const double fast_error = (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff())) / floor + beta_error +
+                                  8 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
+        pair.s = {slow, fast};
+        pair.error = {slow_error, fast_error};
+        if (slow < fast) {
+          std::swap(pair.s[0], pair.s[1]);
+          std::swap(pair.error[0], pair.error[1]);
+        }
+      }
+    }
+    if (std::isfinite(pair.error[0]) && pair.error[0] <= tolerance && std::isfinite(pair.error[1])) return pair;
+    if (!(defect > 2 * left)) return std::nullopt;  // a finer grid helps only against lost harmonics
+  }
+  return std::nullopt;
+}
+
+}  // namespace hb

@@ -1,0 +1,38 @@
+// Exact reduction of x'' + G x' + K(tau) x = 0 to a few modes S: the other modes F follow them,
+//     x_F = A(tau) x_S + C(tau) x_S'     with periodic A, C,
+// so that on an invariant subspace x_S'' + beta(tau) x_S' + alpha(tau) x_S = 0. Its 2m exponents are exponents of the
+// whole system. Fast, stiff or overdamped modes cost nothing: they are never propagated.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "hb/engine/system/scaled_system.hpp"
+
+namespace hb {
+
+struct ReducedSystem {
+  bool converged = false;
+  Eigen::Index num_modes = 0;        // m
+  FourierSeries alpha, beta;         // m*m components, column-major
+  double alpha_error = 0;            // bounds on max_tau of the error of any entry (truncation, iteration, rounding)
+  double beta_error = 0;
+  // Upper bound on Re s of all the other 2(I - m) exponents (they belong to what is left when A, C are split off), by
+  // the logarithmic norm in adiabatic coordinates averaged over the turn; infinite if no bound was found.
+  double others_below = 0;
+  // States (x, x') at tau = 0 of the invariant subspace, 2I x 2m: column l for x_S = e_l, column m + l for x_S' = e_l.
+  Eigen::MatrixXd start;
+  int iterations = 0;
+};
+
+// Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
+// the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
+// changes by less than `tolerance` relative to its largest value, or to rounding.
+[[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow,
+                                     double tolerance = 0);
+
+// How strongly mode j pulls at the kept modes: largest |K_sj,k| |K_js,k|/|D_j(lambda_s + i k)|/|2 lambda_s + b_s| over
+// kept modes s and harmonics k; the largest should be kept next.
+[[nodiscard]] Eigen::VectorXd resonance_strength(const ScaledSystem& system, std::span<const Eigen::Index> slow);
+
+}  // namespace hb

@@ -1,0 +1,64 @@
+// Floquet exponents with error bars and a verdict. Methods differ, the result does not.
+#pragma once
+
+#include <complex>
+#include <string>
+#include <vector>
+
+#include "hb/engine/system/scaled_system.hpp"
+#include "lib/hill_system.hpp"
+
+namespace hb {
+
+enum class Verdict { stable, unstable, undecided };
+
+enum class StabilityMethod {
+  automatic,
+  hill,  // each exponent by Hill iteration in a window centred on its mode
+  slaving,  // fast modes slaved to the slow ones exactly; the slow ones propagated over a turn
+  propagation,  // the whole system propagated by Radau IIA
+  bound,  // no exponent: closed-form bounds on the growth rate, which prove stability where damping dominates
+  determinant,  // zeros of Hill's determinant near the leading exponent, their number checked by its winding
+};
+
+struct StabilityOptions {
+  double tolerance = 1e-9;  // wanted error of the growth rate, relative to max(|growth|, Omega)
+  StabilityMethod method = StabilityMethod::automatic;
+  // Growth rate and verdict only: exponents that a bound shows to lie below the leading ones are not computed.
+  bool leading_only = false;
+  // The verdict alone: where closed-form bounds prove stability, growth_rate +- growth_error is all that is known.
+  bool verdict_only = false;
+  // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
+  std::vector<int> keep = {};
+};
+
+// One Floquet exponent lambda: solutions e^{lambda t} p(t), p of period 2 pi/Omega.
+struct Exponent {
+  std::complex<double> value;  // 1/time; imaginary part folded to (-Omega/2, Omega/2]
+  double error = 0;  // bound on |error|
+  // Which mode it belongs to (index of the scaled coordinates, ascending mean frequency for rods): the mode that the
+  // others were slaved to; inside a group of strongly coupled modes the nearest in frequency and damping.
+  int mode = 0;
+  // Frequency unfolded, >= 0: |Im lambda + k Omega| with the harmonic k that carries the motion.
+  double frequency = 0;
+};
+
+struct Stability {
+  std::vector<Exponent> exponents;  // real part descending, then imaginary part ascending; those resolved (up to 2I)
+  std::vector<Exponent> uncertain;  // the others that were found, their bars beyond 1e-6 of themselves or of Omega
+  double growth_rate = 0;  // max Re lambda, 1/time
+  double growth_error = 0;  // bound on its error
+  Verdict verdict = Verdict::undecided;
+  bool converged = false;  // growth_error within what was asked; for bounds: they decide
+  StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
+  std::vector<int> kept;  // modes that the leading exponents were found with, the others slaved to them
+  std::string evidence;  // one sentence: what was done
+};
+
+[[nodiscard]] Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options = {});
+[[nodiscard]] Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options = {});
+
+[[nodiscard]] const char* to_string(Verdict verdict);
+[[nodiscard]] const char* to_string(StabilityMethod method);
+
+}  // namespace hb

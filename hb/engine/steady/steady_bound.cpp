@@ -1,0 +1,170 @@
+#include "hb/engine/steady/steady_bound.hpp"
+
+#include <cmath>
+#include <random>
+
+namespace hb::steady {
+
+namespace {
+
+using Index = Eigen::Index;
+
+// Two solves estimate the norm of the inverse from below; this factor is a choice, its coverage is tested, not proved.
+constexpr double safety = 3;
+// Cap on the amplification granted to omitted rows that are coupled more strongly than their diagonal: a choice.
+constexpr double most_tail_slack = 30;
+
+double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) { return (T.cwiseAbs() * sizes).maxCoeff(); }
+
+Eigen::VectorXd wiener(const Eigen::MatrixXd& moduli) {
+  return 2 * moduli.colwise().sum().transpose() - moduli.row(0).transpose();
+}
+
+}  // namespace
+
+double size_in_q(const Spectrum& x, const Eigen::MatrixXd& T) { return weigh(wiener_norms(x), T); }
+
+double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
+  const Index H = A.num_harmonics(), I = A.num_modes();
+  // Phases at random, the same ones every time; size falling with k as that of rounding errors does, u = D^-1 rhs.
+  std::mt19937 random(12345);
+  Spectrum rhs(H + 1, I), z;
+  const double unit = 2.0 / 4294967295.0;
+  for (Index k = 0; k <= H; ++k)
+    for (Index i = 0; i < I; ++i) {
+      const double re = unit * static_cast<double>(random()) - 1;
+      const double im = k > 0 ? unit * static_cast<double>(random()) - 1 : 0;
+      const double n = static_cast<double>(k);
+      rhs(k, i) = std::complex<double>(re, im) / (A.system().coupling(i) + 1 + n) * (1 + std::abs(A.system().mean(i)));
+    }
+  double largest = 1;
+  for (int step = 0; step < 2; ++step) {
+    const Spectrum u = rhs.cwiseQuotient(A.magnitude().cast<std::complex<double>>());
+    const double size = size_in_q(u, T);
+    // A random load holds the direction nearest to resonance by about 1/sqrt(unknowns): solved well below that. The
+    // second holds it fully.
+    inverse.solve(rhs, step == 0 ? 1e-3 : 1e-2, z);
+    const double gained = size_in_q(z, T) / size;
+    if (!std::isfinite(gained)) return std::nan("");
+    largest = std::max(largest, gained);
+    rhs = (z * (1 / z.cwiseAbs().maxCoeff())).cwiseProduct(A.magnitude().cast<std::complex<double>>());
+  }
+  return largest;
+}
+
+double amplified(const Operator& A, const Eigen::MatrixXd& r, double response, const Eigen::MatrixXd& T) {
+  return amplified(wiener(r.cwiseQuotient(A.magnitude())), response, T);
+}
+
+double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::MatrixXd& T) {
+  return safety * response * weigh(sizes, T);
+}
+
+Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response, const Eigen::MatrixXd& T,
+                      double enough) {
+  // What a solve leaves, near resonance in the very direction that matters, grows by the response; the next residual
+  // sees what it missed.
+  const double accuracy = std::max(0.05 / response, 1e-12);
+  constexpr int most_steps = 8;
+  const WeightedSystem& s = A.system();
+  const Index H = A.num_harmonics(), I = A.num_modes(), R = std::max(H, std::min(A.last_row(), r.rows() - 1));
+  Correction result{Spectrum::Zero(H + 1, I), 0, HUGE_VAL};
+  Spectrum rho = Spectrum::Zero(R + 1, I), e = rho, tail = rho, product, z;
+  rho.topRows(std::min(R + 1, r.rows())) = r.topRows(std::min(R + 1, r.rows()));
+  const auto take = [&](bool window, bool outside) {  // rho -= A e of one part or both
+    Spectrum part = e;
+    if (!window) part.topRows(H + 1).setZero();
+    if (!outside) part.bottomRows(R - H).setZero();
+    A.couple(part, R, product);
+    rho -= product;
+    rho.topRows(H + 1) -= A.D().cwiseProduct(part.topRows(H + 1));
+    for (Index k = H + 1; k <= R; ++k)
+      for (Index i = 0; i < I; ++i) rho(k, i) -= s.D(i, k) * part(k, i);
+  };
+  // Contraction of one round, window -> tail -> window, at most.
+  double step_out = 0;
+  for (Index i = 0; i < I; ++i)
+    for (Index k = H + 1; k <= R; ++k) step_out = std::max(step_out, s.coupling(i) / std::abs(s.D(i, k)));
+  const double round = response * step_out * step_out;
+  double previous = 0, before = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    for (Index i = 0; i < I; ++i)
+      for (Index k = H + 1; k <= R; ++k) e(k, i) = rho(k, i) == 0.0 ? 0.0 : rho(k, i) / s.D(i, k);
+    tail.bottomRows(R - H) += e.bottomRows(R - H);
+    // The first time window and tail at once, then one after the other: the tail's answer may be at resonance.
+    if (step > 0 && R > H) take(false, true);
+    if (!inverse.solve(rho.topRows(H + 1), accuracy, z)) break;
+    e.topRows(H + 1) = z;
+    result.window += z;
+    const double size = size_in_q(e, T);
+    if (!std::isfinite(size)) {
+      result.rest = HUGE_VAL;
+      break;
+    }
+    // Nothing to shrink against at first.
+    const double ratio = step > 0 ? size / previous : HUGE_VAL, last_ratio = step > 1 ? previous / before : HUGE_VAL;
+    const bool shrinking = ratio <= 0.3 && (round <= 0.3 || last_ratio <= 0.3);
+    const double rate = std::max(ratio, round <= 0.3 ? 0 : last_ratio);
+    if (size == 0) {
+      result.rest = 0;
+      break;
+    }
+    if (shrinking || (step + 1 == most_steps && rate <= 0.9)) {
+      result.rest = size * std::max(1.0, 2 * rate / (1 - rate));
+      if (size <= enough) break;
+    } else if (std::isfinite(result.rest)) {  // rounding reached
+      result.rest += size;
+      break;
+    }
+    before = previous;
+    previous = size;
+    take(true, step == 0);
+  }
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(I);
+  for (Index k = H + 1; k <= R; ++k) sizes += 2 * tail.row(k).cwiseAbs().transpose();
+  result.outside = weigh(sizes, T);
+  for (Index k = R + 1; k < r.rows(); ++k) result.outside += 2 * tail_row(A, r, k, T);
+  // Rows beyond R feel the tail through K, and answer it.
+  double reaching = 0, nearest = HUGE_VAL;
+  for (Index i = 0; i < I; ++i) {
+    for (Index k = R + 1; k <= R + s.P; ++k) nearest = std::min(nearest, std::abs(s.D(i, k)));
+    reaching = std::max(reaching, s.coupling(i));
+  }
+  if (result.outside > 0 && reaching > 0) result.rest += result.outside * reaching / nearest * (1 + round);
+  return result;
+}
+
+double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T) {
+  Eigen::VectorXd sizes(r.cols());
+  for (Index i = 0; i < r.cols(); ++i) {
+    const double size = std::abs(r(k, i));
+    sizes(i) = size > 0 ? size / std::abs(A.system().D(i, k)) : 0;
+  }
+  return weigh(sizes, T);
+}
+
+// Coupling E shifts w^2 by about E^2/|D(k +- m)|, |D(k +- m)| >= k.
+bool resonant_beyond(const WeightedSystem& system, Index H) {
+  constexpr double eps = 2.220446049250313e-16;
+  for (Index i = 0; i < system.I; ++i) {
+    if (!(system.mean(i) > 0 && system.mean(i) < 1e15)) continue;
+    const Index k = static_cast<Index>(std::llround(std::sqrt(system.mean(i))));
+    if (k <= H) continue;
+    const double closest = 32 * eps * system.magnitude(i, k), shift = system.coupling(i) * system.coupling(i);
+    if (std::abs(system.D(i, k)) <= closest && shift <= closest * static_cast<double>(k)) return true;
+  }
+  return false;
+}
+
+double tail_slack(const Operator& A, double response) {
+  double contraction = 0;
+  for (Index k = A.num_harmonics() + 1; k <= A.last_row(); ++k)
+    for (Index i = 0; i < A.num_modes(); ++i) {
+      const double d = std::abs(A.system().D(i, k));
+      if (A.system().coupling(i) > 0) contraction = std::max(contraction, A.system().coupling(i) / d);
+    }
+  const double among = contraction < 1 - 1 / most_tail_slack ? 1 / (1 - contraction) : most_tail_slack;
+  return among * response;
+}
+
+}  // namespace hb::steady

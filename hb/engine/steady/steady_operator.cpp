@@ -1,0 +1,174 @@
+#include "hb/engine/steady/steady_operator.hpp"
+
+#include <cmath>
+
+namespace hb::steady {
+
+namespace {
+
+constexpr double eps = 2.220446049250313e-16;
+
+double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
+
+}  // namespace
+
+Eigen::VectorXd wiener_norms(const Spectrum& x) {
+  if (x.rows() == 0) return Eigen::VectorXd::Zero(x.cols());
+  return x.row(0).cwiseAbs().transpose() + 2 * x.bottomRows(x.rows() - 1).cwiseAbs().colwise().sum().transpose();
+}
+
+WeightedSystem weighted(const ScaledSystem& system) {
+  WeightedSystem s;
+  const Eigen::Index I = system.num_modes();
+  s.I = I;
+  s.P = system.K.num_harmonics();
+  s.weight.resize(I);
+  for (Eigen::Index i = 0; i < I; ++i) s.weight(i) = power_of_two_near(system.T.col(i).cwiseAbs().maxCoeff());
+  const Eigen::MatrixXd ratio = s.weight * s.weight.cwiseInverse().transpose();
+  const Eigen::VectorXd ratios = Eigen::Map<const Eigen::VectorXd>(ratio.data(), I * I);
+  s.K = ratios.asDiagonal() * system.K.c;
+  s.K_rounding = Eigen::MatrixXd::Zero(I, I);
+  s.f_rounding = Eigen::VectorXd::Zero(I);
+  if (system.K_rounding.size() > 0) s.K_rounding = system.K_rounding.cwiseProduct(ratio);
+  s.G = system.G.cwiseProduct(ratio);
+  s.G_off = s.G;
+  s.G_off.diagonal().setZero();
+  s.diagonal_damping = system.diagonal_damping;
+  s.mean = system.mean_diagonal();
+  if (system.f_rounding.size() > 0) s.f_rounding = s.weight.cwiseProduct(system.f_rounding);
+  if (system.load_scale != 0) s.f = (s.weight.asDiagonal() * system.f.c).transpose();
+
+  const Eigen::VectorXd norms = s.K.col(0).cwiseAbs() + 2 * s.K.rightCols(s.P).cwiseAbs().rowwise().sum();
+  Eigen::MatrixXd E = Eigen::Map<const Eigen::MatrixXd>(norms.data(), I, I);
+  E.diagonal() -= s.mean.cwiseAbs();
+  s.own_coupling = E.diagonal();
+  s.coupling = E.rowwise().sum();
+  return s;
+}
+
+Operator::Operator(const WeightedSystem& system, Eigen::Index num_harmonics)
+    : system_(&system),
+      H_(num_harmonics),
+      D_(num_harmonics + 1, system.I),
+      magnitude_(num_harmonics + 1, system.I),
+      product_max_(system.I) {
+  for (Eigen::Index i = 0; i < system.I; ++i)
+    for (Eigen::Index k = 0; k <= H_; ++k) {
+      D_(k, i) = system.D(i, k);
+      magnitude_(k, i) = system.magnitude(i, k);
+    }
+}
+
+const Operator::Nodes& Operator::nodes(Eigen::Index N) {
+  Nodes& store = inner_.N == 0 || inner_.N == N ? inner_ : outer_;
+  if (store.N == N) return store;
+  const Eigen::Index I = system_->I, P = system_->P;
+  store.N = N;
+  store.E.resize(N, I * I);
+  fourier::RealTransform& fft = fourier::thread_transform(N, I);
+  for (Eigen::Index j = 0; j < I; ++j) {
+    auto spectrum = fft.spectrum();
+    spectrum.setZero();
+    spectrum.topRows(P + 1) = system_->K.middleRows(I * j, I).transpose();
+    spectrum(0, j) = 0;
+    fft.backward();
+    store.E.middleCols(I * j, I) = fft.samples();
+  }
+  return store;
+}
+
+void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {
+  const Eigen::Index I = system_->I, P = system_->P;
+  ++num_products_;
+  result.setZero(num_rows + 1, I);
+  // Harmonics reach X+P; what is folded back lands above num_rows when N > X + P + num_rows. One length for all
+  // products with rows beyond the window.
+  const Eigen::Index X = x.rows() - 1, widest = num_rows > H_ ? std::max(X, last_row()) : X;
+  const Eigen::Index N = fourier::fast_length(std::max(widest + P + num_rows + 1, 2 * P + 2));
+  const Nodes& at = nodes(N);
+  fourier::RealTransform& fft = fourier::thread_transform(N, I);
+  auto spectrum = fft.spectrum();
+  spectrum.topRows(X + 1) = x;
+  spectrum.bottomRows(N / 2 - X).setZero();
+  fft.backward();
+  const auto samples = fft.samples();
+  product_.resize(N, I);
+  const bool full = num_rows > H_ && X == H_;  // sizes are wanted with the exact residual only
+  for (Eigen::Index i = 0; i < I; ++i) {
+    product_.col(i) = at.E.col(i).cwiseProduct(samples.col(0));
+    for (Eigen::Index j = 1; j < I; ++j) product_.col(i) += at.E.col(i + I * j).cwiseProduct(samples.col(j));
+  }
+  if (full)
+    for (Eigen::Index i = 0; i < I; ++i) {
+      Eigen::ArrayXd size = Eigen::ArrayXd::Zero(N);
+      for (Eigen::Index j = 0; j < I; ++j) size += (at.E.col(i + I * j).array() * samples.col(j).array()).abs();
+      product_max_(i) = size.maxCoeff();
+    }
+  fft.samples() = product_;
+  fft.forward();
+  result = fft.spectrum().topRows(num_rows + 1);
+  result.row(0) = result.row(0).real().cast<std::complex<double>>();
+  if (!system_->diagonal_damping) {
+    const Eigen::Index top = std::min(X, num_rows);
+    for (Eigen::Index k = 1; k <= top; ++k)
+      result.row(k) += std::complex<double>(0, static_cast<double>(k)) *
+                       (x.row(k) * system_->G_off.transpose().cast<std::complex<double>>());
+  }
+}
+
+Spectrum Operator::residual(const Spectrum& x) {
+  Spectrum r;
+  couple(x, last_row(), r);
+  r.topRows(H_ + 1) += D_.cwiseProduct(x);
+  const Eigen::Index F = system_->f.rows() - 1;
+  if (F > last_row()) {
+    const Eigen::Index have = r.rows();
+    r.conservativeResize(F + 1, Eigen::NoChange);
+    r.bottomRows(F + 1 - have).setZero();
+  }
+  r = -r;
+  r.topRows(F + 1) += system_->f;
+  return r;
+}
+
+double Operator::scaled_norm(const Spectrum& r) const {
+  const Eigen::MatrixXd size = r.topRows(H_ + 1).cwiseAbs().cwiseQuotient(magnitude_);
+  return std::sqrt(2 * size.squaredNorm() - size.row(0).squaredNorm());
+}
+
+Eigen::VectorXd Operator::noise() const {
+  const double N = static_cast<double>(std::max(outer_.N, inner_.N));
+  return 2 * eps * (2 + std::log2(N)) / std::sqrt(N) * product_max_;
+}
+
+// Errors of K: data(i) in all, at worst where |D| is least. Errors of products and transforms are independent at the
+// nodes, eps log2 N of their size there, so 1/sqrt(N) of that on every harmonic; twice that is taken.
+Eigen::VectorXd Operator::rounding(const Spectrum& x) const {
+  const Eigen::Index I = system_->I;
+  const Eigen::VectorXd data = system_->K_rounding * wiener_norms(x) + system_->f_rounding;
+  const Eigen::VectorXd flat = noise();
+  Eigen::VectorXd result = 8 * eps * wiener_norms(x);
+  for (Eigen::Index i = 0; i < I; ++i)
+    result(i) += data(i) / magnitude_.col(i).minCoeff() + 2 * flat(i) * magnitude_.col(i).cwiseInverse().sum();
+  return result;
+}
+
+double largest_over_turn(const Spectrum& x, Eigen::Index* component) {
+  const Eigen::Index H = x.rows() - 1, I = x.cols();
+  fourier::RealTransform& fft = fourier::thread_transform(fourier::fast_length(4 * (H + 1)), I);
+  auto spectrum = fft.spectrum();
+  spectrum.setZero();
+  spectrum.topRows(H + 1) = x;
+  fft.backward();
+  double largest = 0;
+  for (Eigen::Index i = 0; i < I; ++i) {
+    const double here = fft.samples().col(i).cwiseAbs().maxCoeff();
+    if (here > largest) {
+      largest = here;
+      if (component) *component = i;
+    }
+  }
+  return largest;
+}
+
+}  // namespace hb::steady

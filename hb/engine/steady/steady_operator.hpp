@@ -1,0 +1,102 @@
+// The block Hill operator of x'' + G x' + K(tau) x = f(tau) on a window of harmonics 0..H,
+//     (A x)_k = D(k) x_k + (E x)_k,    D_i(k) = -k^2 + i k G_ii + mean K_ii,    E = everything else,
+// with E x by FFT: K is needed at the nodes only. Components are weighted by powers of two so that the size of x_i is
+// about the size of what it adds to q.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "hb/engine/system/scaled_system.hpp"
+
+namespace hb::steady {
+
+// Half spectrum of I real functions: (H+1) x I, column i holds harmonics 0..H of component i.
+using Spectrum = Eigen::MatrixXcd;
+
+// Sum over all harmonics (both signs) of |x_k| per component; zero for no harmonics.
+[[nodiscard]] Eigen::VectorXd wiener_norms(const Spectrum& x);
+
+// Scaled system in weighted coordinates y = weight * x; shared by all windows.
+struct WeightedSystem {
+  Eigen::Index I = 0, P = 0;  // components; harmonics of K
+  Eigen::VectorXd weight;  // powers of two
+  Eigen::MatrixXcd K;  // I*I x (P+1)
+  Eigen::MatrixXd G, G_off;  // damping; the same without its diagonal
+  bool diagonal_damping = true;
+  Eigen::VectorXd mean;  // w_i^2 = mean K_ii
+  Spectrum f;  // (F+1) x I
+  Eigen::MatrixXd K_rounding;  // sum over harmonics of |error| of K, entry by entry
+  Eigen::VectorXd f_rounding;  // the same of f
+  Eigen::VectorXd coupling;  // upper bound of sum_k max_tau |E_ik|, the largest part of row i
+  Eigen::VectorXd own_coupling;  // upper bound of max_tau |E_ii|
+
+  std::complex<double> D(Eigen::Index i, Eigen::Index k) const {
+    const double n = static_cast<double>(k);
+    return {mean(i) - n * n, n * G(i, i)};
+  }
+  // |D| without cancellation.
+  double magnitude(Eigen::Index i, Eigen::Index k) const {
+    const double n = static_cast<double>(k);
+    const double size = std::abs(mean(i)) + n * n + n * std::abs(G(i, i));
+    return size > 0 ? size : (coupling(i) > 0 ? coupling(i) : 1);
+  }
+  // Size of |D_i(k)| away from resonance, smallest over k: for judging what is negligible.
+  double smallest_diagonal(Eigen::Index i) const { return std::max(std::abs(mean(i)), 1.0); }
+};
+
+[[nodiscard]] WeightedSystem weighted(const ScaledSystem& system);
+
+class Operator {
+ public:
+  Operator(const WeightedSystem& system, Eigen::Index num_harmonics);
+
+  Eigen::Index num_modes() const { return system_->I; }
+  Eigen::Index num_harmonics() const { return H_; }
+  Eigen::Index last_row() const { return H_ + system_->P; }  // A x is zero beyond
+  const WeightedSystem& system() const { return *system_; }
+  const Spectrum& D() const { return D_; }  // (H+1) x I
+  const Eigen::MatrixXd& magnitude() const { return magnitude_; }  // (H+1) x I, |D| without cancellation
+
+  // E x, rows 0..num_rows (at most last_row()) of any x with rows up to last_row(); free of aliasing.
+  void couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result);
+  // f - A x, rows 0..max(last_row(), harmonics of f).
+  [[nodiscard]] Spectrum residual(const Spectrum& x);
+  // 2-norm over the turn of the window's rows of r, divided by |D| without cancellation.
+  [[nodiscard]] double scaled_norm(const Spectrum& r) const;
+  // Bound on the rounding error of `residual(x)`, divided by |D| and summed over harmonics, per component: of the
+  // data, of the products and of the transforms.
+  [[nodiscard]] Eigen::VectorXd rounding(const Spectrum& x) const;
+  // The part of it that is alike on all harmonics, per component: rows below this say nothing.
+  [[nodiscard]] Eigen::VectorXd noise() const;
+  int num_products() const { return num_products_; }
+
+ private:
+  struct Nodes {
+    Eigen::Index N = 0;
+    Eigen::MatrixXd E;  // N x I*I
+  };
+  const Nodes& nodes(Eigen::Index N);
+
+  const WeightedSystem* system_;
+  Eigen::Index H_;
+  Spectrum D_;
+  Eigen::MatrixXd magnitude_;
+  Nodes inner_, outer_;
+  Eigen::MatrixXd product_;
+  Eigen::VectorXd product_max_;  // max over the nodes of sum_k |E_ik| |x_k| in the last exact residual
+  int num_products_ = 0;
+};
+
+// Largest |x_i| at sample points (at least four per shortest wave): at most the maximum over the turn.
+[[nodiscard]] double largest_over_turn(const Spectrum& x, Eigen::Index* component = nullptr);
+
+// Approximate inverse of A on the window.
+class Inverse {
+ public:
+  virtual ~Inverse() = default;
+  // z with |rhs - A z| <= relative |rhs|, each divided by |D| without cancellation (2-norm over the turn); false if
+  // that was not reached, with the best z found. Rows of rhs beyond H are ignored.
+  virtual bool solve(const Spectrum& rhs, double relative, Spectrum& z) = 0;
+};
+
+}  // namespace hb::steady

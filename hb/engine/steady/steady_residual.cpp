@@ -1,0 +1,165 @@
+#include "hb/engine/steady/steady_residual.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace hb::steady {
+
+namespace {
+
+using Index = Eigen::Index;
+using Real = long double;
+
+constexpr double eps = 2.220446049250313e-16;
+constexpr Real real_eps = std::numeric_limits<Real>::epsilon();
+
+// A series split at a grid: high parts are multiples of `grid`, a power of two, so that products of high parts and
+// their sums are exact in double; low = rest. Real and imaginary parts stand apart, harmonics -H..H in a row.
+struct Split {
+  Eigen::VectorXd high_re, high_im, low_re, low_im;
+};
+
+// Coefficients (re, im of harmonics 0..H) of one component, to `bits` bits of the largest.
+Split split(const std::vector<Real>& re, const std::vector<Real>& im, int bits) {
+  const Index H = static_cast<Index>(re.size()) - 1;
+  Split s;
+  for (Eigen::VectorXd* part : {&s.high_re, &s.high_im, &s.low_re, &s.low_im}) part->setZero(2 * H + 1);
+  Real largest = 0;
+  for (std::size_t k = 0; k < re.size(); ++k) largest = std::max({largest, std::abs(re[k]), std::abs(im[k])});
+  if (!(largest > 0)) return s;
+  const Real grid = std::ldexp(Real(1), std::ilogb(largest) + 1 - bits);
+  const auto place = [&](Real value, Index k, Real sign, Eigen::VectorXd& high, Eigen::VectorXd& low) {
+    const Real rounded = std::nearbyint(value / grid) * grid;
+    high(H + k) = static_cast<double>(rounded);
+    low(H + k) = static_cast<double>(value - rounded);
+    high(H - k) = static_cast<double>(sign) * high(H + k);
+    low(H - k) = static_cast<double>(sign) * low(H + k);
+  };
+  for (Index k = 0; k <= H; ++k) {
+    place(re[static_cast<std::size_t>(k)], k, 1, s.high_re, s.low_re);
+    place(im[static_cast<std::size_t>(k)], k, -1, s.high_im, s.low_im);
+  }
+  return s;
+}
+
+Index longest(const std::array<FourierSeries, 3>& powers) {
+  Index H = 0;
+  for (const FourierSeries& part : powers) H = std::max(H, part.num_harmonics());
+  return H;
+}
+
+// S0 + Omega S1 + Omega^2 S2 of one component.
+void combine(const std::array<FourierSeries, 3>& powers, Index component, Real Omega, std::vector<Real>& re,
+             std::vector<Real>& im) {
+  std::fill(re.begin(), re.end(), Real(0));
+  std::fill(im.begin(), im.end(), Real(0));
+  Real factor = 1;
+  for (const FourierSeries& part : powers) {
+    for (Index k = 0; k < part.c.cols(); ++k) {
+      re[static_cast<std::size_t>(k)] += factor * part.c(component, k).real();
+      im[static_cast<std::size_t>(k)] += factor * part.c(component, k).imag();
+    }
+    factor *= Omega;
+  }
+}
+
+}  // namespace
+
+// sum_m C_m q_{k-m} with C = C^ + c, q = q^ + p split at grids so coarse that sums of products C^ q^ have no
+// rounding in double; C^ p + c q is smaller by 2^-bits and needs double only.
+AccurateResidual accurate_residual(const HillSystem& system, double speed, const FourierSeries& q, double scale) {
+  const Index I = system.num_modes(), H = q.num_harmonics();
+  const Index P = longest(system.stiffness), F = longest(system.load);
+  const Index rows = std::max(H + P, F), reach = H + P;
+  // A power of two, so that q / unit is exact; the rest of the scale is applied to the residual.
+  const Real Omega = speed, unit = std::ldexp(Real(1), std::ilogb(scale)), remaining = unit / static_cast<Real>(scale);
+  // A sum holds 2 (2P+1) products at most: 2 bits + log2 of that must fit into 53.
+  const int bits = (52 - static_cast<int>(std::ceil(std::log2(4.0 * static_cast<double>(P) + 2)))) / 2;
+
+  std::vector<Split> q_split(static_cast<std::size_t>(I));
+  std::vector<Real> re(static_cast<std::size_t>(H + 1)), im(re.size());
+  Eigen::MatrixXd q_size(I, 1);
+  for (Index j = 0; j < I; ++j) {
+    Real sum = 0;
+    for (Index k = 0; k <= H; ++k) {
+      re[static_cast<std::size_t>(k)] = static_cast<Real>(q.c(j, k).real()) / unit;
+      im[static_cast<std::size_t>(k)] = k == 0 ? 0 : static_cast<Real>(q.c(j, k).imag()) / unit;
+      sum += 2 * (std::abs(re[static_cast<std::size_t>(k)]) + std::abs(im[static_cast<std::size_t>(k)]));
+    }
+    q_size(j) = static_cast<double>(sum);
+    q_split[static_cast<std::size_t>(j)] = split(re, im, bits);
+  }
+
+  AccurateResidual result{Eigen::MatrixXcd(rows + 1, I), Eigen::MatrixXd(rows + 1, I)};
+  std::vector<Real> c_re(static_cast<std::size_t>(P + 1)), c_im(c_re.size());
+  std::vector<Real> sum_re(static_cast<std::size_t>(rows + 1)), sum_im(sum_re.size()), size(sum_re.size());
+  std::vector<Real> h_re(static_cast<std::size_t>(F + 1)), h_im(h_re.size());
+  Eigen::ArrayXd exact_re(reach + 1), exact_im(reach + 1), rest_re(reach + 1), rest_im(reach + 1);
+  for (Index i = 0; i < I; ++i) {
+    combine(system.load, i, Omega, h_re, h_im);
+    for (Index k = 0; k <= rows; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      sum_re[at] = k <= F ? h_re[at] / unit : 0;
+      sum_im[at] = k <= F && k > 0 ? h_im[at] / unit : 0;
+      size[at] = std::abs(sum_re[at]) + std::abs(sum_im[at]);
+    }
+    // Sum over all harmonics of the rounding of C and of the low parts: charged to harmonic 0, where |D| is least.
+    Real total = 0;
+    for (Index j = 0; j < I; ++j) {
+      // -M q'' - B q'
+      for (Index k = 0; k <= H; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        const Real n = static_cast<Real>(k) * Omega, m = n * n * system.mass(i, j), b = n * system.damping(i, j);
+        const Real x = static_cast<Real>(q.c(j, k).real()) / unit, y = static_cast<Real>(q.c(j, k).imag()) / unit;
+        sum_re[at] += m * x + b * y;
+        sum_im[at] += m * y - b * x;
+        size[at] += (std::abs(m) + std::abs(b)) * (std::abs(x) + std::abs(y));
+      }
+      combine(system.stiffness, i + I * j, Omega, c_re, c_im);
+      c_im[0] = 0;
+      Real c_size = 0;
+      Index top = P;
+      while (top > 0 && c_re[static_cast<std::size_t>(top)] == 0 && c_im[static_cast<std::size_t>(top)] == 0) --top;
+      for (Index m = 0; m <= top; ++m)
+        c_size += 2 * (std::abs(c_re[static_cast<std::size_t>(m)]) + std::abs(c_im[static_cast<std::size_t>(m)]));
+      if (!(c_size > 0)) continue;
+      const Split c = split(c_re, c_im, bits);
+      const Split& x = q_split[static_cast<std::size_t>(j)];
+      exact_re.setZero();
+      exact_im.setZero();
+      rest_re.setZero();
+      rest_im.setZero();
+      for (Index m = -top; m <= top; ++m) {
+        // rows k with |k - m| <= H
+        const Index first = std::max<Index>(0, m - H), count = std::min(reach, m + H) - first + 1;
+        if (count <= 0) continue;
+        const Index from = H + first - m;
+        const double A = c.high_re(P + m), B = c.high_im(P + m), a = c.low_re(P + m), b = c.low_im(P + m);
+        const auto X = x.high_re.array().segment(from, count), Y = x.high_im.array().segment(from, count);
+        const auto u = x.low_re.array().segment(from, count), v = x.low_im.array().segment(from, count);
+        exact_re.segment(first, count) += A * X - B * Y;
+        exact_im.segment(first, count) += A * Y + B * X;
+        rest_re.segment(first, count) += (A * u - B * v) + (a * (X + u) - b * (Y + v));
+        rest_im.segment(first, count) += (A * v + B * u) + (a * (Y + v) + b * (X + u));
+      }
+      for (Index k = 0; k <= reach; ++k) {
+        const auto at = static_cast<std::size_t>(k);
+        size[at] += std::abs(exact_re(k)) + std::abs(exact_im(k));
+        sum_re[at] -= static_cast<Real>(exact_re(k)) + rest_re(k);
+        if (k > 0) sum_im[at] -= static_cast<Real>(exact_im(k)) + rest_im(k);
+      }
+      total += c_size * static_cast<Real>(q_size(j)) *
+               (static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits) + 2 * real_eps);
+    }
+    for (Index k = 0; k <= rows; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      result.r(k, i) = {static_cast<double>(sum_re[at] * remaining), static_cast<double>(sum_im[at] * remaining)};
+      result.rounding(k, i) = static_cast<double>((4 * real_eps * size[at] + (k == 0 ? total : 0)) * remaining);
+    }
+  }
+  return result;
+}
+
+}  // namespace hb::steady

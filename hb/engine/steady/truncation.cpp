@@ -1,0 +1,42 @@
+#include "hb/engine/steady/truncation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hb::steady {
+
+namespace {
+using Index = Eigen::Index;
+}
+
+// a_k,i = (|f_k,i| + sum_m sum_j |K_m,ij| a_k-m,j) / |D_i(k)|, kept at or below the largest response to the load itself
+// where the recursion would grow (that is the core, not the tail).
+Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index most) {
+  const Index I = system.I, P = system.P, F = system.f.rows() - 1;
+  // Harmonics of K that cannot matter are left out.
+  const Eigen::MatrixXd K = system.K.real().cwiseAbs() + system.K.imag().cwiseAbs();
+  Eigen::VectorXd floor(I * I);
+  for (Index j = 0; j < I; ++j)
+    for (Index i = 0; i < I; ++i) floor(i + I * j) = 0.1 * tolerance * system.smallest_diagonal(i);
+  Index P_cut = P;
+  while (P_cut > 0 && (K.col(P_cut).array() <= floor.array()).all()) --P_cut;
+
+  Eigen::MatrixXd a(I, most + 1);
+  double largest = 0;
+  Index H = 0;  // last harmonic that mattered
+  for (Index k = 0; k <= most; ++k) {
+    Eigen::VectorXd response = Eigen::VectorXd::Zero(I);
+    for (Index m = 1; m <= std::min(k, P_cut); ++m) response.noalias() += K.col(m).reshaped(I, I) * a.col(k - m);
+    for (Index i = 0; i < I; ++i) {
+      const double d = std::max(std::abs(system.D(i, k)), 1e-12 * system.magnitude(i, k));
+      const double load = k <= F ? std::abs(system.f(k, i)) : 0;
+      largest = std::max(largest, load / d);
+      a(i, k) = std::min((load + response(i)) / d, largest);
+    }
+    if (!(a.col(k).maxCoeff() <= tolerance * largest)) H = k;
+    if (k >= F && k - H > std::max<Index>(P_cut, 2)) break;
+  }
+  return std::clamp<Index>(H + 1, std::min<Index>(2, most), most);
+}
+
+}  // namespace hb::steady

@@ -1,0 +1,150 @@
+#include "hb/engine/system/scaled_system.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace hb {
+
+namespace {
+
+constexpr double eps = 2.220446049250313e-16;
+
+bool is_diagonal(const Eigen::MatrixXd& A) { return (A - Eigen::MatrixXd(A.diagonal().asDiagonal())).isZero(0); }
+
+bool is_symmetric(const Eigen::MatrixXd& A) { return (A - A.transpose()).norm() <= 8 * eps * A.norm(); }
+
+Eigen::MatrixXd mean_of(const FourierSeries& matrices, Eigen::Index I) {
+  const Eigen::VectorXd mean = matrices.c.col(0).real();
+  return Eigen::Map<const Eigen::MatrixXd>(mean.data(), I, I);
+}
+
+// Off-diagonal part relative to the diagonal, sqrt(|a_ik a_ki| / |a_ii a_kk|), largest.
+double coupling(const Eigen::MatrixXd& A) {
+  double largest = 0;
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    for (Eigen::Index k = 0; k < i; ++k) {
+      const double diagonal = std::sqrt(std::abs(A(i, i) * A(k, k)));
+      const double off = std::sqrt(std::abs(A(i, k) * A(k, i)));
+      largest = std::max(largest, off == 0 ? 0 : off / std::max(diagonal, 1e-300));
+    }
+  return largest;
+}
+
+// Every matrix coefficient c_k becomes left * c_k * right.
+FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
+  const Eigen::Index I = left.rows();
+  FourierSeries result = matrices;
+  for (Eigen::Index k = 0; k < matrices.c.cols(); ++k) {
+    const Eigen::Map<const Eigen::MatrixXcd> coefficient(matrices.c.col(k).data(), I, I);
+    const Eigen::MatrixXcd product = left * coefficient * right;
+    result.c.col(k) = Eigen::Map<const Eigen::VectorXcd>(product.data(), I * I);
+  }
+  return result;
+}
+
+// Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean.
+FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
+  const Eigen::VectorXd scale =
+      mean_of(K, I).diagonal().cwiseAbs().cwiseMax(K.c.cwiseAbs().maxCoeff() * 1e-8).cwiseSqrt();
+  const auto negligible = [&](Eigen::Index k) {
+    for (Eigen::Index j = 0; j < I; ++j)
+      for (Eigen::Index i = 0; i < I; ++i)
+        if (!(std::abs(K.c(i + I * j, k)) <= 1e-17 * scale(i) * scale(j))) return false;
+    return true;
+  };
+  Eigen::Index H = K.num_harmonics();
+  while (H > 0 && negligible(H)) --H;
+  return fourier::resized(K, H);
+}
+
+// Sum over the powers of Omega and all harmonics of the size of every component: what rounding errors are relative to.
+Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index num_components, double speed) {
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
+  double factor = 1;
+  for (const FourierSeries& part : powers) {
+    if (part.c.size() > 0) size += 2 * factor * (part.c.real().cwiseAbs() + part.c.imag().cwiseAbs()).rowwise().sum();
+    factor *= speed;
+  }
+  return size;
+}
+
+}  // namespace
+
+Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
+
+Eigen::VectorXd ScaledSystem::mean_diagonal() const { return mean_stiffness().diagonal(); }
+
+ScaledSystem scale_system(const HillSystem& system, double speed) {
+  if (!(speed > 0 && std::isfinite(speed)))
+    throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
+  const Eigen::Index I = system.num_modes();
+  const FourierSeries C = stiffness_at(system, speed);
+
+  // Left factor L and right factor T with L M T = 1.
+  Eigen::MatrixXd L, T;
+  const bool diagonal_mass = is_diagonal(system.mass) && (system.mass.diagonal().array() > 0).all();
+  if (diagonal_mass) {
+    T = system.mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+    L = T;
+  } else {
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum;
+    if (is_symmetric(system.mass)) spectrum.compute(system.mass);
+    if (is_symmetric(system.mass) && spectrum.eigenvalues().minCoeff() > 0) {
+      T = spectrum.operatorInverseSqrt();
+      L = T;
+    } else {
+      T = Eigen::MatrixXd::Identity(I, I);
+      L = system.mass.inverse();
+    }
+  }
+
+  // Turn to the eigenvectors of the mean stiffness where that leaves far less coupling in stiffness and damping
+  // together (factor by experience: a diagonal damping matrix is worth keeping).
+  const Eigen::MatrixXd K0 = L * mean_of(C, I) * T, B0 = L * system.damping * T;
+  if (I > 1 && is_symmetric(K0)) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(K0);
+    const Eigen::MatrixXd& Q = modes.eigenvectors();
+    if (coupling(Q.transpose() * B0 * Q) < 0.1 * (coupling(K0) + coupling(B0))) {
+      L = Q.transpose() * L;
+      T = T * Q;
+    }
+  }
+
+  ScaledSystem scaled;
+  scaled.speed = speed;
+  scaled.T = T;
+  scaled.T_inverse = T.inverse();
+  scaled.G = L * system.damping * T / speed;
+  scaled.diagonal_damping = is_diagonal(scaled.G);
+  scaled.K = transformed(C, L, T);
+  scaled.K.c *= 1 / (speed * speed);
+  scaled.K = without_rounding(scaled.K, I);
+  // Adding three powers, products with L and T (none but scaling when they are diagonal), and the cut.
+  const bool scaling = is_diagonal(L) && is_diagonal(T);
+  const double steps = scaling ? 4 : 4 + 2 * static_cast<double>(I);
+  const Eigen::VectorXd stiffness_size = sizes(system.stiffness, I * I, speed);
+  scaled.K_rounding = steps * eps / (speed * speed) * L.cwiseAbs() *
+                      Eigen::Map<const Eigen::MatrixXd>(stiffness_size.data(), I, I) * T.cwiseAbs();
+  scaled.f_rounding = Eigen::VectorXd::Zero(I);
+
+  FourierSeries h = load_at(system, speed);
+  if (h.c.size() > 0) {
+    // The load's own scale is taken out first: amplitudes from 1e-200 to 1e200 neither overflow nor vanish.
+    const double largest = h.c.real().cwiseAbs().maxCoeff() + h.c.imag().cwiseAbs().maxCoeff();
+    if (largest > 0) {
+      h.c *= 1 / largest;  // complex division would square the divisor
+      h.c = (L * h.c).eval();
+      const double scale = h.c.cwiseAbs().maxCoeff();
+      h.c *= 1 / scale;
+      scaled.load_scale = largest * (scale / (speed * speed));
+      scaled.f_rounding = steps * eps * L.cwiseAbs() * (sizes(system.load, I, speed) / largest) / scale;
+      scaled.f = fourier::resized(h, fourier::significant_harmonics(h, 1e-18));
+    }
+  }
+  return scaled;
+}
+
+}  // namespace hb

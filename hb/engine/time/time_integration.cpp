@@ -1,0 +1,331 @@
+#include "hb/engine/time/time_integration.hpp"
+
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sundials/sundials_context.h>
+#include <sundials/sundials_linearsolver.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace hb {
+
+const char* to_string(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::automatic:
+      return "automatic";
+    case Integrator::adams:
+      return "CVODE Adams";
+    case Integrator::bdf:
+      return "CVODE BDF";
+    case Integrator::collocation:
+      return "Radau collocation";
+  }
+  return "";
+}
+
+ScaledMotion::ScaledMotion(const TimeDomainSystem& system)
+    : system_(system), tau_(std::numeric_limits<double>::quiet_NaN()) {
+  const Eigen::Index I = system.num_modes();
+  const double Omega = system.speed;
+  mass_inverse_ = system.mass.inverse();
+  C_.resize(I, I);
+  h_.resize(I);
+  // Sizes over the turn: |K_ii| for the frequencies, |h_i| against stiffness and inertia for the response.
+  constexpr int num_looks = 64;
+  const Eigen::ArrayXd inertia = mass_inverse_.diagonal().array().abs();
+  Eigen::ArrayXd stiffness = Eigen::ArrayXd::Zero(I), response = Eigen::ArrayXd::Zero(I);
+  for (int j = 0; j < num_looks; ++j) {
+    system.evaluate(2 * std::numbers::pi * j / num_looks, C_, h_);
+    stiffness += (mass_inverse_ * C_).diagonal().array().abs() / (Omega * Omega * num_looks);
+    const Eigen::ArrayXd force = (mass_inverse_ * h_).array().abs() / (Omega * Omega);
+    response = response.max(force);
+  }
+  w_ = stiffness.sqrt().max(1.0);
+  q_scale_ = (response / (1 + stiffness)).maxCoeff();
+  G_ = w_.cwiseInverse().asDiagonal() * (mass_inverse_ * system.damping / Omega) * w_.asDiagonal();
+}
+
+void ScaledMotion::evaluate(double tau) {
+  if (tau == tau_) return;
+  tau_ = tau;
+  ++evaluations_;
+  system_.evaluate(tau, C_, h_);
+  const double Omega2 = system_.speed * system_.speed;
+  K_.noalias() = mass_inverse_ * C_;
+  K_ = w_.cwiseInverse().asDiagonal() * K_ / Omega2;
+  if (loaded())
+    f_ = (mass_inverse_ * h_).cwiseQuotient(w_) / (Omega2 * q_scale_);
+  else
+    f_.setZero(w_.size());
+}
+
+Eigen::VectorXcd ScaledMotion::frozen_eigenvalues(double tau) {
+  evaluate(tau);
+  const Eigen::Index I = num_modes();
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(2 * I, 2 * I);
+  J.topRightCorner(I, I) = w_.asDiagonal();
+  J.bottomLeftCorner(I, I) = -K_;
+  J.bottomRightCorner(I, I) = -G_;
+  return J.eigenvalues();
+}
+
+namespace {
+
+// ---- CVODE ----
+
+struct Problem {
+  ScaledMotion& motion;
+  const Eigen::VectorXd& load;
+  Deadline deadline;
+  void* cvode = nullptr;
+  bool late = false;
+
+  Eigen::Index rows() const { return 2 * motion.num_modes(); }
+  Eigen::Map<Eigen::MatrixXd> matrix(N_Vector y) const { return {N_VGetArrayPointer(y), rows(), load.size()}; }
+};
+
+int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* data) {
+  auto& problem = *static_cast<Problem*>(data);
+  if (std::chrono::steady_clock::now() > problem.deadline) {
+    problem.late = true;
+    return -1;
+  }
+  ScaledMotion& motion = problem.motion;
+  motion.evaluate(tau);
+  const Eigen::Index I = motion.num_modes();
+  const auto Y = problem.matrix(y);
+  auto D = problem.matrix(slope);
+  D.topRows(I) = motion.w().asDiagonal() * Y.bottomRows(I);
+  D.bottomRows(I).noalias() = -motion.K() * Y.topRows(I);
+  D.bottomRows(I).noalias() -= motion.G() * Y.bottomRows(I);
+  D.bottomRows(I).noalias() += motion.f() * problem.load.transpose();
+  return D.allFinite() ? 0 : -1;
+}
+
+// Newton's matrix (1 - gamma J) is exact and the same for every column. With J of the first-order form,
+//   dx - gamma W dv = bx,   dv + gamma (K dx + G dv) = bv   =>   (1 + gamma G + gamma^2 K W) dv = bv - gamma K bx.
+int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+  auto& problem = *static_cast<Problem*>(solver->content);
+  realtype tau, gamma, rl1;
+  N_Vector predicted, iterate, f, zn1;
+  void* user;
+  if (CVodeGetNonlinearSystemData(problem.cvode, &tau, &predicted, &iterate, &f, &gamma, &rl1, &zn1, &user) != 0)
+    return SUNLS_PACKAGE_FAIL_UNREC;
+  ScaledMotion& motion = problem.motion;
+  motion.evaluate(tau);
+  const Eigen::Index I = motion.num_modes();
+  const Eigen::VectorXd& w = motion.w();
+  const Eigen::MatrixXd A =
+      Eigen::MatrixXd::Identity(I, I) + gamma * motion.G() + gamma * gamma * motion.K() * w.asDiagonal();
+  const auto B = problem.matrix(b);
+  auto X = problem.matrix(x);
+  const Eigen::MatrixXd right = B.bottomRows(I) - gamma * motion.K() * B.topRows(I);
+  X.bottomRows(I) = A.partialPivLu().solve(right);
+  X.topRows(I) = B.topRows(I) + gamma * w.asDiagonal() * X.bottomRows(I);
+  return SUNLS_SUCCESS;
+}
+
+struct Sundials {
+  SUNContext context = nullptr;
+  N_Vector y = nullptr;
+  SUNLinearSolver solver = nullptr;
+  void* cvode = nullptr;
+
+  Sundials() {
+    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+  }
+  Sundials(const Sundials&) = delete;
+  Sundials& operator=(const Sundials&) = delete;
+  ~Sundials() {
+    if (cvode != nullptr) CVodeFree(&cvode);
+    if (solver != nullptr) SUNLinSolFreeEmpty(solver);
+    if (y != nullptr) N_VDestroy(y);
+    SUNContext_Free(&context);
+  }
+};
+
+void require(int flag, const char* call) {
+  if (flag != CV_SUCCESS) throw std::runtime_error(std::string(call) + " failed with " + std::to_string(flag));
+}
+
+}  // namespace
+
+Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double tolerance, double tau0,
+                           const Eigen::MatrixXd& Y0, const Eigen::VectorXd& load, std::span<const double> outputs,
+                           Deadline deadline) {
+  Problem problem{motion, load, deadline};
+  Sundials sundials;
+  sundials.y = N_VNew_Serial(Y0.size(), sundials.context);
+  sundials.solver = SUNLinSolNewEmpty(sundials.context);
+  sundials.cvode = CVodeCreate(method == Integrator::adams ? CV_ADAMS : CV_BDF, sundials.context);
+  if (sundials.y == nullptr || sundials.solver == nullptr || sundials.cvode == nullptr) throw std::bad_alloc();
+  problem.cvode = sundials.cvode;
+  sundials.solver->content = &problem;
+  sundials.solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_MATRIX_EMBEDDED; };
+  sundials.solver->ops->solve = solve_newton;
+  problem.matrix(sundials.y) = Y0;
+
+  void* cvode = sundials.cvode;
+  require(CVodeInit(cvode, right_hand_side, tau0, sundials.y), "CVodeInit");
+  require(CVodeSetErrHandlerFn(
+              cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
+          "CVodeSetErrHandlerFn");
+  require(CVodeSetUserData(cvode, &problem), "CVodeSetUserData");
+  require(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
+  require(CVodeSetMaxNumSteps(cvode, std::numeric_limits<long>::max() / 2), "CVodeSetMaxNumSteps");
+  require(CVodeSetStopTime(cvode, outputs.back()), "CVodeSetStopTime");
+  require(CVodeSetLinearSolver(cvode, sundials.solver, nullptr), "CVodeSetLinearSolver");
+  // The linear solve is exact; never let CVODE skip it as "small enough".
+  require(CVodeSetEpsLin(cvode, 1e-14), "CVodeSetEpsLin");
+
+  Trajectory trajectory;
+  trajectory.states.reserve(outputs.size());
+  for (const double tau : outputs) {
+    realtype reached = tau0;
+    const int flag = CVode(cvode, tau, sundials.y, &reached, CV_NORMAL);
+    CVodeGetNumSteps(cvode, &trajectory.steps);
+    if (flag < 0) {
+      trajectory.status = problem.late ? IntegrationStatus::time_limit : IntegrationStatus::failed;
+      char* name = CVodeGetReturnFlagName(flag);
+      trajectory.message =
+          (problem.late ? "time limit" : std::string(name)) + " at crank angle " + std::to_string(reached) + " rad";
+      std::free(name);
+      return trajectory;
+    }
+    trajectory.states.emplace_back(problem.matrix(sundials.y));
+  }
+  trajectory.status = IntegrationStatus::finished;
+  return trajectory;
+}
+
+namespace {
+
+// ---- Radau IIA collocation ----
+
+constexpr Eigen::Index num_stages = 9;
+
+// P_n on (-1, 1) and its derivative.
+std::pair<double, double> legendre(Eigen::Index n, double s) {
+  if (n == 0) return {1, 0};
+  double p0 = 1, p1 = s, d0 = 0, d1 = 1;
+  for (Eigen::Index k = 2; k <= n; ++k) {
+    const double kk = static_cast<double>(k);
+    const double p2 = ((2 * kk - 1) * s * p1 - (kk - 1) * p0) / kk, d2 = d0 + (2 * kk - 1) * p1;
+    p0 = std::exchange(p1, p2);
+    d0 = std::exchange(d1, d2);
+  }
+  return {p1, d1};
+}
+
+// Nodes c: roots of P_s(2c-1) - P_(s-1)(2c-1), the last one c = 1. A_ij = int_0^c_i L_j: integration of the Lagrange
+// polynomials, here by solving A V = R with V_jk = P_k(2 c_j - 1), R_ik = int_0^c_i P_k (2c-1) dc. A2 = A A.
+struct RadauTableau {
+  Eigen::VectorXd c{num_stages};
+  Eigen::MatrixXd A, A2;
+
+  RadauTableau() {
+    for (Eigen::Index j = 0; j < num_stages - 1; ++j) {
+      double s =
+          -std::cos(std::numbers::pi * (static_cast<double>(j) + 0.75) / (static_cast<double>(num_stages) + 0.25));
+      for (int step = 0; step < 30; ++step) {
+        const auto [p, d] = legendre(num_stages, s);
+        const auto [p1, d1] = legendre(num_stages - 1, s);
+        // Newton with the roots already found, and the one at s = 1, divided out.
+        double sum = 1 / (s - 1);
+        for (Eigen::Index k = 0; k < j; ++k) sum += 1 / (s - (2 * c(k) - 1));
+        const double ratio = (p - p1) / (d - d1);
+        const double change = ratio / (1 - ratio * sum);
+        s -= change;
+        if (std::abs(change) <= 1e-16) break;
+      }
+      c(j) = (s + 1) / 2;
+    }
+    c(num_stages - 1) = 1;
+    Eigen::MatrixXd V(num_stages, num_stages), R(num_stages, num_stages);
+    for (Eigen::Index i = 0; i < num_stages; ++i) {
+      const double s = 2 * c(i) - 1;
+      for (Eigen::Index k = 0; k < num_stages; ++k) {
+        V(i, k) = legendre(k, s).first;
+        // int P_k ds = (P_(k+1) - P_(k-1))/(2k+1), zero at s = -1; dc = ds/2.
+        R(i, k) = k == 0
+                      ? (s + 1) / 2
+                      : (legendre(k + 1, s).first - legendre(k - 1, s).first) / (2 * (2 * static_cast<double>(k) + 1));
+      }
+    }
+    A = V.transpose().partialPivLu().solve(R.transpose()).transpose();
+    A2 = A * A;
+  }
+};
+
+const RadauTableau& radau() {
+  static const RadauTableau tableau;
+  return tableau;
+}
+
+}  // namespace
+
+// With u = x', ' = d/dtau, and accelerations a_j = x'' at the stages,
+//   x_j = x + c_j h u + h^2 sum_k A2_jk a_k,   u_j = u + h sum_k A_jk a_k,   a_j + D u_j + K_j x_j = load f_j,
+// D = W G W^-1, K and f times W: one linear system of s I unknowns a per cell, the unit matrix for a short one. The
+// last stage is the end of the cell. (With displacements as unknowns, the velocity is a difference of nearly equal
+// numbers.)
+Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double tau0, const Eigen::MatrixXd& Y0,
+                                 const Eigen::VectorXd& load, std::span<const double> outputs, Deadline deadline) {
+  const RadauTableau& tableau = radau();
+  const Eigen::Index s = num_stages, I = motion.num_modes(), m = Y0.cols();
+  const Eigen::VectorXd& w = motion.w();
+  const Eigen::MatrixXd damping = w.asDiagonal() * motion.G() * w.cwiseInverse().asDiagonal();
+  Eigen::MatrixXd Y = Y0, system(s * I, s * I), right(s * I, m);
+  Trajectory trajectory;
+  trajectory.states.reserve(outputs.size());
+  double start = tau0;
+  for (const double end : outputs) {
+    const double h = (end - start) / cells_between;
+    for (int cell = 0; cell < cells_between; ++cell) {
+      if (std::chrono::steady_clock::now() > deadline) {
+        trajectory.status = IntegrationStatus::time_limit;
+        trajectory.message = "time limit at crank angle " + std::to_string(start + cell * h) + " rad";
+        return trajectory;
+      }
+      const Eigen::MatrixXd x = Y.topRows(I), u = w.asDiagonal() * Y.bottomRows(I);
+      for (Eigen::Index j = 0; j < s; ++j) {
+        motion.evaluate(start + (cell + tableau.c(j)) * h);
+        const Eigen::MatrixXd K = w.asDiagonal() * motion.K();
+        for (Eigen::Index k = 0; k < s; ++k)
+          system.block(j * I, k * I, I, I) = h * tableau.A(j, k) * damping + h * h * tableau.A2(j, k) * K;
+        system.block(j * I, j * I, I, I).diagonal().array() += 1;
+        right.middleRows(j * I, I) =
+            w.cwiseProduct(motion.f()) * load.transpose() - damping * u - K * (x + tableau.c(j) * h * u);
+      }
+      // Rows of fast modes are h^2 w^2 larger than the others: equal them before pivoting.
+      const Eigen::VectorXd row_scale = system.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
+      const Eigen::MatrixXd a = (row_scale.asDiagonal() * system).partialPivLu().solve(row_scale.asDiagonal() * right);
+      Eigen::MatrixXd dx = h * u, du = Eigen::MatrixXd::Zero(I, m);
+      for (Eigen::Index k = 0; k < s; ++k) {
+        dx += h * h * tableau.A2(s - 1, k) * a.middleRows(k * I, I);
+        du += h * tableau.A(s - 1, k) * a.middleRows(k * I, I);
+      }
+      Y.topRows(I) += dx;
+      Y.bottomRows(I) += w.cwiseInverse().asDiagonal() * du;
+      ++trajectory.steps;
+    }
+    if (!Y.allFinite()) {
+      trajectory.message = "not finite at crank angle " + std::to_string(end) + " rad";
+      return trajectory;
+    }
+    trajectory.states.push_back(Y);
+    start = end;
+  }
+  trajectory.status = IntegrationStatus::finished;
+  return trajectory;
+}
+
+}  // namespace hb

@@ -1,0 +1,269 @@
+#include "lib/fourier/fourier.hpp"
+
+#include <fftw3.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+
+namespace hb::fourier {
+
+namespace {
+
+std::mutex& planner_mutex() {
+  static std::mutex mutex;
+  return mutex;
+}
+
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// e^{i k tau}-sums of one component: f, f', f'' at tau (real function from its half spectrum).
+struct Jet {
+  double f, f1, f2;
+};
+
+Jet jet(const FourierSeries& series, Eigen::Index component, double tau) {
+  Jet sum{series.c(component, 0).real(), 0, 0};
+  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) {
+    const double n = static_cast<double>(k);
+    const std::complex<double> term = 2.0 * series.c(component, k) * std::polar(1.0, n * tau);
+    sum.f += term.real();
+    sum.f1 -= n * term.imag();
+    sum.f2 -= n * n * term.real();
+  }
+  return sum;
+}
+
+double wrapped(double tau) {
+  tau = std::fmod(tau, two_pi);
+  if (tau < 0) tau += two_pi;
+  return tau < two_pi ? tau : 0.0;
+}
+
+// Newton on f' from the best sample; kept within one grid step, and only if the value improves.
+Extremum refined(const FourierSeries& series, Eigen::Index component, double tau, double step, double sign) {
+  Jet here = jet(series, component, tau);
+  Extremum best{here.f, wrapped(tau)};
+  const double start = tau;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    if (!(sign * here.f2 < 0)) break;
+    const double move = -here.f1 / here.f2;
+    if (!(std::abs(tau + move - start) <= step)) break;
+    tau += move;
+    here = jet(series, component, tau);
+    if (sign * here.f >= sign * best.value) best = {here.f, wrapped(tau)};
+    if (std::abs(move) < 1e-12) break;
+  }
+  return best;
+}
+
+// f and f'' of one component on a fine grid, a row each.
+Eigen::MatrixXd fine_samples(const FourierSeries& series, Eigen::Index component) {
+  // 8 points per shortest wave: the parabola through a sample extremum then leads Newton to the right one.
+  Eigen::Index N = 64;
+  while (N < 8 * (series.num_harmonics() + 1)) N *= 2;
+  FourierSeries rows(2, series.num_harmonics());
+  rows.c.row(0) = series.c.row(component);
+  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) rows.c(1, k) = -static_cast<double>(k * k) * rows.c(0, k);
+  return synthesise(rows, N);
+}
+
+Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eigen::MatrixXd& samples, double sign) {
+  const Eigen::Index N = samples.cols();
+  const double step = two_pi / static_cast<double>(N);
+  const auto curvature = [&](Eigen::Index j) { return std::abs(samples(1, (j + N) % N)); };
+  const double top = sign > 0 ? samples.row(0).maxCoeff() : -samples.row(0).minCoeff();
+  Extremum best{-sign * HUGE_VAL, 0};
+  // Every local extremum of the samples that could still win: the true one lies half a step away at most and exceeds
+  // its sample by at most (step^2/8) max|f''|. Between samples an eighth of the shortest wave apart |f''| is at most
+  // 1/cos(pi/8) = 1.08 times the larger one for that wave; 2 is taken.
+  for (Eigen::Index j = 0; j < N; ++j) {
+    const double here = sign * samples(0, j);
+    if (!(here >= sign * samples(0, (j + 1) % N) && here >= sign * samples(0, (j + N - 1) % N))) continue;
+    const double reach = step * step / 8 * 2 * std::max({curvature(j - 1), curvature(j), curvature(j + 1)});
+    if (!(here + reach >= top)) continue;
+    const Extremum candidate = refined(series, component, step * static_cast<double>(j), step, sign);
+    if (sign * candidate.value > sign * best.value) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
+FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
+  const Eigen::Index n = samples.rows(), N = samples.cols();
+  if (N < 1) throw std::invalid_argument("fourier::analyse: no samples");
+  RealTransform& transform = thread_transform(N, n);
+  transform.samples() = samples.transpose();
+  transform.forward();
+  FourierSeries series(n, (N - 1) / 2);
+  series.c = transform.spectrum().topRows(series.num_harmonics() + 1).transpose();
+  return series;
+}
+
+Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples) {
+  const Eigen::Index H = series.num_harmonics();
+  if (num_samples < 2 * H + 1) throw std::invalid_argument("fourier::synthesise: fewer samples than 2H+1");
+  RealTransform& transform = thread_transform(num_samples, series.num_components());
+  auto spectrum = transform.spectrum();
+  spectrum.setZero();
+  spectrum.topRows(H + 1) = series.c.transpose();
+  transform.backward();
+  return transform.samples().transpose();
+}
+
+FourierSeries derivative(const FourierSeries& series, int order) {
+  FourierSeries result = series;
+  for (Eigen::Index k = 0; k <= series.num_harmonics(); ++k) {
+    std::complex<double> factor = 1;
+    for (int j = 0; j < order; ++j) factor *= std::complex<double>(0, static_cast<double>(k));
+    result.c.col(k) *= factor;
+  }
+  return result;
+}
+
+Eigen::VectorXd evaluate(const FourierSeries& series, double tau) {
+  Eigen::VectorXd sum = series.c.col(0).real();
+  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k)
+    sum += 2 * (series.c.col(k) * std::polar(1.0, static_cast<double>(k) * tau)).real();
+  return sum;
+}
+
+FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics) {
+  FourierSeries result(series.num_components(), num_harmonics);
+  const Eigen::Index kept = std::min(num_harmonics, series.num_harmonics()) + 1;
+  result.c.leftCols(kept) = series.c.leftCols(kept);
+  return result;
+}
+
+Eigen::Index significant_harmonics(const FourierSeries& series, double relative) {
+  if (series.c.size() == 0) return 0;
+  const double floor = relative * series.c.cwiseAbs().maxCoeff();
+  Eigen::Index H = series.num_harmonics();
+  while (H > 0 && series.c.col(H).cwiseAbs().maxCoeff() <= floor) --H;
+  return H;
+}
+
+Range range(const FourierSeries& series, Eigen::Index component) {
+  const Eigen::MatrixXd samples = fine_samples(series, component);
+  return {best_of(series, component, samples, -1), best_of(series, component, samples, +1)};
+}
+
+Extremum max_abs(const FourierSeries& series, Eigen::Index component) {
+  const Range r = range(series, component);
+  const Extremum& larger = std::abs(r.max.value) >= std::abs(r.min.value) ? r.max : r.min;
+  return {std::abs(larger.value), larger.crank_angle};
+}
+
+double wiener_norm(const FourierSeries& series, Eigen::Index component) {
+  return std::abs(series.c(component, 0)) + 2 * series.c.row(component).tail(series.num_harmonics()).cwiseAbs().sum();
+}
+
+namespace {
+
+// Plans of one length, for one component at a time: made once per process, then only read.
+class Plans {
+ public:
+  explicit Plans(int N) : samples_(fftw_alloc_real(at(N))), spectrum_(fftw_alloc_complex(at(N / 2 + 1))) {
+    if (!samples_ || !spectrum_) throw std::bad_alloc();
+    // Columns of odd length start anywhere.
+    const unsigned flags = FFTW_ESTIMATE | (N % 2 == 1 ? FFTW_UNALIGNED : 0U);
+    to_spectrum_ = fftw_plan_dft_r2c_1d(N, samples_.get(), spectrum_.get(), flags | FFTW_PRESERVE_INPUT);
+    to_samples_ = fftw_plan_dft_c2r_1d(N, spectrum_.get(), samples_.get(), flags);
+    if (!to_spectrum_ || !to_samples_) throw std::bad_alloc();
+  }
+  ~Plans() {
+    fftw_destroy_plan(to_spectrum_);
+    fftw_destroy_plan(to_samples_);
+  }
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+
+  // Any arrays aligned as FFTW's own.
+  void forward(double* samples, fftw_complex* spectrum) const { fftw_execute_dft_r2c(to_spectrum_, samples, spectrum); }
+  void backward(fftw_complex* spectrum, double* samples) const { fftw_execute_dft_c2r(to_samples_, spectrum, samples); }
+
+ private:
+  struct Free {
+    void operator()(void* memory) const { fftw_free(memory); }
+  };
+  static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+  std::unique_ptr<double, Free> samples_;
+  std::unique_ptr<fftw_complex, Free> spectrum_;
+  fftw_plan to_spectrum_ = nullptr, to_samples_ = nullptr;
+};
+
+const Plans& plans(Eigen::Index N) {
+  static std::map<Eigen::Index, Plans> made;
+  const std::lock_guard lock(planner_mutex());
+  return made.try_emplace(N, static_cast<int>(N)).first->second;
+}
+
+}  // namespace
+
+struct RealTransform::Impl {
+  Eigen::Index N, n;
+  double* samples;
+  fftw_complex* spectrum;
+  const Plans& plan;
+
+  Impl(Eigen::Index num_samples, Eigen::Index num_components)
+      : N(num_samples), n(num_components), samples(nullptr), spectrum(nullptr), plan(checked(N, n)) {
+    samples = fftw_alloc_real(static_cast<std::size_t>(N * n));
+    spectrum = fftw_alloc_complex(static_cast<std::size_t>((N / 2 + 1) * n));
+    if (!samples || !spectrum) throw std::bad_alloc();
+  }
+  ~Impl() {
+    fftw_free(samples);
+    fftw_free(spectrum);
+  }
+  static const Plans& checked(Eigen::Index N, Eigen::Index n) {
+    if (N < 1 || n < 1) throw std::invalid_argument("RealTransform: length and number of components must be positive");
+    return plans(N);
+  }
+};
+
+RealTransform::RealTransform(Eigen::Index num_samples, Eigen::Index num_components)
+    : impl_(std::make_unique<Impl>(num_samples, num_components)) {}
+RealTransform::~RealTransform() = default;
+RealTransform::RealTransform(RealTransform&&) noexcept = default;
+RealTransform& RealTransform::operator=(RealTransform&&) noexcept = default;
+
+Eigen::Index RealTransform::num_samples() const { return impl_->N; }
+Eigen::Index RealTransform::num_components() const { return impl_->n; }
+Eigen::Map<Eigen::MatrixXd> RealTransform::samples() { return {impl_->samples, impl_->N, impl_->n}; }
+Eigen::Map<Eigen::MatrixXcd> RealTransform::spectrum() {
+  return {reinterpret_cast<std::complex<double>*>(impl_->spectrum), impl_->N / 2 + 1, impl_->n};
+}
+
+void RealTransform::forward() {
+  for (Eigen::Index i = 0; i < impl_->n; ++i)
+    impl_->plan.forward(impl_->samples + i * impl_->N, impl_->spectrum + i * (impl_->N / 2 + 1));
+  spectrum() /= static_cast<double>(impl_->N);
+}
+
+void RealTransform::backward() {
+  for (Eigen::Index i = 0; i < impl_->n; ++i)
+    impl_->plan.backward(impl_->spectrum + i * (impl_->N / 2 + 1), impl_->samples + i * impl_->N);
+}
+
+Eigen::Index fast_length(Eigen::Index n) {
+  Eigen::Index N = 2;
+  while (N < n) N *= 2;
+  return N / 4 * 3 >= n && N >= 8 ? N / 4 * 3 : N;
+}
+
+RealTransform& thread_transform(Eigen::Index num_samples, Eigen::Index num_components) {
+  thread_local std::map<std::pair<Eigen::Index, Eigen::Index>, RealTransform> transforms;
+  const auto key = std::pair(num_samples, num_components);
+  const auto found = transforms.find(key);
+  if (found != transforms.end()) return found->second;
+  return transforms.emplace(key, RealTransform(num_samples, num_components)).first->second;
+}
+
+}  // namespace hb::fourier

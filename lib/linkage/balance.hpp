@@ -1,0 +1,24 @@
+// The balance of joint_forces.hpp for inner loops: no allocation per crank angle. Used inside the library.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lib/linkage/joint_forces.hpp"
+
+namespace hb {
+
+// As the functions of the same name, into memory that is kept from one crank angle to the next; slider_forces holds
+// the applied force of each dyad's slider (0 for a rocker).
+void rigid_loads(const Linkage& linkage, const std::vector<BodyMotion>& motion,
+                 const Eigen::Ref<const Eigen::VectorXd>& slider_forces, std::array<std::vector<BodyLoad>, 3>& loads);
+
+// Uses up `loads`: what later dyads pass on is taken off the bodies they hang on.
+void balance(const Linkage& linkage, const std::vector<BodyMotion>& motion, std::vector<BodyLoad>& loads,
+             MechanismForces& forces);
+
+// Applied slider forces, dyads x num_samples, at tau_j = 2 pi j / num_samples; needs
+// num_samples > 2 slider_force_harmonics.
+[[nodiscard]] Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples);
+[[nodiscard]] Eigen::Index slider_force_harmonics(const Linkage& linkage);
+
+}  // namespace hb

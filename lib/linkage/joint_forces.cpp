@@ -1,0 +1,164 @@
+#include "lib/linkage/joint_forces.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "lib/linkage/balance.hpp"
+#include "lib/fourier/turn_sampling.hpp"
+
+namespace hb {
+
+namespace {
+
+using Complex = std::complex<double>;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// One row of the result: which vector of the balance, in which body's frame.
+struct Row {
+  enum class Kind { crank_pivot, joint0, joint1, ground, rocker0, rocker1, guide } kind;
+  int dyad;  // whose force
+  int frame;  // body whose frame it is resolved in
+  std::string name;
+};
+
+std::vector<Row> rows_of(const Linkage& linkage) {
+  using Kind = Row::Kind;
+  std::vector<Row> rows;
+  rows.push_back(
+      {Kind::crank_pivot, 0, linkage.dyads.empty() ? 0 : coupler_index(0), linkage.crank.body.name + ".pivot"});
+  for (int d = 0; d < static_cast<int>(linkage.dyads.size()); ++d) {
+    const Dyad& dyad = linkage.dyads[at(d)];
+    const int coupler = coupler_index(d), closing = closing_index(d);
+    rows.push_back({Kind::joint0, d, coupler, dyad.coupler.name + ".0"});
+    rows.push_back({Kind::joint1, d, coupler, dyad.coupler.name + ".1"});
+    const std::string& name = body_name(linkage, closing);
+    if (const auto* rocker = std::get_if<Rocker>(&dyad.closing)) {
+      rows.push_back({Kind::ground, d, coupler, name + ".pivot"});
+      if (rocker->body.elastic) {
+        rows.push_back({Kind::rocker0, d, closing, name + ".0"});
+        rows.push_back({Kind::rocker1, d, closing, name + ".1"});
+      }
+    } else {
+      rows.push_back({Kind::guide, d, closing, name + ".guide"});
+    }
+  }
+  return rows;
+}
+
+Complex resolved(const Row& row, const MechanismForces& forces, const std::vector<BodyMotion>& motion) {
+  const auto vector = [&]() -> Complex {
+    switch (row.kind) {
+      case Row::Kind::crank_pivot:
+        return forces.crank_pivot;
+      case Row::Kind::joint0:
+        return forces.dyads[at(row.dyad)].joint0;
+      case Row::Kind::joint1:
+        return forces.dyads[at(row.dyad)].joint1;
+      case Row::Kind::rocker0:
+        return -forces.dyads[at(row.dyad)].ground;
+      case Row::Kind::rocker1:
+        return -forces.dyads[at(row.dyad)].joint1;
+      case Row::Kind::ground:
+      case Row::Kind::guide:
+        break;
+    }
+    return forces.dyads[at(row.dyad)].ground;
+  };
+  return std::conj(motion[at(row.frame)].e) * vector();
+}
+
+// Samples of q, q', q'' of one link, I x N each.
+struct ResponseSamples {
+  int link = 0;
+  Eigen::MatrixXd q, q1, q2;
+};
+
+std::vector<ResponseSamples> response_samples(const std::vector<LinkResponse>& responses, Eigen::Index N) {
+  std::vector<ResponseSamples> samples;
+  for (const LinkResponse& response : responses)
+    samples.push_back({response.link, fourier::synthesise(response.q, N),
+                       fourier::synthesise(fourier::derivative(response.q), N),
+                       fourier::synthesise(fourier::derivative(response.q, 2), N)});
+  return samples;
+}
+
+constexpr int force_group = 0, torque_group = 1;
+
+// Sum over both signs of the coefficients of one row beyond its length, twice. Of a row that has not decayed the last
+// eighth stands for what is missing.
+double left_out(const TurnSeries& turn, Eigen::Index row) {
+  const Eigen::Index size = turn.series.c.cols();
+  const Eigen::Index length = std::min(turn.length[static_cast<std::size_t>(row)], size - size / 8);
+  return 4 * turn.series.c.row(row).tail(size - length).cwiseAbs().sum();
+}
+
+}  // namespace
+
+// Sampled per crank angle: rigid and elastic (x, y) of every row, then rigid and elastic torque.
+JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
+                         double tolerance) {
+  const std::vector<Row> rows = rows_of(linkage);
+  const auto num_rows = static_cast<Eigen::Index>(rows.size());
+  std::vector<TurnComponent> components(static_cast<std::size_t>(4 * num_rows), TurnComponent{force_group, 1});
+  components.insert(components.end(), 2, TurnComponent{torque_group, 1});
+
+  std::vector<BodyMotion> motion;
+  std::array<std::vector<BodyLoad>, 3> powers;
+  std::vector<BodyLoad> rigid, elastic;
+  MechanismForces forces_rigid, forces;
+  const auto fill = [&](Eigen::MatrixXd& samples, Eigen::Index begin, Eigen::Index step) {
+    const Eigen::Index N = samples.cols();
+    const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, N);
+    const std::vector<ResponseSamples> q = response_samples(responses, N);
+    for (Eigen::Index j = begin; j < N; j += step) {
+      motion_at(linkage, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N), motion);
+      rigid_loads(linkage, motion, slider_forces.col(j), powers);
+      rigid.resize(motion.size());
+      for (std::size_t b = 0; b < motion.size(); ++b)
+        rigid[b] = {powers[0][b].force + speed * (powers[1][b].force + speed * powers[2][b].force),
+                    powers[0][b].moment + speed * (powers[1][b].moment + speed * powers[2][b].moment)};
+      elastic = rigid;
+      balance(linkage, motion, rigid, forces_rigid);
+      if (!q.empty()) {
+        for (const ResponseSamples& r : q) {
+          const BodyLoad added = elastic_load(linkage, motion, r.link, speed, r.q.col(j), r.q1.col(j), r.q2.col(j));
+          elastic[at(r.link)].force += added.force;
+          elastic[at(r.link)].moment += added.moment;
+        }
+        balance(linkage, motion, elastic, forces);
+      } else {
+        forces = forces_rigid;
+      }
+      for (Eigen::Index i = 0; i < num_rows; ++i) {
+        const Row& row = rows[static_cast<std::size_t>(i)];
+        const Complex f_rigid = resolved(row, forces_rigid, motion), f = resolved(row, forces, motion);
+        samples.col(j).segment<4>(4 * i) << f_rigid.real(), f_rigid.imag(), f.real(), f.imag();
+      }
+      samples.col(j).tail<2>() << forces_rigid.torque, forces.torque;
+    }
+  };
+
+  Eigen::Index H = slider_force_harmonics(linkage);
+  for (const LinkResponse& response : responses) H = std::max(H, response.q.num_harmonics());
+  TurnSamplingOptions options{.tolerance = tolerance};
+  while (options.first < 2 * H + 2) options.first *= 2;
+  options.last = std::max(options.last, 2 * options.first);
+  const TurnSeries turn = sample_turn(components, fill, options);
+
+  JointForces result;
+  for (Eigen::Index i = 0; i < num_rows; ++i) {
+    const Row& row = rows[static_cast<std::size_t>(i)];
+    const bool normal_only = row.kind == Row::Kind::guide;
+    const Eigen::Index first = 4 * i + (normal_only ? 1 : 0), count = normal_only ? 1 : 2;
+    result.joints.push_back({row.name, cut_rows(turn, first, count), cut_rows(turn, first + 2, count)});
+    for (Eigen::Index c = 0; c < count; ++c)
+      result.force_error = std::max({result.force_error, left_out(turn, first + c), left_out(turn, first + 2 + c)});
+  }
+  result.torque_rigid = cut_rows(turn, 4 * num_rows, 1);
+  result.torque = cut_rows(turn, 4 * num_rows + 1, 1);
+  result.torque_error = std::max(left_out(turn, 4 * num_rows), left_out(turn, 4 * num_rows + 1));
+  return result;
+}
+
+}  // namespace hb

@@ -1,0 +1,347 @@
+// Deflection and bending moment of an elastic link: kept modes plus the quasi-static tail,
+//     w = sum_{i<=I} q_i sin(i pi x/l) + sum_{i>I} p^_i / (i pi/l)^4 sin(i pi x/l),   (1 + alpha_c d/dt) p^ = p,
+// p_i the sine coefficients of the load that (3.3) puts on the rod with the kept modes' deflection w_I,
+//     p = -f0 - f1 x + [ (f4 + f3 x - f2 x^2/2) w_I' ]' + f2 w_I.
+// The tail is the static deflection of a pinned-pinned beam under p^, in closed form, minus its first I sine terms.
+// The f4 term has none beyond I. So w is a sum of products of a shape (of x) and a time function:
+//     sin(i pi x/l)  q_i,     y_0  f0^,     y_1  f1^,     y_3k  (f3 q_k)^,     y_2k  (f2 q_k)^.
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "lib/rod/rod.hpp"
+#include "lib/rod/rod_functional.hpp"
+
+namespace hb {
+
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double pi = std::numbers::pi;
+
+// A(s) + Im( P(s) e^{iKs} ) on s = x/l in [0, 1].
+struct Shape {
+  std::array<double, 6> A{};
+  std::array<Complex, 3> P{};
+  double K = 0;
+
+  double operator()(double s) const {
+    double a = 0;
+    for (std::size_t j = A.size(); j-- > 0;) a = a * s + A[j];
+    return a + ((P[0] + s * (P[1] + s * P[2])) * std::polar(1.0, K * s)).imag();
+  }
+};
+
+Shape derivative(const Shape& y) {
+  Shape d{.K = y.K};
+  for (std::size_t j = 0; j + 1 < y.A.size(); ++j) d.A[j] = static_cast<double>(j + 1) * y.A[j + 1];
+  for (std::size_t j = 0; j < 3; ++j)
+    d.P[j] = Complex(0, y.K) * y.P[j] + (j < 2 ? static_cast<double>(j + 1) * y.P[j + 1] : Complex(0));
+  return d;
+}
+
+// m'' = p with m(0) = m(1) = 0. Of the wave part, (P'' + 2iK P' - K^2 P) = R, highest power first; of the polynomial,
+// two integrations (its degree stays below 6); then the straight line that makes the ends zero.
+Shape integrated_twice(const Shape& p) {
+  Shape m{.K = p.K};
+  if (p.K > 0) {
+    for (std::size_t j = 3; j-- > 0;) {
+      const double n = static_cast<double>(j);
+      const Complex P1 = j < 2 ? (n + 1) * m.P[j + 1] : Complex(0);
+      const Complex P2 = j < 1 ? (n + 2) * (n + 1) * m.P[j + 2] : Complex(0);
+      m.P[j] = (P2 + Complex(0, 2 * p.K) * P1 - p.P[j]) / (p.K * p.K);
+    }
+  }
+  for (std::size_t j = 0; j + 2 < p.A.size(); ++j) m.A[j + 2] = p.A[j] / static_cast<double>((j + 1) * (j + 2));
+  m.A[0] = -m(0);
+  m.A[1] = -m(1);
+  return m;
+}
+
+// Shapes of the sum above and their derivatives, order 0..4, over x.
+class RodShapes {
+ public:
+  RodShapes(double length, Eigen::Index num_modes) : l_(length), I_(num_modes), tail_(num_modes, num_static()) {
+    add({.A = {-1}});
+    add({.A = {0, -l_}});
+    for (Eigen::Index k = 1; k <= I_; ++k) {
+      const double K = static_cast<double>(k) * pi;
+      // x w' = x K/l cos, (x w')' = (1/l) (K cos - K^2 s sin)
+      add({.P = {Complex(0, K / l_), Complex(-K * K / l_)}, .K = K});
+    }
+    for (Eigen::Index k = 1; k <= I_; ++k) {
+      const double K = static_cast<double>(k) * pi;
+      // -(x^2/2 w')' + w = (K^2 s^2/2 + 1) sin - K s cos
+      add({.P = {Complex(1), Complex(0, -K), Complex(K * K / 2)}, .K = K});
+    }
+    for (Eigen::Index i = 1; i <= I_; ++i) fill_sine_terms(i);
+  }
+
+  Eigen::Index size() const { return I_ + num_static(); }
+
+  // d^order/dx^order of every shape at x.
+  Eigen::RowVectorXd values(double x, int order) const {
+    const double s = x / l_, factor = std::pow(l_, -order);
+    Eigen::RowVectorXd row(size());
+    for (Eigen::Index i = 0; i < I_; ++i) {
+      const double K = static_cast<double>(i + 1) * pi;
+      const std::array<double, 4> cycle = {std::sin(K * s), std::cos(K * s), -std::sin(K * s), -std::cos(K * s)};
+      row(i) = factor * std::pow(K, order) * cycle[static_cast<std::size_t>(order % 4)];
+    }
+    for (Eigen::Index j = 0; j < num_static(); ++j)
+      row(I_ + j) = factor * static_[static_cast<std::size_t>(j)][static_cast<std::size_t>(order)](s);
+    row.tail(num_static()) -= row.head(I_) * tail_;
+    return row;
+  }
+
+ private:
+  Eigen::Index num_static() const { return 2 + 2 * I_; }
+
+  // Static deflection under the load p(s) (per EJ): y'''' = l^4 p over s.
+  void add(Shape p) {
+    const double l4 = std::pow(l_, 4);
+    for (double& a : p.A) a *= l4;
+    for (Complex& c : p.P) c *= l4;
+    std::array<Shape, 5> y;
+    y[2] = integrated_twice(p);
+    y[0] = integrated_twice(y[2]);
+    y[1] = derivative(y[0]);
+    y[3] = derivative(y[2]);
+    y[4] = p;
+    static_.push_back(y);
+  }
+
+  // Row i: sine coefficient of each static load over (i pi/l)^4; the load's are -c_ik and h_i of (3.11), (3.12).
+  void fill_sine_terms(Eigen::Index i) {
+    const double n = static_cast<double>(i), stiffness = std::pow(n * pi / l_, 4);
+    auto row = tail_.row(i - 1);
+    row(0) = i % 2 == 1 ? -4 / (pi * n) : 0.0;
+    row(1) = (i % 2 == 1 ? -1 : 1) * 2 * l_ / (pi * n);
+    for (Eigen::Index k = 1; k <= I_; ++k) {
+      const double m = static_cast<double>(k);
+      const double a = i == k ? 0 : n * m * (1 / ((n - m) * (n - m)) + 1 / ((n + m) * (n + m)));
+      const bool odd = (i + k) % 2 == 1;
+      row(1 + k) = i == k ? -n * n * pi * pi / (2 * l_) : odd ? 2 * a / l_ : 0.0;
+      row(1 + I_ + k) = i == k ? 1.25 + n * n * pi * pi / 6 : odd ? -a : a;
+    }
+    row /= stiffness;
+  }
+
+  double l_;
+  Eigen::Index I_;
+  Eigen::MatrixXd tail_;  // I x static shapes
+  std::vector<std::array<Shape, 5>> static_;
+};
+
+FourierSeries coefficients_at(const RodCoefficients& rod, double speed) {
+  Eigen::Index H = 0;
+  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
+  FourierSeries sum(5, H);
+  double factor = 1;
+  for (const FourierSeries& f : rod.f) {
+    if (f.c.size() > 0) sum.c.leftCols(f.c.cols()) += factor * f.c;
+    factor *= speed;
+  }
+  return sum;
+}
+
+Eigen::Index power_of_two_from(Eigen::Index N) {
+  Eigen::Index power = 64;
+  while (power < N) power *= 2;
+  return power;
+}
+
+// The time functions beside the shapes, in their order.
+FourierSeries time_functions(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
+  const Eigen::Index I = q.num_components();
+  const FourierSeries f = coefficients_at(rod, speed);
+  const Eigen::Index H = q.num_harmonics() + f.num_harmonics();
+  const Eigen::Index N = power_of_two_from(2 * H + 2);
+  const Eigen::MatrixXd f_samples = fourier::synthesise(f, N), q_samples = fourier::synthesise(q, N);
+  Eigen::MatrixXd products(2 * I, N);
+  products.topRows(I) = q_samples.array().rowwise() * f_samples.row(3).array();
+  products.bottomRows(I) = q_samples.array().rowwise() * f_samples.row(2).array();
+
+  FourierSeries T(3 * I + 2, H);
+  T.c.middleRows(I, 2) = fourier::resized(f, H).c.topRows(2);
+  T.c.bottomRows(2 * I) = fourier::resized(fourier::analyse(products), H).c;
+  for (Eigen::Index n = 0; n <= H; ++n)
+    T.c.col(n) /= Complex(1, static_cast<double>(n) * speed * link.elastic->internal_damping);
+  T.c.topRows(I) = fourier::resized(q, H).c;
+
+  Eigen::Index significant = 0;
+  for (Eigen::Index j = 0; j < T.num_components(); ++j)
+    significant = std::max(significant, fourier::significant_harmonics(FourierSeries(T.c.row(j)), 1e-16));
+  return fourier::resized(T, significant);
+}
+
+Eigen::MatrixXd shape_matrix(const RodShapes& shapes, const Eigen::Ref<const Eigen::VectorXd>& x, int order) {
+  Eigen::MatrixXd rows(x.size(), shapes.size());
+  for (Eigen::Index j = 0; j < x.size(); ++j) rows.row(j) = shapes.values(x(j), order);
+  return rows;
+}
+
+// sign * F and its derivatives over (s = x/l, tau), F = d^order w/dx^order.
+struct Surface {
+  const RodShapes& shapes;
+  const FourierSeries& T;
+  double l;
+  int order;
+  double sign;
+
+  struct Jet {
+    double F;
+    Eigen::Vector2d gradient;
+    Eigen::Matrix2d hessian;
+  };
+
+  Jet at(double s, double tau) const {
+    Eigen::MatrixXd time = Eigen::MatrixXd::Zero(T.num_components(), 3);  // T, T', T''
+    time.col(0) = T.c.col(0).real();
+    for (Eigen::Index k = 1; k <= T.num_harmonics(); ++k) {
+      const double n = static_cast<double>(k);
+      const Complex e = 2.0 * std::polar(1.0, n * tau);
+      time.col(0) += (e * T.c.col(k)).real();
+      time.col(1) -= n * (e * T.c.col(k)).imag();
+      time.col(2) -= n * n * (e * T.c.col(k)).real();
+    }
+    const Eigen::RowVector3d F = sign * shapes.values(s * l, order) * time;
+    const Eigen::RowVector3d F_s = sign * l * shapes.values(s * l, order + 1) * time;
+    const Eigen::RowVector3d F_ss = sign * l * l * shapes.values(s * l, order + 2) * time;
+    Jet jet{F(0), {F_s(0), F(1)}, {}};
+    jet.hessian << F_ss(0), F_s(1), F_s(1), F(2);
+    return jet;
+  }
+};
+
+// Newton uphill from a grid point; the Hessian is shifted until it is negative definite and the step rises.
+RodPeak climbed(const Surface& surface, double s, double tau) {
+  Surface::Jet here = surface.at(s, tau);
+  double shift = 0;
+  for (int iteration = 0; iteration < 60; ++iteration) {
+    const double mean = here.hessian.trace() / 2;
+    const double spread = std::hypot((here.hessian(0, 0) - here.hessian(1, 1)) / 2, here.hessian(0, 1));
+    const double floor = std::max(0.0, mean + spread + 1e-9 * (std::abs(mean) + spread));
+    const Eigen::Matrix2d H = here.hessian - (floor + shift) * Eigen::Matrix2d::Identity();
+    const double determinant = H.determinant();
+    if (!(determinant > 0)) break;
+    const Eigen::Vector2d step = -H.inverse() * here.gradient;
+    if (!(step.norm() > 1e-12)) break;
+    const double s_next = std::clamp(s + step(0), 0.0, 1.0);
+    const Surface::Jet next = surface.at(s_next, tau + step(1));
+    if (next.F >= here.F) {
+      s = s_next;
+      tau += step(1);
+      here = next;
+      shift = shift > 1e-6 * spread ? shift / 10 : 0;
+    } else {
+      if (step.norm() < 1e-7) break;  // the value is flat to rounding
+      shift = std::max(10 * shift, 0.1 * (std::abs(mean) + spread));
+    }
+  }
+  tau = std::fmod(tau, 2 * pi);
+  return {here.F, s * surface.l, tau < 0 ? tau + 2 * pi : tau};
+}
+
+// Largest |F| over rod and turn: local maxima of a grid with at least 8 points per wave that come within a tenth of the
+// best (a wave's top lies at most 8 % above its samples), each climbed.
+RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int order) {
+  constexpr std::size_t most_candidates = 32;
+  const Eigen::Index I = (shapes.size() - 2) / 3;
+  const Eigen::Index num_x = std::max<Eigen::Index>(48, 8 * I), N = power_of_two_from(8 * (T.num_harmonics() + 1));
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x + 1, 0, l);
+  const Eigen::MatrixXd F = shape_matrix(shapes, x, order) * fourier::synthesise(T, N);
+  const Eigen::MatrixXd size = F.cwiseAbs();
+  const double top = size.maxCoeff();
+  if (!(top > 0)) return {};
+
+  struct Candidate {
+    double size;
+    Eigen::Index i, j;
+  };
+  std::vector<Candidate> candidates;
+  for (Eigen::Index j = 0; j < N; ++j) {
+    const Eigen::Index before = (j + N - 1) % N, after = (j + 1) % N;
+    for (Eigen::Index i = 1; i < num_x; ++i) {
+      const double here = size(i, j);
+      if (here >= 0.9 * top && here >= size(i - 1, j) && here >= size(i + 1, j) && here >= size(i, before) &&
+          here > size(i, after))
+        candidates.push_back({here, i, j});
+    }
+  }
+  if (candidates.empty()) {  // constant in time
+    Eigen::Index i, j;
+    size.maxCoeff(&i, &j);
+    candidates.push_back({top, i, j});
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.size > b.size; });
+  candidates.resize(std::min(candidates.size(), most_candidates));
+
+  RodPeak best;
+  for (const Candidate& c : candidates) {
+    const Surface surface{shapes, T, l, order, F(c.i, c.j) > 0 ? 1.0 : -1.0};
+    const RodPeak candidate = climbed(surface, x(c.i) / l, 2 * pi * static_cast<double>(c.j) / static_cast<double>(N));
+    if (candidate.max_abs > best.max_abs) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
+RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
+  const RodShapes shapes(link.length, q.num_components());
+  const FourierSeries T = time_functions(link, rod, speed, q);
+  RodShape result{peak(shapes, T, link.length, 0), peak(shapes, T, link.length, 2)};
+  result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
+  return result;
+}
+
+// With F_n = 1/(1 + in Omega alpha_c), (f q)^(tau) = sum_n F_n e^{in tau} sum_m f_{n-m} q_m: the mean over the turn of
+// q with f W, W_n = conj(F_n e^{in tau}).
+RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, double speed, Eigen::Index num_modes,
+                             Eigen::Index num_harmonics, RodQuantity quantity, double x, double crank_angle) {
+  const Eigen::Index I = num_modes;
+  const bool moment = quantity == RodQuantity::bending_moment;
+  const Eigen::RowVectorXd s = (moment ? link.elastic->youngs_modulus * link.elastic->second_moment : 1.0) *
+                               RodShapes(link.length, I).values(x, moment ? 2 : 0);
+  const FourierSeries f = coefficients_at(rod, speed);
+  const Eigen::Index H = num_harmonics + f.num_harmonics(), N = power_of_two_from(2 * H + 2);
+  FourierSeries W(1, H), delta(1, num_harmonics);
+  for (Eigen::Index n = 0; n <= H; ++n) {
+    const Complex wave = std::polar(1.0, -static_cast<double>(n) * crank_angle);
+    if (n <= num_harmonics) delta.c(0, n) = wave;
+    W.c(0, n) = wave / Complex(1, -static_cast<double>(n) * speed * link.elastic->internal_damping);
+  }
+  RodFunctional result;
+  for (Eigen::Index n = 0; n <= f.num_harmonics(); ++n)
+    result.offset += (n > 0 ? 2 : 1) * (std::conj(W.c(0, n)) * (s(I) * f.c(0, n) + s(I + 1) * f.c(1, n))).real();
+  const Eigen::MatrixXd samples = fourier::synthesise(f, N);
+  const Eigen::RowVectorXd w = fourier::synthesise(W, N).row(0);
+  Eigen::MatrixXd products(2, N);
+  products.row(0) = samples.row(3).cwiseProduct(w);
+  products.row(1) = samples.row(2).cwiseProduct(w);
+  const Eigen::MatrixXcd fW = fourier::resized(fourier::analyse(products), num_harmonics).c;
+  result.g = FourierSeries(I, num_harmonics);
+  for (Eigen::Index k = 0; k < I; ++k)
+    result.g.c.row(k) = s(k) * delta.c.row(0) + s(I + 2 + k) * fW.row(0) + s(2 * I + 2 + k) * fW.row(1);
+  return result;
+}
+
+RodField rod_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                   const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index num_samples) {
+  const RodShapes shapes(link.length, q.num_components());
+  FourierSeries T = time_functions(link, rod, speed, q);
+  // Any number of samples: harmonics are folded onto the grid by sampling a multiple of it.
+  Eigen::Index multiple = 1;
+  while (multiple * num_samples < 2 * T.num_harmonics() + 1) ++multiple;
+  const Eigen::MatrixXd fine = fourier::synthesise(T, multiple * num_samples);
+  Eigen::MatrixXd time(T.num_components(), num_samples);
+  for (Eigen::Index j = 0; j < num_samples; ++j) time.col(j) = fine.col(multiple * j);
+  const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
+  return {shape_matrix(shapes, x, 0) * time, EJ * shape_matrix(shapes, x, 2) * time};
+}
+
+}  // namespace hb

@@ -1,0 +1,26 @@
+#include "lib/rod/section.hpp"
+
+#include <numbers>
+
+namespace hb {
+
+using std::numbers::pi;
+
+SectionValues rectangular_section(double width, double height) {
+  return {width * height, width * height * height * height / 12};
+}
+
+SectionValues round_section(double diameter) {
+  const double d2 = diameter * diameter;
+  return {pi * d2 / 4, pi * d2 * d2 / 64};
+}
+
+SectionValues tubular_section(double diameter, double wall) {
+  // With D = diameter, d = D - 2 wall:  F = pi (D^2 - d^2)/4,  J = pi (D^4 - d^4)/64 = F (D^2 + d^2)/16, and
+  // D^2 - d^2 = 4 wall (D - wall) does not cancel.
+  const double inner = diameter - 2 * wall;
+  const double area = pi * wall * (diameter - wall);
+  return {area, area * (diameter * diameter + inner * inner) / 16};
+}
+
+}  // namespace hb

@@ -1,0 +1,94 @@
+// The estimated error of cutting the Ritz series covers the true one, seen against 60 modes.
+#include <gtest/gtest.h>
+
+#include "hb/analysis/linkage_analysis.hpp"
+
+namespace {
+
+using hb::tools::RodResult;
+
+hb::tools::SpeedResult solve(const char* scene, int num_modes, double speed) {
+  hb::tools::Settings settings;
+  settings.modes = num_modes;
+  settings.tolerance = 1e-12;
+  settings.only = {.steady = true, .stability = false, .reactions = false, .shape = false};
+  const auto model =
+      hb::tools::make_model(hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene), settings);
+  return hb::tools::analyse(model, speed, settings);
+}
+
+// max |w - w_60| / max |w_60| over rod and turn.
+double true_error(const char* scene, std::size_t rod, double speed, const RodResult& cut, const RodResult& full) {
+  const hb::Scene read = hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene);
+  const auto& linkage = std::get<hb::Linkage>(read.model);
+  const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
+  const hb::Body& link = *hb::body_at(linkage, cut.link);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(241, 0, link.length);
+  const auto field = [&](const RodResult& result) {
+    return hb::rod_field(link, coefficients.rods[rod], speed, result.steady->q, x, 128).w;
+  };
+  const Eigen::MatrixXd w = field(full);
+  return (field(cut) - w).cwiseAbs().maxCoeff() / w.cwiseAbs().maxCoeff();
+}
+
+struct Case {
+  const char* scene;
+  double speed;  // rad per unit time
+};
+
+class ModesError : public testing::TestWithParam<Case> {};
+
+TEST_P(ModesError, CoversTheTrueErrorOfTheCut) {
+  const auto [scene, speed] = GetParam();
+  const auto full = solve(scene, 60, speed);
+  for (const int num_modes : {1, 2, 3, 5, 8, 12}) {
+    const auto cut = solve(scene, num_modes, speed);
+    for (std::size_t rod = 0; rod < cut.rods.size(); ++rod) {
+      const double error = true_error(scene, rod, speed, cut.rods[rod], full.rods[rod]);
+      // What is left of the solver's own error and of rounding.
+      const double floor = 1e-11;
+      ASSERT_TRUE(cut.rods[rod].modes_error.has_value());
+      EXPECT_LE(error, *cut.rods[rod].modes_error + floor) << cut.rods[rod].name << ", " << num_modes << " modes";
+      EXPECT_LE(*cut.rods[rod].modes_error, 20 * error + floor) << cut.rods[rod].name << ", " << num_modes << " modes";
+    }
+  }
+}
+
+// modes = "auto": with the modes that it takes, deflection and growth rate are those of 60 within what was asked.
+TEST_P(ModesError, AutomaticModesAreEnoughForDeflectionAndGrowth) {
+  const auto [scene, speed] = GetParam();
+  const hb::Scene read = hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene);
+  const auto full = solve(scene, 60, speed);
+  const auto& linkage = std::get<hb::Linkage>(read.model);
+  const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
+  for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
+    hb::tools::Settings settings;
+    settings.modes = hb::AutoModes{};
+    settings.tolerance = tolerance;
+    settings.only = {.steady = true, .stability = true, .reactions = false, .shape = false};
+    const auto result = hb::tools::analyse(hb::tools::make_model(read, settings), speed, settings);
+    for (std::size_t r = 0; r < result.rods.size(); ++r) {
+      const RodResult& rod = result.rods[r];
+      const hb::Stability exact = hb::analyse_stability(
+          hb::ritz_system(*hb::body_at(linkage, rod.link), coefficients.rods[r], 60), speed, {.leading_only = true});
+      ASSERT_TRUE(rod.growth_modes_error.has_value());
+      // Rotary inertia damps every higher mode of the rocker less: its growth rate has no limit below 60 modes, and
+      // the estimate says so.
+      const bool settles = rod.name != "rocker" || tolerance > 1e-3;
+      EXPECT_EQ(*rod.growth_modes_error <= tolerance, settles) << rod.name << ", " << rod.num_modes << " modes";
+      const double scale = std::max(std::abs(exact.growth_rate), speed);
+      EXPECT_LE(std::abs(rod.stability->growth_rate - exact.growth_rate),
+                *rod.growth_modes_error * scale + rod.stability->growth_error + exact.growth_error)
+          << rod.name << ", " << rod.num_modes << " modes for " << tolerance;
+      EXPECT_LE(true_error(scene, r, speed, rod, full.rods[r]), tolerance)
+          << rod.name << ", " << rod.num_modes << " modes";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ModesError,
+                         testing::Values(Case{"six_link.toml", 31.4}, Case{"six_link.toml", 157.0},
+                                         Case{"six_link.toml", 314.0}, Case{"six_link_4500.toml", 31.4},
+                                         Case{"slider_crank.toml", 100.0}, Case{"four_bar.toml", 50.0}));
+
+}  // namespace

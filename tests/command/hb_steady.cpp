@@ -1,0 +1,325 @@
+// `hb steady` as its users meet it: the built command, its documents, table and exit codes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Steady : public CommandTest {
+ protected:
+  Json document(const std::string& arguments, int expected_status = 0) const {
+    const CommandResult result = hb(arguments + " --json");
+    EXPECT_EQ(result.status, expected_status) << result.err;
+    return Json::parse(result.out);
+  }
+};
+
+// Largest |sum c_n e^{i n tau}| on the 8192 crank angles of the reference, by direct summation.
+double largest(const Json& coefficients) {
+  constexpr int samples = 8192;
+  double result = 0;
+  for (int j = 0; j < samples; ++j) {
+    const double tau = 2 * std::numbers::pi * j / samples;
+    double value = coefficients[0][0];
+    for (std::size_t n = 1; n < coefficients.size(); ++n) {
+      const std::complex<double> c(coefficients[n][0], coefficients[n][1]);
+      value += 2 * (c * std::polar(1.0, static_cast<double>(n) * tau)).real();
+    }
+    result = std::max(result, std::abs(value));
+  }
+  return result;
+}
+
+double reference_tolerance(double value) { return 1e-9 * std::abs(value); }
+
+TEST_F(Steady, VerdictAloneIsProvedWithoutExponentsAndItsIntervalHoldsTheGrowthRate) {
+  const std::string six_link = "steady " + scene("six_link") + " --rpm 300 --rods AB --only ";
+  const Json verdict = document(six_link + "verdict")["rods"]["AB"],
+             full = document(six_link + "stability")["rods"]["AB"];
+  EXPECT_EQ(verdict["verdict"], "stable");
+  EXPECT_EQ(verdict["stability_method"], "bound");
+  EXPECT_TRUE(verdict["exponents"].empty());
+  const double off = verdict["growth_rate"].get<double>() - full["growth_rate"].get<double>();
+  EXPECT_LE(std::abs(off), verdict["exponent_error"].get<double>());
+  // At 2400 rpm nothing is proved: exponents decide.
+  EXPECT_EQ(document("steady " + scene("six_link") + " --rpm 2400 --rods AB --only verdict")["rods"]["AB"]["verdict"],
+            "unstable");
+  EXPECT_EQ(hb("sweep " + scene("six_link") + " --rpm 300:400:50 --only verdict").status, 2);
+}
+
+TEST_F(Steady, EveryStabilityMethodGivesTheSameAnswer) {
+  const std::string mathieu = "steady " + scene("mathieu") + " --only stability --tol 1e-8 --stability-method ";
+  const Json automatic = document(mathieu + "automatic")["rods"]["system"];
+  for (const std::string method : {"hill", "slaving", "propagation", "determinant"}) {
+    const Json found = document(mathieu + method)["rods"]["system"];
+    EXPECT_EQ(found["verdict"], automatic["verdict"]) << method;
+    EXPECT_EQ(found["stability_method"], method);
+    EXPECT_NEAR(found["growth_rate"], automatic["growth_rate"], 1e-8) << method;
+  }
+}
+
+TEST_F(Steady, GivesTheReferenceValuesOfTheSixLinkMechanism) {
+  const Json reference = Json::parse(read(HB_SOURCE_DIR "/tests/reference/six_link.json"));
+  for (const Json& expected : reference["cases"]) {
+    const std::string arguments = "steady " + scene("six_link") + " --rpm " + expected["rpm"].dump() + " --modes " +
+                                  expected["modes"].dump() + " --set '*.J=" + expected["J"].dump() + "'";
+    SCOPED_TRACE(arguments);
+    const Json found = document(arguments);
+    for (const auto& [name, rod] : expected["rods"].items()) {
+      const Json& mine = found["rods"][name];
+      EXPECT_EQ(mine["modes"], expected["modes"]);
+      for (std::size_t i = 0; i < rod["max_abs_q"].size(); ++i) {
+        const double value = rod["max_abs_q"][i];
+        EXPECT_NEAR(largest(mine["q"]["fourier"][i]), value, reference_tolerance(value)) << name << " q" << i + 1;
+        // The true peak lies between the reference's angles: above its value by (n pi/8192)^2/2 at most, n a harmonic.
+        EXPECT_GE(mine["q"]["max_abs"][i], value * (1 - 1e-9)) << name << " q" << i + 1;
+        EXPECT_LE(mine["q"]["max_abs"][i], value * (1 + 5e-6)) << name << " q" << i + 1;
+      }
+      const double growth = rod["exponents"][0][0];
+      EXPECT_NEAR(mine["growth_rate"], growth, std::max(1e-8 * std::abs(growth), 10 * double(mine["exponent_error"])));
+      EXPECT_EQ(mine["verdict"], growth < 0 ? "stable" : "unstable");
+    }
+  }
+}
+
+TEST_F(Steady, JsonHasTheKeysOfTheContract) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 300");
+  EXPECT_EQ(found["rpm"], 300.0);
+  EXPECT_NEAR(found["omega"], 10 * std::numbers::pi, 1e-13);
+  ASSERT_EQ(found["rods"].size(), 2u);
+  for (const Json& rod : found["rods"]) {
+    EXPECT_EQ(rod["modes"], 5);
+    EXPECT_EQ(rod["q"]["max_abs"].size(), 5u);
+    ASSERT_EQ(rod["q"]["fourier"].size(), 5u);
+    for (const Json& mode : rod["q"]["fourier"]) EXPECT_EQ(mode.size(), rod["harmonics"].get<std::size_t>() + 1);
+    EXPECT_LE(rod["error_bound"], 1e-10);
+    EXPECT_GT(rod["modes_error"], 0.0);
+    for (const char* peak : {"deflection", "bending_moment"}) {
+      for (const char* key : {"max_abs", "x", "crank_angle"}) EXPECT_TRUE(rod[peak][key].is_number()) << peak << key;
+    }
+    EXPECT_EQ(rod["exponents"][0].size(), 2u);
+    EXPECT_EQ(rod["exponents"].size(), rod["exponent_errors"].size());
+    EXPECT_TRUE(rod["growth_rate"].is_number());
+    EXPECT_TRUE(rod["exponent_error"].is_number());
+    EXPECT_EQ(rod["verdict"], "stable");
+  }
+  for (const char* joint : {"AB.0", "AB.1", "CD.0", "CD.1", "crank.pivot", "O2BC.pivot", "O3D.pivot"}) {
+    for (const char* component : {"x", "y", "x_rigid", "y_rigid"}) {
+      const Json& range = found["joints"][joint][component];
+      EXPECT_LE(range["min"], range["max"]) << joint << component;
+    }
+  }
+  EXPECT_LE(found["torque"]["min"], found["torque"]["max"]);
+  EXPECT_LE(found["torque"]["rigid"]["min"], found["torque"]["rigid"]["max"]);
+  for (const char* error : {"joints_error", "torque_error", "joints_modes_error", "torque_modes_error"}) {
+    EXPECT_GT(found[error], 0.0) << error;
+    EXPECT_LT(found[error], 1e-6) << error;
+  }
+  EXPECT_FALSE(found.contains("stats"));
+}
+
+TEST_F(Steady, SlidersReportTheNormalForceOfTheirGuide) {
+  const Json found = document("steady " + scene("slider_crank") + " --rpm 600");
+  int guides = 0;
+  for (const auto& [name, joint] : found["joints"].items()) {
+    if (!name.ends_with(".guide")) continue;
+    ++guides;
+    EXPECT_LE(joint["n"]["min"], joint["n"]["max"]);
+    EXPECT_LE(joint["n_rigid"]["min"], joint["n_rigid"]["max"]);
+    EXPECT_FALSE(joint.contains("x"));
+  }
+  EXPECT_EQ(guides, 1);
+}
+
+TEST_F(Steady, AHillSceneHasOneRodNamedSystemAndNoJoints) {
+  const Json found = document("steady " + scene("mathieu") + " --omega 1");
+  ASSERT_EQ(found["rods"].size(), 1u);
+  const Json& system = found["rods"]["system"];
+  EXPECT_TRUE(found["joints"].empty());
+  EXPECT_FALSE(found.contains("torque"));
+  EXPECT_FALSE(system.contains("deflection"));
+  // x(0) and x'(0) of x'' + 0.1 x' + (1.2 + 0.4 cos t) x = cos t.
+  double x = 0, v = 0;
+  const Json& c = system["q"]["fourier"][0];
+  for (std::size_t n = 0; n < c.size(); ++n) {
+    x += (n == 0 ? 1 : 2) * c[n][0].get<double>();
+    v += -2.0 * static_cast<double>(n) * c[n][1].get<double>();
+  }
+  EXPECT_NEAR(x, 4.65595993, 5e-9);
+  EXPECT_NEAR(v, 2.71750522, 5e-9);
+  // Multipliers 0.63284681 +/- 0.36468206 i.
+  const std::complex<double> exponent(system["exponents"][0][0], system["exponents"][0][1]);
+  const std::complex<double> multiplier = std::exp(2 * std::numbers::pi * exponent);
+  EXPECT_NEAR(multiplier.real(), 0.63284681, 6e-9);
+  EXPECT_NEAR(std::abs(multiplier.imag()), 0.36468206, 6e-9);
+}
+
+TEST_F(Steady, OnlyComputesWhatIsAskedFor) {
+  const std::string base = "steady " + scene("six_link") + " --rpm 1500 --only ";
+  const Json full = document("steady " + scene("six_link") + " --rpm 1500");
+  const Json stability = document(base + "stability");
+  EXPECT_FALSE(stability.contains("joints"));
+  EXPECT_FALSE(stability.contains("torque"));
+  EXPECT_FALSE(stability["rods"]["AB"].contains("q"));
+  EXPECT_FALSE(stability["rods"]["AB"].contains("deflection"));
+  EXPECT_EQ(stability["rods"]["AB"]["growth_rate"], full["rods"]["AB"]["growth_rate"]);
+
+  const Json steady = document(base + "steady,shape");
+  EXPECT_FALSE(steady["rods"]["AB"].contains("verdict"));
+  EXPECT_FALSE(steady.contains("joints"));
+  EXPECT_EQ(steady["rods"]["AB"]["q"], full["rods"]["AB"]["q"]);
+  EXPECT_EQ(steady["rods"]["AB"]["deflection"], full["rods"]["AB"]["deflection"]);
+
+  const Json reactions = document(base + "reactions");
+  EXPECT_FALSE(reactions["rods"]["AB"].contains("q"));
+  EXPECT_EQ(reactions["joints"], full["joints"]);
+  EXPECT_EQ(reactions["torque"], full["torque"]);
+}
+
+TEST_F(Steady, RodsPicksRodsWithoutChangingAnyNumber) {
+  const Json full = document("steady " + scene("six_link") + " --rpm 1500");
+  const Json one = document("steady " + scene("six_link") + " --rpm 1500 --rods CD");
+  ASSERT_EQ(one["rods"].size(), 1u);
+  EXPECT_EQ(one["rods"]["CD"], full["rods"]["CD"]);
+  EXPECT_EQ(one["joints"], full["joints"]);
+  const CommandResult unknown = hb("steady " + scene("six_link") + " --rpm 1500 --rods EF");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("\"EF\""), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("AB, CD"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Steady, FlagsWinOverTheScene) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 600 --modes 3 --tol 1e-6 --set AB.J=60");
+  EXPECT_EQ(found["rpm"], 600.0);
+  EXPECT_EQ(found["rods"]["AB"]["modes"], 3);
+  EXPECT_EQ(found["tolerance"], 1e-6);
+  const Json plain = document("steady " + scene("six_link") + " --rpm 600 --modes 3 --tol 1e-6");
+  EXPECT_LT(found["rods"]["AB"]["q"]["max_abs"][0], plain["rods"]["AB"]["q"]["max_abs"][0]);
+  const double omega = plain["omega"];
+  const Json by_omega = document("steady " + scene("six_link") + " --modes 3 --tol 1e-6 --omega " + Json(omega).dump());
+  EXPECT_EQ(by_omega["rods"]["AB"]["growth_rate"], plain["rods"]["AB"]["growth_rate"]);
+}
+
+TEST_F(Steady, AProvedBoundIsSaidToBeProvedAndIsNearTheEstimate) {
+  const auto bound = [&](const std::string& flags) {
+    const Json json = document("steady " + scene("six_link") + " --rpm 300 --only steady " + flags);
+    return std::pair{json["rods"]["AB"]["error_bound_proved"].get<bool>(),
+                     json["rods"]["AB"]["error_bound"].get<double>()};
+  };
+  const auto [estimated_proved, estimated] = bound("");
+  const auto [proved_proved, proved] = bound("--bound proved");
+  EXPECT_FALSE(estimated_proved);
+  EXPECT_TRUE(proved_proved);
+  EXPECT_LE(proved, 10 * estimated);
+  EXPECT_NE(hb("steady " + scene("six_link") + " --rpm 300 --bound proved").out.find(", proved"), std::string::npos);
+}
+
+TEST_F(Steady, AutoModesReachTheToleranceOnTheDeflection) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 1500 --modes auto --tol 1e-6");
+  for (const Json& rod : found["rods"]) {
+    EXPECT_LE(rod["modes_error"], 1e-6);
+    EXPECT_EQ(rod["q"]["max_abs"].size(), rod["modes"].get<std::size_t>());
+  }
+}
+
+TEST_F(Steady, StatsSayWhatWasSkipped) {
+  const Json found = document("steady " + scene("six_link") + " --rpm 300 --only steady --stats");
+  bool skipped = false;
+  for (const Json& stage : found["stats"]) skipped = skipped || stage.contains("skipped");
+  EXPECT_TRUE(skipped);
+}
+
+TEST_F(Steady, TheTableSaysTheVerdictInWords) {
+  const CommandResult stable = hb("steady " + scene("six_link") + " --rpm 300");
+  EXPECT_EQ(stable.status, 0) << stable.err;
+  EXPECT_NE(stable.out.find("stable: every disturbance dies out"), std::string::npos) << stable.out;
+  EXPECT_EQ(stable.out.find(" nan"), std::string::npos);
+  const CommandResult unstable = hb("steady " + scene("six_link") + " --rpm 3000");
+  EXPECT_EQ(unstable.status, 0) << unstable.err;
+  EXPECT_NE(unstable.out.find("would not be seen in a machine"), std::string::npos) << unstable.out;
+  EXPECT_NE(unstable.out.find("period doubling"), std::string::npos) << unstable.out;
+}
+
+TEST_F(Steady, AResultThatMissesItsToleranceIsMarkedAndGiven) {
+  const CommandResult result = hb("steady " + scene("mathieu") +
+                                  " --omega 1 --set 'hill.damping.0.0=0' "
+                                  "--set 'hill.stiffness.1.cos.0.0=0' --set 'hill.stiffness.0.cos.0.0=1'");
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_NE(result.out.find("NOT REACHED"), std::string::npos) << result.out;
+  const Json found = document("steady " + scene("mathieu") +
+                                  " --omega 1 --set 'hill.damping.0.0=0' "
+                                  "--set 'hill.stiffness.1.cos.0.0=0' --set 'hill.stiffness.0.cos.0.0=1'",
+                              3);
+  EXPECT_EQ(found["status"], "tolerance not reached");
+  EXPECT_EQ(found["rods"]["system"]["status"], "singular");
+  EXPECT_TRUE(found["rods"]["system"]["error_bound"].is_null());
+}
+
+TEST_F(Steady, ALinkageTooNearADeadCentreIsSaidToBeUnresolvedAtOnce) {
+  // Coupler and rocker are 0.1 um short of standing in line at 180 deg.
+  std::ofstream(folder_ / "near.toml") << R"([crank]
+pivot = [0, 0]
+length = 50
+[[dyad]]
+on = "crank"
+coupler = { name = "AB", length = 150, mass = 0.1, elastic = { E = 21e7, area = 10, J = 45 } }
+rocker = { name = "R", pivot = [200, 0], length = 100.0001 }
+branch = -1
+)";
+  for (const char* options : {"", " --json", " --out out"}) {
+    const CommandResult result = hb(std::string("steady near.toml --rpm 300") + options);
+    EXPECT_EQ(result.status, 3) << result.err;
+    EXPECT_TRUE(result.out.empty());
+    for (const char* part : {"near.toml", "AB, R", "0.105 deg of a dead centre", "180 deg", "16384"})
+      EXPECT_NE(result.err.find(part), std::string::npos) << part << ": " << result.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+  EXPECT_EQ(hb("scene near.toml").status, 0);
+}
+
+TEST_F(Steady, ASingleSpeedIsNeeded) {
+  std::ofstream(folder_ / "range.toml") << read(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  const CommandResult range = hb("steady range.toml --set 'analysis.rpm=[200, 6000, 20]'");
+  EXPECT_EQ(range.status, 2);
+  EXPECT_NE(range.err.find("give one with --rpm"), std::string::npos) << range.err;
+  const CommandResult flag = hb("steady range.toml --rpm 200:6000:20");
+  EXPECT_EQ(flag.status, 2);
+  EXPECT_NE(flag.err.find("one speed"), std::string::npos) << flag.err;
+}
+
+TEST_F(Steady, ListsEveryExponentOrSaysHowManyAreMissing) {
+  for (const char* rpm : {"300", "6000"}) {
+    const Json found = document("steady " + scene("six_link") + " --only stability --modes 10 --tol 1e-4 --rpm " + rpm);
+    for (const char* name : {"AB", "CD"}) {
+      const Json& rod = found["rods"][name];
+      EXPECT_EQ(rod["exponents"].size() + rod["exponents_unresolved"].get<std::size_t>(), 20u) << rpm << name;
+      EXPECT_EQ(rod["exponents"].size(), rod["exponent_errors"].size());
+      EXPECT_LE(rod["exponents_uncertain"].size(), rod["exponents_unresolved"].get<std::size_t>()) << rpm << name;
+      for (const Json& exponent : rod["exponents_uncertain"])
+        EXPECT_GT(exponent["error"], 1e-6 * found["omega"].get<double>()) << rpm << name;
+    }
+  }
+}
+
+TEST_F(Steady, LooseToleranceLoosensTheExponents) {
+  const Json strict =
+      document("steady " + scene("six_link") + " --rpm 1500 --only stability --stability-method propagation");
+  const Json loose = document("steady " + scene("six_link") +
+                              " --rpm 1500 --only stability --tol 1e-4 "
+                              "--stability-method propagation");
+  for (const char* rod : {"AB", "CD"}) {
+    EXPECT_NEAR(loose["rods"][rod]["growth_rate"].get<double>(), strict["rods"][rod]["growth_rate"].get<double>(),
+                loose["rods"][rod]["exponent_error"].get<double>());
+    EXPECT_LE(loose["rods"][rod]["exponent_error"].get<double>(), 1e-3 * 157.08);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,222 @@
+// `hb sweep` as its users meet it: the built command, its documents, files and exit codes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "hb/engine/exponents/stability.hpp"
+#include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Sweep : public CommandTest {
+ protected:
+  Json document(const std::string& arguments) const {
+    const CommandResult result = hb("sweep " + arguments + " --json");
+    // 3: the error bound of a growth rate, inside tongues of strongly damped rods, may exceed what was asked.
+    EXPECT_TRUE(result.status == 0 || result.status == 3) << result.err;
+    return Json::parse(result.out, nullptr, false);
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+};
+
+TEST_F(Sweep, LocatesTheTongueOfTheMathieuScene) {
+  const Json found = document(scene("mathieu") + " --omega 1.5:2.6:0.003");
+  const Json& bands = found["unstable_bands"]["system"];
+  ASSERT_EQ(bands.size(), 1u) << bands;
+  EXPECT_NEAR(bands[0][0], 2.0325246720, 1e-10 * 2);
+  EXPECT_NEAR(bands[0][1], 2.3373680000, 1e-10 * 2.4);
+}
+
+TEST_F(Sweep, JsonHasTheKeysOfTheContractOverTheGridAskedFor) {
+  const Json found = document(scene("six_link") + " --rpm 300:1500:150");
+  const std::size_t points = 9;
+  ASSERT_EQ(found["rpm"].size(), points);
+  ASSERT_EQ(found["omega"].size(), points);
+  EXPECT_EQ(found["rpm"][0], 300.0);
+  EXPECT_EQ(found["rpm"][8], 1500.0);
+  EXPECT_NEAR(found["omega"][0], 10 * std::numbers::pi, 1e-13);
+  ASSERT_EQ(found["rods"].size(), 2u);
+  for (const Json& rod : found["rods"]) {
+    for (const char* key : {"max_abs", "growth_rate", "exponents", "verdict", "error_bound", "deflection"})
+      ASSERT_EQ(rod[key].size(), points) << key;
+    for (std::size_t k = 0; k < points; ++k) {
+      EXPECT_EQ(rod["max_abs"][k].size(), 5u);
+      EXPECT_EQ(rod["exponents"][k][0].size(), 2u);
+      EXPECT_EQ(rod["exponents"][k][0][0], rod["growth_rate"][k]);
+      EXPECT_LE(rod["error_bound"][k], 1e-10);
+      EXPECT_EQ(rod["verdict"][k], "stable");
+    }
+  }
+  EXPECT_TRUE(found["critical_rpm"].is_array());
+  EXPECT_TRUE(found["unstable_bands"]["AB"].empty());
+  EXPECT_EQ(found["joints"]["AB.1"]["x_rigid"]["max"].size(), points);
+  EXPECT_EQ(found["torque"]["rigid"]["min"].size(), points);
+}
+
+TEST_F(Sweep, EachPointIsWhatHbSteadySays) {
+  const Json found = document(scene("six_link") + " --rpm 300:3000:2700");
+  const CommandResult result = hb("steady " + scene("six_link") + " --rpm 3000 --json");
+  const Json steady = Json::parse(result.out);
+  for (const char* name : {"AB", "CD"}) {
+    const Json &rod = found["rods"][name], &other = steady["rods"][name];
+    EXPECT_EQ(rod["max_abs"][1], other["q"]["max_abs"]);
+    EXPECT_EQ(rod["growth_rate"][1], other["growth_rate"]);
+    EXPECT_EQ(rod["exponents"][1], other["exponents"]);
+    EXPECT_EQ(rod["deflection"][1], other["deflection"]["max_abs"]);
+    EXPECT_EQ(rod["bending_moment"][1], other["bending_moment"]["max_abs"]);
+  }
+  EXPECT_EQ(found["joints"]["AB.0"]["y"]["max"][1], steady["joints"]["AB.0"]["y"]["max"]);
+  EXPECT_EQ(found["torque"]["max"][1], steady["torque"]["max"]);
+}
+
+TEST_F(Sweep, GivesTheSameBitsWhateverTheNumberOfThreads) {
+  const std::string arguments = scene("six_link") + " --rpm 900:1800:100 --modes 2";
+  const Json one = document(arguments + " --threads 1"), two = document(arguments + " --threads 2");
+  EXPECT_EQ(one, two);
+}
+
+TEST_F(Sweep, BandsOfTheSixLinkMechanismAgreeWithBisection) {
+  const Json found = document(scene("six_link") + " --rpm 1600:3000:100 --only stability");
+  const hb::Scene six_link = hb::read_scene(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  const hb::Linkage& linkage = std::get<hb::Linkage>(six_link.model);
+  const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
+  int ends = 0;
+  for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
+    const hb::Body& link = *hb::body_at(linkage, coefficients.links[r]);
+    const hb::HillSystem system = hb::ritz_system(link, coefficients.rods[r], 5);
+    const auto unstable = [&](double rpm) {
+      return hb::analyse_stability(system, hb::speed_from_rpm(rpm, six_link.units)).growth_rate > 0;
+    };
+    for (const Json& band : found["unstable_bands"][link.name]) {
+      for (const double end : {band[0].get<double>(), band[1].get<double>()}) {
+        if (end == 1600 || end == 3000) continue;
+        double low = end * (1 - 1e-6), high = end * (1 + 1.3e-6);
+        const bool above = unstable(high);
+        ASSERT_NE(unstable(low), above) << link.name << " " << end;
+        for (int step = 0; step < 18; ++step) {
+          const double middle = 0.5 * (low + high);
+          (unstable(middle) == above ? high : low) = middle;
+        }
+        EXPECT_NEAR(end, 0.5 * (low + high), 1e-10 * end);
+        ++ends;
+      }
+    }
+  }
+  EXPECT_GE(ends, 6);
+}
+
+TEST_F(Sweep, CriticalSpeedOfADampedOscillatorIsTheClosedForm) {
+  write("oscillator.toml",
+        "[hill]\nmass = [[1.0]]\ndamping = [[0.02]]\nstiffness = [{ harmonic = 0, cos = [[1.0]] }]\n"
+        "load = [{ harmonic = 1, cos = [1.0] }, { harmonic = 2, sin = [1e-3] }]\n");
+  const Json found = document("oscillator.toml --omega 0.3:1.7:0.05");
+  // Order 2 at half the speed; both at W^2 = 1 - b^2/2 as far as the other harmonic is not in the way.
+  ASSERT_GE(found["critical"].size(), 1u);
+  const double expected = std::sqrt(1 - 0.02 * 0.02 / 2);
+  const Json& main = found["critical"].back();
+  EXPECT_EQ(main["order"], 1);
+  EXPECT_EQ(main["mode"], 1);
+  EXPECT_NEAR(main["omega"], expected, 2e-6);
+
+  write("single.toml",
+        "[hill]\nmass = [[1.0]]\ndamping = [[0.02]]\nstiffness = [{ harmonic = 0, cos = [[1.0]] }]\n"
+        "load = [{ harmonic = 3, cos = [1.0] }]\n");
+  const Json third = document("single.toml --omega 0.1:1.7:0.1");
+  ASSERT_EQ(third["critical_x"].size(), 1u);
+  EXPECT_NEAR(third["critical_x"][0], expected / 3, 1e-10);
+  EXPECT_NEAR(third["critical_rpm"][0], expected / 3 * 30 / std::numbers::pi, 1e-9);
+  EXPECT_EQ(third["critical"][0]["order"], 3);
+}
+
+TEST_F(Sweep, AnyNumberOfTheSceneMayBeSwept) {
+  const Json found = document(scene("six_link") + " --rpm 1500 --x AB.J=40:60:5 --only steady,stability");
+  ASSERT_EQ(found["x"]["values"].size(), 5u);
+  EXPECT_EQ(found["x"]["path"], "AB.J");
+  EXPECT_EQ(found["rpm"], Json::parse("[1500.0,1500.0,1500.0,1500.0,1500.0]"));
+  const Json at_45 = Json::parse(hb("steady " + scene("six_link") + " --rpm 1500 --json --only stability").out);
+  EXPECT_EQ(found["rods"]["AB"]["growth_rate"][1], at_45["rods"]["AB"]["growth_rate"]);
+}
+
+TEST_F(Sweep, MarksPointsWhereTheLinkageDoesNotClose) {
+  const Json found = document(scene("six_link") + " --rpm 300 --x crank.length=40:200:40 --only stability");
+  ASSERT_EQ(found["x"]["values"].size(), 5u);
+  ASSERT_FALSE(found["problems"].empty());
+  for (const Json& problem : found["problems"]) {
+    EXPECT_FALSE(problem["reason"].get<std::string>().empty());
+    EXPECT_TRUE(found["rods"]["AB"]["growth_rate"][problem["index"].get<std::size_t>()].is_null());
+  }
+  EXPECT_TRUE(found["rods"]["AB"]["growth_rate"][0].is_number());
+}
+
+TEST_F(Sweep, RefusesWrongRanges) {
+  const std::string six = scene("six_link");
+  for (const char* range :
+       {"300", "300:300:10", "600:300:10", "300:600:0", "300:600:-10", "300:600:1e-9", "300:600:nan", "300:inf:10",
+        "300:600", "300:600:10:10", "a:b:c", "300:600:500", "-600:600:10", "0:600:10"}) {
+    const CommandResult result = hb("sweep " + six + " --json --rpm=" + range);
+    EXPECT_EQ(result.status, 2) << range;
+    EXPECT_NE(result.err.find("--rpm"), std::string::npos) << range << ": " << result.err;
+    EXPECT_NE(result.err.find("allowed"), std::string::npos) << range << ": " << result.err;
+    EXPECT_TRUE(result.out.empty());
+  }
+  for (const char* x : {"AB.J", "AB.J=40", "AB.J=40:40:1", "=1:2:1", "AB.J=60:40:5", "AB.J=1:2:1e-9", "rpm=-5:10:1"}) {
+    const CommandResult result = hb("sweep " + six + " --json --x " + x);
+    EXPECT_EQ(result.status, 2) << x;
+    EXPECT_NE(result.err.find("--x"), std::string::npos) << x << ": " << result.err;
+  }
+}
+
+TEST_F(Sweep, RefusesUnknownPathsWithTheNearestAndImpossibleValues) {
+  const CommandResult unknown = hb("sweep " + scene("six_link") + " --rpm 300 --x AB.K=40:60:5");
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("AB.J"), std::string::npos) << unknown.err;
+  const CommandResult negative = hb("sweep " + scene("six_link") + " --rpm 300 --x AB.J=-60:60:5");
+  EXPECT_EQ(negative.status, 2);
+  EXPECT_NE(negative.err.find("AB.J"), std::string::npos) << negative.err;
+  const CommandResult twice = hb("sweep " + scene("six_link") + " --rpm 300 --x AB.J=40:60:5 --set AB.J=50");
+  EXPECT_EQ(twice.status, 2);
+  const CommandResult two_speeds = hb("sweep " + scene("six_link") + " --rpm 300 --x rpm=300:600:50");
+  EXPECT_EQ(two_speeds.status, 2);
+}
+
+TEST_F(Sweep, WritesTablesAndPictures) {
+  const CommandResult result = hb("sweep " + scene("slider_crank") + " --rpm 2000:6000:500 --modes 2 --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* name :
+       {"sweep.json", "sweep_rod.csv", "critical.csv", "unstable_bands.csv", "sweep_joint_forces.csv",
+        "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png", "growth_rod.png", "plots.gp"}) {
+    EXPECT_TRUE(fs::is_regular_file(folder_ / "out" / name)) << name;
+  }
+  EXPECT_EQ(num_entries(folder_), 1u);
+}
+
+TEST_F(Sweep, GoesOnWhereItWasStoppedAndRefusesAChangedScene) {
+  const std::string arguments =
+      "sweep " + scene("six_link") + " --rpm 200:6000:2 --only stability --no-plots --out out ";
+  ASSERT_EQ(stopped_by("INT", arguments, "out.part"), 130);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  const CommandResult changed = hb(arguments + "--set AB.J=46 --resume");
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_NE(changed.err.find("--resume"), std::string::npos) << changed.err;
+  EXPECT_TRUE(fs::exists(folder_ / "out.part"));
+}
+
+TEST_F(Sweep, ResumedWorkEndsInTheSameDocument) {
+  const std::string arguments =
+      "sweep " + scene("six_link") + " --rpm 1000:1500:5 --only steady,stability --modes 2 --no-plots --out ";
+  const int status = hb(arguments + "whole").status;
+  ASSERT_EQ(stopped_by("KILL", arguments + "parts", "parts.part"), 137);
+  const CommandResult resumed = hb(arguments + "parts --resume");
+  ASSERT_EQ(resumed.status, status) << resumed.err;
+  EXPECT_EQ(read(folder_ / "whole/sweep.json"), read(folder_ / "parts/sweep.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "parts.part"));
+}
+
+}  // namespace

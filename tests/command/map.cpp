@@ -1,0 +1,225 @@
+// `hb map` as its users meet it: documents, files, exit codes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Map : public CommandTest {
+ protected:
+  Json document(const std::string& arguments, int expected_status = 0) const {
+    const CommandResult result = hb("map " + arguments + " --json");
+    EXPECT_EQ(result.status, expected_status) << result.err;
+    return Json::parse(result.out);
+  }
+  void refused(const std::string& arguments, const std::string& words) const {
+    const CommandResult result = hb("map " + arguments + " --out out --no-plots");
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_NE(result.err.find(words), std::string::npos) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(num_entries(folder_), 0u) << arguments;
+  }
+};
+
+const std::string swing = "hill.stiffness.1.cos.0.0";
+
+TEST_F(Map, JsonHasTheKeysOfTheContract) {
+  const Json found = document(scene("six_link") + " --x rpm=300:1900:7 --y '*.J=30:60:4' --modes 1");
+  EXPECT_EQ(found["x"]["path"], "rpm");
+  EXPECT_EQ(found["x"]["values"].size(), 7u);
+  EXPECT_EQ(found["y"]["path"], "*.J");
+  EXPECT_EQ(found["y"]["values"][3], 60.0);
+  ASSERT_EQ(found["growth_rate"].size(), 4u);
+  ASSERT_EQ(found["verdict"].size(), 4u);
+  for (std::size_t j = 0; j < 4; ++j) {
+    ASSERT_EQ(found["growth_rate"][j].size(), 7u);
+    for (std::size_t i = 0; i < 7; ++i) {
+      const double growth = found["growth_rate"][j][i];
+      EXPECT_EQ(found["verdict"][j][i], growth < 0 ? "stable" : "unstable");
+      // The worst of the rods.
+      double worst = -HUGE_VAL;
+      for (const Json& rod : found["rods"]) worst = std::max(worst, rod["growth_rate"][j][i].get<double>());
+      EXPECT_EQ(growth, worst);
+    }
+  }
+  ASSERT_FALSE(found["boundaries"].empty());
+  for (const Json& curve : found["boundaries"]) {
+    EXPECT_TRUE(curve["kind"] == "+1" || curve["kind"] == "-1" || curve["kind"] == "complex");
+    ASSERT_FALSE(curve["points"].empty());
+    for (const Json& point : curve["points"]) EXPECT_EQ(point.size(), 2u);
+  }
+}
+
+TEST_F(Map, GrowthRatesAreThoseOfTheSteadyCommand) {
+  const Json map = document(scene("six_link") + " --x rpm=300:1900:3 --y AB.J=30:60:3 --rods AB --modes 1");
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const CommandResult steady =
+          hb("steady " + scene("six_link") + " --rods AB --modes 1 --json --only stability --rpm " +
+             map["x"]["values"][i].dump() + " --set AB.J=" + map["y"]["values"][j].dump());
+      const Json rod = Json::parse(steady.out)["rods"]["AB"];
+      const double expected = rod["growth_rate"];
+      EXPECT_NEAR(map["growth_rate"][j][i], expected,
+                  1e-8 * std::abs(expected) + 2 * rod["exponent_error"].get<double>());
+      EXPECT_EQ(map["verdict"][j][i], rod["verdict"]);
+    }
+  }
+}
+
+TEST_F(Map, GrowthOfTheSteadyCommandChangesSignAcrossBoundaryPointsOfALength) {
+  // A length changes the geometry: its systems are interpolated along y.
+  const Json map = document(scene("six_link") + " --x rpm=1500:2500:5 --y crank.length=50:60:3 --rods AB --modes 1");
+  ASSERT_FALSE(map["boundaries"].empty());
+  int compared = 0;
+  const std::string rod = map["boundaries"][0]["rod"];
+  const Json& points = map["boundaries"][0]["points"];
+  for (std::size_t k = 0; k < points.size() && compared < 3; k += points.size() / 3 + 1, ++compared) {
+    double growth[2];
+    for (const int side : {0, 1}) {
+      const double rpm = points[k][0].get<double>() * (1 + (side ? 1e-8 : -1e-8));
+      const CommandResult steady =
+          hb("steady " + scene("six_link") + " --rods AB --modes 1 --json --only stability --rpm " + Json(rpm).dump() +
+             " --set crank.length=" + points[k][1].dump());
+      growth[side] = Json::parse(steady.out)["rods"][rod]["growth_rate"];
+    }
+    EXPECT_LT(growth[0] * growth[1], 0) << points[k].dump();
+  }
+  EXPECT_GT(compared, 0);
+}
+
+TEST_F(Map, SameBitsWhateverTheNumberOfThreads) {
+  const std::string arguments = "map " + scene("two_oscillators") + " --x omega=2.5:3.5:8 --y " +
+                                "hill.damping.0.0=0.05:0.1:4" + " --json --threads ";
+  const CommandResult one = hb(arguments + "1"), two = hb(arguments + "2");
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_EQ(one.out, two.out);
+}
+
+TEST_F(Map, GoesOnWhereItWasStoppedAndRefusesAChangedScene) {
+  const std::string arguments =
+      "map " + scene("two_oscillators") + " --x omega=2.5:3.5:30 --y hill.damping.0.0=0.05:0.1:20 --no-plots --out ";
+  const int status = hb(arguments + "whole").status;
+  ASSERT_EQ(stopped_by("INT", arguments + "parts", "parts.part"), 130);
+  EXPECT_FALSE(fs::exists(folder_ / "parts"));
+  const CommandResult changed = hb(arguments + "parts --set hill.damping.1.1=0.2 --resume");
+  EXPECT_EQ(changed.status, 2);
+  EXPECT_NE(changed.err.find("--resume"), std::string::npos) << changed.err;
+  const CommandResult resumed = hb(arguments + "parts --resume");
+  ASSERT_EQ(resumed.status, status) << resumed.err;
+  EXPECT_EQ(read(folder_ / "whole/map.json"), read(folder_ / "parts/map.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "parts.part"));
+}
+
+TEST_F(Map, AreaWhereTheLinkageDoesNotCloseIsMarkedAndCounted) {
+  // A crank longer than the rod does not turn through.
+  const Json found = document(scene("slider_crank") + " --x rpm=300:600:3 --y 'crank.length=20:200:8' --modes 1");
+  std::size_t missing = 0, present = 0;
+  for (std::size_t j = 0; j < 8; ++j) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(found["growth_rate"][j][i].is_null(), found["verdict"][j][i].is_null());
+      ++(found["verdict"][j][i].is_null() ? missing : present);
+    }
+  }
+  EXPECT_GT(missing, 0u);
+  EXPECT_GT(present, 0u);
+  EXPECT_EQ(found["counts"]["missing"], missing);
+  ASSERT_FALSE(found["missing"].empty());
+  std::size_t counted = 0;
+  for (const Json& reason : found["missing"]) {
+    counted += reason["count"].get<std::size_t>();
+    EXPECT_FALSE(reason["reason"].get<std::string>().empty());
+  }
+  EXPECT_EQ(counted, missing);
+}
+
+TEST_F(Map, DampingRangeGivesBoundariesAtBothEnds) {
+  const Json found =
+      document(scene("mathieu") + " --x omega=1.5:3:16 --y " + swing + "=0.1:0.6:6 --damping-range 0.5:2");
+  ASSERT_EQ(found["damping_range"].size(), 2u);
+  EXPECT_EQ(found["damping_range"][0]["factor"], 0.5);
+  const auto tip = [](const Json& curves) {
+    double lowest = HUGE_VAL;
+    for (const Json& curve : curves) {
+      for (const Json& p : curve["points"]) lowest = std::min(lowest, p[1].get<double>());
+    }
+    return lowest;
+  };
+  // Least swing that is unstable: 2 c sqrt(1.2) for damping c, to first order.
+  EXPECT_NEAR(tip(found["boundaries"]), 0.2 * std::sqrt(1.2), 0.01);
+  EXPECT_NEAR(tip(found["damping_range"][0]["boundaries"]), 0.1 * std::sqrt(1.2), 0.01);
+  EXPECT_NEAR(tip(found["damping_range"][1]["boundaries"]), 0.4 * std::sqrt(1.2), 0.03);
+}
+
+TEST_F(Map, WritesGridCurvesAndPictures) {
+  const CommandResult result =
+      hb("map " + scene("mathieu") + " --x omega=1.5:3:16 --y " + swing + "=0.1:0.6:6 --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* name :
+       {"map.json", "map_grid.csv", "map_boundaries.csv", "map_resonance.csv", "map.svg", "map.png"}) {
+    EXPECT_GT(fs::file_size(folder_ / "out" / name), 100u) << name;
+  }
+  std::istringstream grid(read(folder_ / "out" / "map_grid.csv"));
+  std::string line;
+  std::size_t rows = 0;
+  while (std::getline(grid, line)) rows += !line.empty() && line[0] != '#' && line[0] != 'o';
+  EXPECT_EQ(rows, 96u);
+}
+
+TEST_F(Map, AFullDiskIsAnErrorThatLeavesNoPartOfAResultAndLosesNoWork) {
+  const std::string arguments =
+      "map " + scene("mathieu") + " --x omega=1:3:61 --y " + swing + "=0:0.4:41 --out out --no-plots";
+  // A limit on the size of files acts on a write like a full disk; kilobytes.
+  for (const char* limit : {"ulimit -f 1;", "ulimit -f 40;"}) {
+    const CommandResult result = hb(arguments, limit);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
+    for (const char* file : {"map_grid.csv", "map_boundaries.csv"}) EXPECT_FALSE(fs::exists(folder_ / "out" / file));
+  }
+  EXPECT_EQ(hb(arguments).status, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "map_grid.csv"));
+}
+
+TEST_F(Map, AFolderThatCannotBeIsRefusedBeforeTheWork) {
+  std::ofstream(folder_ / "file") << "not a folder";
+  const CommandResult result =
+      hb("map " + scene("mathieu") + " --x omega=1:3:3 --y " + swing + "=0:0.4:3 --out file/out --no-plots");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("file/out"), std::string::npos) << result.err;
+  EXPECT_EQ(num_entries(folder_), 1u);
+}
+
+TEST_F(Map, RefusesWrongRangesAndParameters) {
+  const std::string good = " --x omega=1.5:3:16 --y " + swing + "=0.1:0.6:6";
+  refused(scene("mathieu"), "--x");
+  refused(scene("mathieu") + " --x omega=1.5:3:16", "--y");
+  refused(scene("mathieu") + " --x omega= --y " + swing + "=0:1:3", "--x");
+  refused(scene("mathieu") + " --x omega=3:1:16 --y " + swing + "=0:1:3", "backwards");
+  refused(scene("mathieu") + " --x omega=3:3:16 --y " + swing + "=0:1:3", "single point");
+  refused(scene("mathieu") + " --x omega=1:3:1 --y " + swing + "=0:1:3", "2 or more");
+  refused(scene("mathieu") + " --x omega=1:3:0 --y " + swing + "=0:1:3", "2 or more");
+  refused(scene("mathieu") + " --x omega=1:nan:5 --y " + swing + "=0:1:3", "finite");
+  refused(scene("mathieu") + " --x omega=1:inf:5 --y " + swing + "=0:1:3", "finite");
+  refused(scene("mathieu") + " --x omega=1:3:2000000 --y " + swing + "=0:1:3", "at most");
+  refused(scene("mathieu") + " --x omega=1:3:5000 --y " + swing + "=0:1:5000", "at most");
+  refused(scene("mathieu") + " --x omega=-1:3:5 --y " + swing + "=0:1:3", "positive");
+  refused(scene("mathieu") + " --x omega=1:3:5 --y omega=1:2:5", "two different");
+  refused(scene("mathieu") + " --x omega=1:3:5 --y rpm=1:2:5", "two different");
+  refused(scene("mathieu") + good + " --omega 2", "one of the two");
+  refused(scene("mathieu") + good + " --set " + swing + "=1", "one of the two");
+  refused(scene("mathieu") + good + " --damping-range 2:1", "LOW < HIGH");
+  refused(scene("mathieu") + good + " --damping-range x", "LOW:HIGH");
+  refused(scene("mathieu") + good + " --colour blue", "growth, turn, tenfold");
+  refused(scene("six_link") + " --x rpm=300:600:5 --y AB.K=1:2:3", "AB.");
+  refused(scene("six_link") + " --x rpm=300:600:5 --y AB.J=-5:10:3", "AB.J");
+  refused(scene("six_link") + " --x '*.J=30:60:5' --y AB.J=30:60:3", "two different");
+  refused(scene("six_link") + " --x rpm=300:600:5 --y AB.J=30:60:3 --rods XY", "XY");
+}
+
+}  // namespace

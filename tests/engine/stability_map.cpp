@@ -1,0 +1,378 @@
+// Stability maps: Strutt's chart against Mathieu's characteristic values, boundaries against the sign of the growth
+// rate by another method, the quadtree against the full grid, curves put together from crossings.
+#include "hb/engine/boundaries/stability_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace {
+
+using namespace hb;
+
+constexpr double eps = 2.220446049250313e-16;
+
+FourierSeries harmonics(std::initializer_list<Eigen::MatrixXd> cosines) {
+  const Eigen::Index n = cosines.begin()->size();
+  FourierSeries series(n, static_cast<Eigen::Index>(cosines.size()) - 1);
+  Eigen::Index k = 0;
+  for (const Eigen::MatrixXd& c : cosines) {
+    series.c.col(k) = c.reshaped() * (k == 0 ? 1.0 : 0.5);
+    ++k;
+  }
+  return series;
+}
+
+// x'' + damping x' + (mean + swing cos Omega t) x = 0.
+HillSystem mathieu(double damping, double mean, double swing) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(1, 1);
+  system.damping = Eigen::MatrixXd::Constant(1, 1, damping);
+  system.stiffness[0] = harmonics({Eigen::MatrixXd::Constant(1, 1, mean), Eigen::MatrixXd::Constant(1, 1, swing)});
+  return system;
+}
+
+// Two oscillators of frequencies 1 and sqrt(3), coupled by the swing: combination resonances beside their own.
+HillSystem coupled(double damping, double swing) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(2, 2);
+  system.damping = damping * Eigen::MatrixXd::Identity(2, 2);
+  Eigen::MatrixXd mean(2, 2), moving(2, 2);
+  mean << 1, 0.05, 0.05, 3;
+  moving << 0.6, 0.9, 0.9, -0.4;
+  system.stiffness[0] = harmonics({mean, swing * moving});
+  return system;
+}
+
+std::vector<double> spaced(double from, double to, int n) {
+  std::vector<double> values;
+  for (int k = 0; k < n; ++k) values.push_back(from + (to - from) * k / (n - 1));
+  return values;
+}
+
+MapSystemAt speed_and_swing(double damping) {
+  return [damping](double Omega, double swing) { return scale_system(mathieu(damping, 1.2, swing), Omega); };
+}
+
+MapSystemAt coupled_map(double damping) {
+  return [damping](double Omega, double swing) { return scale_system(coupled(damping, swing), Omega); };
+}
+
+Stability stability_at(const MapSystemAt& at, double x, double y) { return analyse_stability(*at(x, y)); }
+
+struct Characteristic {
+  std::string name;
+  double q, a;
+};
+
+std::vector<Characteristic> characteristic_values() {
+  std::ifstream file(HB_SOURCE_DIR "/tests/reference/mathieu_characteristic.csv");
+  std::vector<Characteristic> values;
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.empty() || line[0] == '#' || line[0] == 'f') continue;
+    std::istringstream text(line);
+    std::string function, m, q, scipy, value;
+    std::getline(text, function, ',');
+    std::getline(text, m, ',');
+    std::getline(text, q, ',');
+    std::getline(text, scipy, ',');
+    std::getline(text, value, ',');
+    values.push_back({function + m, std::stod(q), std::stod(value)});
+  }
+  return values;
+}
+
+TEST(StabilityMap, StruttsChartPassesThroughMathieusCharacteristicValues) {
+  const std::vector<Characteristic> table = characteristic_values();
+  ASSERT_EQ(table.size(), 225u);
+  std::vector<double> q = {0};
+  for (const Characteristic& c : table) {
+    if (c.name == "a0") q.push_back(c.q);
+  }
+  // x'' + (a - 2 q cos 2t) x = 0.
+  const MapSystemAt at = [](double a, double q) { return scale_system(mathieu(0, a, -2 * q), 2); };
+  const std::vector<double> a = spaced(-3, 20, 47);
+  MapOptions options;
+  options.sag = 0.05;
+  const StabilityMap map = stability_map(at, a, q, options);
+  const auto width_of_tongue = [&](const Characteristic& c) {
+    for (const Characteristic& d : table) {
+      if (d.q == c.q && d.name[0] != c.name[0] && d.name[1] == c.name[1]) return std::abs(c.a - d.a);
+    }
+    return HUGE_VAL;  // a_0 has no partner
+  };
+  double worst = 0;
+  int compared = 0;
+  for (const Characteristic& c : table) {
+    if (c.a <= a.front() || c.a >= a.back()) continue;
+    ++compared;
+    double nearest = HUGE_VAL;
+    BoundaryKind kind = BoundaryKind::complex;
+    for (const BoundaryCurve& curve : map.boundaries) {
+      for (const BoundaryPoint& p : curve.points) {
+        if (p.along_x && p.y == c.q && std::abs(p.x - c.a) < nearest) {
+          nearest = std::abs(p.x - c.a);
+          kind = curve.kind;
+        }
+      }
+    }
+    // Inside a tongue of width w at distance d from its end the growth is g = sqrt(w d/a)/2 at most; it is told from
+    // zero when it exceeds the root of the discriminant's rounding, 1e-7.
+    const double rounding = 4 * 1e-14 * std::abs(c.a) / width_of_tongue(c);
+    EXPECT_LE(nearest, 1e-10 * std::max(1.0, std::abs(c.a)) + 10 * rounding)
+        << c.name << " at q = " << c.q << ", a = " << c.a;
+    EXPECT_EQ(kind, (c.name[1] - '0') % 2 == 0 ? BoundaryKind::plus_one : BoundaryKind::minus_one) << c.name;
+    worst = std::max(worst, nearest);
+  }
+  EXPECT_GT(compared, 150);
+  RecordProperty("largest_distance", std::to_string(worst * 1e12) + "e-12");
+}
+
+// The growth rate by propagation of the whole system, a method that the map does not use on these systems.
+double growth_by_propagation(const HillSystem& system, double Omega) {
+  StabilityOptions options;
+  options.method = StabilityMethod::propagation;
+  options.tolerance = 1e-12;
+  return analyse_stability(system, Omega, options).growth_rate;
+}
+
+TEST(StabilityMap, GrowthByPropagationChangesSignWithin1e10OfEveryBoundaryPoint) {
+  constexpr double damping = 0.02;
+  MapOptions options;
+  options.sag = 0.01;
+  options.search.stability.tolerance = 1e-12;
+  const StabilityMap map = stability_map(coupled_map(damping), spaced(1.6, 4, 9), spaced(0.05, 0.4, 4), options);
+  std::size_t points = 0, claimed = 0, compared = 0;
+  for (const BoundaryCurve& curve : map.boundaries) {
+    for (const BoundaryPoint& p : curve.points) {
+      // Where an edge nearly touches the curve the growth rate's error moves the crossing further: it is said.
+      const double promised = 1e-10 * (p.along_x ? p.x : p.y), h = std::max(promised, p.error);
+      claimed += p.error <= promised;
+      if (points++ % 7 != 0 && h == promised) continue;
+      ++compared;
+      const auto growth = [&](double step) {
+        return p.along_x ? growth_by_propagation(coupled(damping, p.y), p.x + step)
+                         : growth_by_propagation(coupled(damping, p.y + step), p.x);
+      };
+      const double after = growth(h), before = growth(-h);
+      // Only where the growth rate hardly changes over what was promised.
+      if (p.error > promised) {
+        const double bar = stability_at(coupled_map(damping), p.x, p.y).growth_error;
+        EXPECT_LE(std::abs(after - before) / (2 * h) * promised, 4 * bar) << p.x << ", " << p.y;
+      }
+      EXPECT_LT(after * before, 0) << p.x << ", " << p.y << (p.along_x ? " along x: " : " along y: ") << before << ", "
+                                   << after << ", error " << p.error;
+    }
+  }
+  EXPECT_GT(compared, 20u);
+  EXPECT_GT(claimed, points / 2);
+}
+
+TEST(StabilityMap, KindsOfTheCoupledOscillatorsAreAllThere) {
+  MapOptions options;
+  options.sag = 0.01;
+  const StabilityMap map = stability_map(coupled_map(0.02), spaced(0.8, 4, 13), spaced(0.05, 0.4, 4), options);
+  const auto near = [&](BoundaryKind kind, double Omega) {
+    double nearest = HUGE_VAL;
+    for (const BoundaryCurve& curve : map.boundaries) {
+      if (curve.kind != kind) continue;
+      for (const BoundaryPoint& p : curve.points) nearest = std::min(nearest, std::abs(p.x - Omega));
+    }
+    return nearest;
+  };
+  EXPECT_LT(near(BoundaryKind::minus_one, 2), 0.05);  // 2 omega_1
+  EXPECT_LT(near(BoundaryKind::minus_one, 2 * std::sqrt(3)), 0.1);  // 2 omega_2
+  EXPECT_LT(near(BoundaryKind::complex, 1 + std::sqrt(3)), 0.1);  // omega_1 + omega_2
+  EXPECT_LT(near(BoundaryKind::plus_one, 1), 0.1);  // 2 omega_1/2
+}
+
+void expect_no_wrong_cell(const MapSystemAt& at, const std::vector<double>& x, const std::vector<double>& y) {
+  MapOptions options;
+  options.evaluate_all = 0;
+  const StabilityMap quick = stability_map(at, x, y, options);
+  std::size_t wrong = 0, interpolated = 0, unstable = 0;
+  for (std::size_t j = 0; j < y.size(); ++j) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Stability expected = stability_at(at, x[i], y[j]);
+      wrong += quick.at(i, j).verdict != expected.verdict;
+      unstable += expected.verdict == Verdict::unstable;
+      if (quick.at(i, j).source == MapSource::interpolated) {
+        ++interpolated;
+      } else {
+        EXPECT_EQ(quick.at(i, j).growth_rate, expected.growth_rate);
+      }
+    }
+  }
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_GT(unstable, 50u);
+  EXPECT_GT(interpolated, x.size() * y.size() / 20);
+}
+
+TEST(StabilityMap, QuadtreeHasNoWrongCellForOneOscillator) {
+  expect_no_wrong_cell(speed_and_swing(0.02), spaced(0.6, 2.6, 193), spaced(0, 0.9, 129));
+}
+
+TEST(StabilityMap, QuadtreeHasNoWrongCellForCoupledOscillators) {
+  expect_no_wrong_cell(coupled_map(0.1), spaced(1.5, 4, 97), spaced(0, 0.5, 65));
+}
+
+// Places where a scan of one row sees the verdict change.
+std::vector<double> changes_by_scan(const MapSystemAt& at, double from, double to, double y, int n) {
+  std::vector<double> places;
+  bool last = false;
+  for (int k = 0; k <= n; ++k) {
+    const double x = from + (to - from) * k / n;
+    const bool now = stability_at(at, x, y).verdict == Verdict::unstable;
+    if (k > 0 && now != last) places.push_back(x);
+    last = now;
+  }
+  return places;
+}
+
+TEST(StabilityMap, TonguesThinnerThanTheGridAreFound) {
+  // Orders 1 to 4 of 2 omega/k; at swing 0.3 the third is 2e-3 wide and the grid's lines are 0.1 apart.
+  const MapSystemAt at = speed_and_swing(1e-4);
+  const std::vector<double> x = spaced(0.5, 2.5, 21), y = {0.1, 0.3};
+  MapOptions options;
+  options.sag = 0.05;
+  const StabilityMap map = stability_map(at, x, y, options);
+  constexpr int n = 2500;
+  const double step = (x.back() - x.front()) / n;
+  for (const double row : y) {
+    std::vector<double> found;
+    for (const BoundaryCurve& curve : map.boundaries) {
+      for (const BoundaryPoint& p : curve.points) {
+        if (p.along_x && p.y == row) found.push_back(p.x);
+      }
+    }
+    const std::vector<double> seen = changes_by_scan(at, x.front(), x.back(), row, n);
+    EXPECT_GE(seen.size(), 4u);
+    for (const double place : seen) {
+      EXPECT_TRUE(std::any_of(found.begin(), found.end(),
+                              [&](double f) { return f <= place + 1e-9 && f >= place - step - 1e-9; }))
+          << "row " << row << ", " << place;
+    }
+    for (const double f : found) {
+      const Verdict before = stability_at(at, f - 1e-9, row).verdict, after = stability_at(at, f + 1e-9, row).verdict;
+      EXPECT_TRUE((before == Verdict::stable && after == Verdict::unstable) ||
+                  (before == Verdict::unstable && after == Verdict::stable))
+          << "row " << row << ", " << f;
+    }
+  }
+}
+
+TEST(StabilityMap, BoundaryOfAPrincipalTongueIsTheKnownOne) {
+  const StabilityMap map = stability_map(speed_and_swing(0.1), spaced(1.5, 3, 16), {0.3, 0.4, 0.5});
+  std::vector<double> ends;
+  for (const BoundaryCurve& curve : map.boundaries) {
+    for (const BoundaryPoint& p : curve.points) {
+      if (p.along_x && p.y == 0.4) ends.push_back(p.x);
+    }
+  }
+  std::sort(ends.begin(), ends.end());
+  ASSERT_EQ(ends.size(), 2u);
+  // By Taylor series with 30 digits.
+  EXPECT_NEAR(ends[0], 2.03252467198976858, 1e-10 * ends[0]);
+  EXPECT_NEAR(ends[1], 2.33736800003823030, 1e-10 * ends[1]);
+}
+
+TEST(StabilityMap, SameBitsInWhateverOrderAndThreadTheWorkIsDone) {
+  const std::vector<double> x = spaced(1.8, 3.8, 7), y = spaced(0, 0.4, 5);
+  MapOptions options;
+  options.sag = 0.01;
+  const StabilityMap plain = stability_map(coupled_map(0.06), x, y, options);
+  options.parts = [](std::size_t count, const std::function<Part(std::size_t)>& part) {
+    std::vector<Part> parts(count);
+    std::jthread even([&] {
+      for (std::size_t k = 0; k < count; k += 2) parts[k] = part(k);
+    });
+    for (std::size_t k = count; k-- > 0;) {
+      if (k % 2 == 1) parts[k] = part(k);
+    }
+    return parts;
+  };
+  const StabilityMap other = stability_map(coupled_map(0.06), x, y, options);
+  ASSERT_EQ(plain.points.size(), other.points.size());
+  for (std::size_t p = 0; p < plain.points.size(); ++p) {
+    EXPECT_EQ(plain.points[p].growth_rate, other.points[p].growth_rate);
+    EXPECT_EQ(plain.points[p].verdict, other.points[p].verdict);
+  }
+  EXPECT_EQ(plain.samples, other.samples);
+  ASSERT_EQ(plain.boundaries.size(), other.boundaries.size());
+  for (std::size_t c = 0; c < plain.boundaries.size(); ++c) {
+    EXPECT_EQ(plain.boundaries[c].kind, other.boundaries[c].kind);
+    ASSERT_EQ(plain.boundaries[c].points.size(), other.boundaries[c].points.size());
+    for (std::size_t k = 0; k < plain.boundaries[c].points.size(); ++k) {
+      EXPECT_EQ(plain.boundaries[c].points[k].x, other.boundaries[c].points[k].x);
+      EXPECT_EQ(plain.boundaries[c].points[k].y, other.boundaries[c].points[k].y);
+    }
+  }
+}
+
+TEST(StabilityMap, PlacesWithoutASystemAreMarkedAndTheRestIsAsWithoutThem) {
+  const MapSystemAt whole = speed_and_swing(0.05);
+  const MapSystemAt cut = [&](double x, double y) { return x + y > 2.6 ? std::optional<ScaledSystem>() : whole(x, y); };
+  const std::vector<double> x = spaced(1.5, 2.8, 27), y = spaced(0.1, 0.5, 9);
+  const StabilityMap a = stability_map(whole, x, y), b = stability_map(cut, x, y);
+  for (std::size_t j = 0; j < y.size(); ++j) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (x[i] + y[j] > 2.6) {
+        EXPECT_EQ(b.at(i, j).source, MapSource::missing);
+      } else {
+        EXPECT_EQ(b.at(i, j).source, MapSource::evaluated);
+        EXPECT_EQ(b.at(i, j).growth_rate, a.at(i, j).growth_rate);
+      }
+    }
+  }
+  EXPECT_FALSE(b.boundaries.empty());
+  for (const BoundaryCurve& curve : b.boundaries) {
+    for (const BoundaryPoint& p : curve.points) EXPECT_LE(p.x + p.y, 2.6 * (1 + 4 * eps));
+  }
+}
+
+TEST(StabilityMap, CurvesAreRefinedUntilTheirChordsAreStraight) {
+  const StabilityMap map = stability_map(speed_and_swing(0.1), spaced(1.5, 3, 4), spaced(0.05, 0.6, 3));
+  ASSERT_EQ(map.boundaries.size(), 1u);
+  const std::vector<BoundaryPoint>& p = map.boundaries[0].points;
+  EXPECT_GT(p.size(), 20u);
+  // The tip: least swing that is unstable, 2 c sqrt(1.2) to first order of the damping c.
+  const auto tip = std::min_element(p.begin(), p.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
+  EXPECT_NEAR(tip->y, 2 * 0.1 * std::sqrt(1.2), 0.01);
+}
+
+TEST(StabilityMap, RefusesAxesThatDoNotAscend) {
+  const MapSystemAt at = speed_and_swing(0.1);
+  EXPECT_THROW((void)stability_map(at, {1, 1}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW((void)stability_map(at, {2, 1}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW((void)stability_map(at, {1}, {0, 1}), std::invalid_argument);
+  EXPECT_THROW((void)stability_map(at, {1, 2}, {0, NAN}), std::invalid_argument);
+  EXPECT_THROW((void)stability_map(at, {1, 2}, {}), std::invalid_argument);
+}
+
+TEST(BoundaryCurve, LinksBecomeChainsThatPassEachOnce) {
+  // 0 - 1 - 2 open, 3 - 4 - 5 - 3 closed.
+  const std::vector<CurveLink> links = {{{4, 3}, 10}, {{1, 2}, 11}, {{4, 5}, 12}, {{1, 0}, 13}, {{5, 3}, 14}};
+  const std::vector<CurveChain> result = chains(6, links);
+  ASSERT_EQ(result.size(), 2u);
+  EXPECT_EQ(result[0].points, (std::vector<std::size_t>{0, 1, 2}));
+  EXPECT_EQ(result[0].cells, (std::vector<std::size_t>{13, 11}));
+  EXPECT_FALSE(result[0].closed);
+  EXPECT_EQ(result[1].points, (std::vector<std::size_t>{3, 4, 5, 3}));
+  EXPECT_EQ(result[1].cells, (std::vector<std::size_t>{10, 12, 14}));
+  EXPECT_TRUE(result[1].closed);
+}
+
+TEST(BoundaryCurve, ASaddleIsJoinedByWhatItsCentreIs) {
+  using Pairs = std::vector<std::array<std::size_t, 2>>;
+  EXPECT_EQ(joined_in_cell(2, false, false), (Pairs{{0, 1}}));
+  EXPECT_EQ(joined_in_cell(2, false, true), (Pairs{{1, 0}}));
+  EXPECT_EQ(joined_in_cell(4, false, true), (Pairs{{3, 0}, {1, 2}}));  // stable corners cut off
+  EXPECT_EQ(joined_in_cell(4, false, false), (Pairs{{0, 1}, {2, 3}}));  // unstable sides cut off
+}
+
+}  // namespace

@@ -1,0 +1,235 @@
+// Unstable bands, resonance peaks and tracked modes against closed forms and root searches of the test's own.
+#include "hb/engine/boundaries/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "hb/engine/steady/response_peak.hpp"
+#include "hb/engine/steady/steady_state.hpp"
+
+namespace {
+
+using namespace hb;
+
+HillSystem oscillator(double damping, double stiffness, double modulation) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Ones(1, 1);
+  system.damping = Eigen::MatrixXd::Constant(1, 1, damping);
+  system.stiffness[0] = FourierSeries(1, 1);
+  system.stiffness[0].c(0, 0) = stiffness;
+  system.stiffness[0].c(0, 1) = modulation / 2;
+  system.load[0] = FourierSeries(1, 1);
+  system.load[0].c(0, 1) = 0.5;
+  return system;
+}
+
+// Frequencies 1 and 2, coupled by `coupling` cos(Omega t) in both rows (symmetric) or with opposite signs.
+HillSystem two_oscillators(double damping, double coupling, double sign = 1) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(2, 2);
+  system.damping = damping * Eigen::MatrixXd::Identity(2, 2);
+  system.stiffness[0] = FourierSeries(4, 1);
+  system.stiffness[0].c.col(0) << 1, 0, 0, 4;
+  system.stiffness[0].c.col(1) << 0, 0.5 * coupling, 0.5 * sign * coupling, 0;
+  return system;
+}
+
+struct Sweep {
+  std::vector<StabilitySample> samples;
+  std::vector<StabilityBoundary> boundaries;
+  std::vector<UnstableBand> bands;
+  std::vector<std::vector<ModeState>> modes;
+};
+
+SystemAt along_speed(const HillSystem& system) {
+  return [&system](double x) { return scale_system(system, x); };
+}
+
+// As `hb sweep` does it: a grid, what lies between its points, boundaries.
+Sweep sweep(const HillSystem& system, double from, double to, int intervals) {
+  Sweep result;
+  const SystemAt at = along_speed(system);
+  SweepOptions options;
+  options.stability.tolerance = 1e-11;
+  std::vector<StabilitySample> grid;
+  for (int k = 0; k <= intervals; ++k)
+    grid.push_back(*stability_sample(at, from + (to - from) * k / intervals, options.stability));
+  std::vector<TrackedPlace> places;
+  for (const StabilitySample& sample : grid) places.push_back({sample.x, sample.speed, &sample.stability});
+  result.modes = track_modes(places, static_cast<int>(system.num_modes()));
+  for (int k = 0; k <= intervals; ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    result.samples.push_back(grid[i]);
+    if (k == intervals) break;
+    for (StabilitySample& sample :
+         look_between(at, grid[i], grid[i + 1], result.modes[i], result.modes[i + 1], options))
+      result.samples.push_back(std::move(sample));
+  }
+  std::vector<const StabilitySample*> pointers;
+  for (std::size_t k = 0; k < result.samples.size(); ++k) {
+    pointers.push_back(&result.samples[k]);
+    if (k > 0 && is_unstable(result.samples[k - 1]) != is_unstable(result.samples[k]))
+      result.boundaries.push_back(locate_boundary(at, result.samples[k - 1], result.samples[k], options));
+  }
+  result.bands = unstable_bands(pointers, result.boundaries);
+  return result;
+}
+
+// Where the growth rate passes zero, by bisection on its sign.
+double bisected(const HillSystem& system, double low, double high) {
+  const auto unstable = [&](double x) { return analyse_stability(system, x).growth_rate > 0; };
+  const bool above = unstable(high);
+  for (int step = 0; step < 60; ++step) {
+    const double middle = 0.5 * (low + high);
+    (unstable(middle) == above ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+TEST(Sweep, LocatesBothEndsOfMathieusTongue) {
+  // x'' + 0.1 x' + (1.2 + 0.4 cos Omega t) x: ends known to eleven digits.
+  for (const int intervals : {369, 40, 7, 2}) {
+    const Sweep found = sweep(oscillator(0.1, 1.2, 0.4), 1.5, 2.6, intervals);
+    ASSERT_EQ(found.bands.size(), 1u) << intervals;
+    EXPECT_NEAR(found.bands[0].from, 2.0325246720, 1e-10 * 2);
+    EXPECT_NEAR(found.bands[0].to, 2.3373680000, 1e-10 * 2.4);
+    EXPECT_EQ(found.bands[0].kind_from, BoundaryKind::minus_one);
+    EXPECT_EQ(found.bands[0].kind_to, BoundaryKind::minus_one);
+    EXPECT_FALSE(found.bands[0].open_from || found.bands[0].open_to);
+    for (const StabilityBoundary& boundary : found.boundaries) EXPECT_TRUE(boundary.converged);
+  }
+}
+
+TEST(Sweep, BoundariesAgreeWithBisectionFarFromWhereTheSearchBegan) {
+  const HillSystem system = oscillator(0.03, 1, 0.9);
+  const Sweep found = sweep(system, 0.6, 3, 97);
+  ASSERT_GE(found.bands.size(), 2u);
+  for (const StabilityBoundary& boundary : found.boundaries) {
+    const double reference = bisected(system, boundary.x - 0.003, boundary.x + 0.004);
+    EXPECT_NEAR(boundary.x, reference, 1e-10 * reference);
+  }
+}
+
+TEST(Sweep, FindsABandFarNarrowerThanTheGrid) {
+  // Width of the principal tongue by averaging: Omega = 2 +- sqrt((a/2)^2 - (2 c)^2 ...)/..., here some 1e-5.
+  const double c = 1e-5, a = 4.2e-5;
+  const HillSystem system = oscillator(c, 1, a);
+  const Sweep found = sweep(system, 1.03, 2.97, 10);
+  ASSERT_EQ(found.bands.size(), 1u);
+  // x = u cos(Omega t/2) + v sin(Omega t/2): half width of the detuning of Omega/2 is sqrt((a/4)^2 - (c/2)^2).
+  const double half_width = 2 * std::sqrt(a * a / 16 - c * c / 4);
+  EXPECT_NEAR(found.bands[0].to - found.bands[0].from, 2 * half_width, 1e-3 * half_width);
+  EXPECT_NEAR(0.5 * (found.bands[0].from + found.bands[0].to), 2, 1e-8);
+}
+
+TEST(Sweep, FindsNoBandWhereDampingWins) {
+  const double c = 1e-5;
+  EXPECT_TRUE(sweep(oscillator(c, 1, 1.9 * c), 1.03, 2.97, 10).bands.empty());
+}
+
+TEST(Sweep, FindsTheSumResonanceOfTwoOscillators) {
+  const Sweep found = sweep(two_oscillators(0.002, 0.02), 2.4, 3.5, 4);
+  ASSERT_EQ(found.bands.size(), 1u);
+  EXPECT_EQ(found.bands[0].kind_from, BoundaryKind::complex);
+  EXPECT_LT(found.bands[0].from, 3);
+  EXPECT_GT(found.bands[0].to, 3);
+  const double reference = bisected(two_oscillators(0.002, 0.02), 2.99, 3);
+  EXPECT_NEAR(found.bands[0].from, reference, 1e-10 * reference);
+}
+
+TEST(Sweep, FindsTheDifferenceResonanceOfOscillatorsThatFeedEachOther) {
+  const Sweep found = sweep(two_oscillators(0.002, 0.02, -1), 0.72, 1.45, 4);
+  ASSERT_GE(found.bands.size(), 1u);
+  EXPECT_LT(found.bands[0].from, 1);
+  EXPECT_GT(found.bands[0].to, 1);
+}
+
+TEST(Sweep, AModeOfConstantCoefficientsStaysAStraightLine) {
+  HillSystem system = two_oscillators(0.05, 0);
+  system.stiffness[0].c.col(1).setZero();
+  // Through the speeds where the frequencies fold: 2 omega_i/k and omega_i - omega_j = k Omega.
+  const Sweep found = sweep(system, 0.1, 5, 400);
+  for (const std::vector<ModeState>& modes : found.modes) {
+    ASSERT_EQ(modes.size(), 2u);
+    const double first = std::sqrt(1 - 0.025 * 0.025), second = std::sqrt(4 - 0.025 * 0.025);
+    EXPECT_NEAR(modes[0].frequency, first, 1e-12);
+    EXPECT_NEAR(modes[1].frequency, second, 1e-12);
+    EXPECT_NEAR(modes[0].growth, -0.025, 1e-13);
+  }
+}
+
+TEST(Sweep, TrackedFrequenciesRunThroughACrossingWithoutChangingPlaces) {
+  // Frequencies cross along x where stiffness, not speed, is swept: omega_1 = x, omega_2 = 2.
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(2, 2);
+  system.damping = 0.01 * Eigen::MatrixXd::Identity(2, 2);
+  std::vector<Stability> all;
+  std::vector<double> x;
+  for (int k = 0; k <= 200; ++k) {
+    x.push_back(1.5 + 0.0051 * k);
+    system.stiffness[0] = FourierSeries(4, 1);
+    system.stiffness[0].c.col(0) << x.back() * x.back(), 0, 0, 4;
+    system.stiffness[0].c.col(1) << 0.01, 0, 0, 0.01;
+    all.push_back(analyse_stability(system, 0.83));
+  }
+  std::vector<TrackedPlace> places;
+  for (std::size_t k = 0; k < x.size(); ++k) places.push_back({x[k], 0.83, &all[k]});
+  const auto modes = track_modes(places, 2);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    EXPECT_NEAR(modes[k][0].frequency, x[k], 1e-3) << x[k];
+    EXPECT_NEAR(modes[k][1].frequency, 2, 1e-3) << x[k];
+  }
+}
+
+TEST(Sweep, BandsThatReachTheSweepsEndsAreOpen) {
+  const Sweep found = sweep(oscillator(0.1, 1.2, 0.4), 2.1, 2.3, 4);
+  ASSERT_EQ(found.bands.size(), 1u);
+  EXPECT_TRUE(found.bands[0].open_from && found.bands[0].open_to);
+  EXPECT_EQ(found.bands[0].from, 2.1);
+  EXPECT_EQ(found.bands[0].to, 2.3);
+}
+
+TEST(ResponsePeak, OfADampedOscillatorIsTheClosedFormToTenDigits) {
+  // |x| = 1/sqrt((k - W^2)^2 + b^2 W^2) is largest at W^2 = k - b^2/2.
+  for (const double b : {1e-4, 0.01, 0.2, 1.0}) {
+    const double k = 1.3;
+    const HillSystem system = oscillator(b, k, 0);
+    const double expected = std::sqrt(k - b * b / 2);
+    const auto value = [&](double W) -> std::optional<double> {
+      SteadyOptions options;
+      options.tolerance = 1e-12;
+      return fourier::max_abs(solve_steady_state(system, W, options).q, 0).value;
+    };
+    const double reach = std::min(0.3, 20 * b);
+    const std::optional<ResponsePeak> peak =
+        locate_peak(value, value, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
+    ASSERT_TRUE(peak);
+    EXPECT_TRUE(peak->converged) << b << " " << peak->error;
+    EXPECT_NEAR(peak->x, expected, 1e-10 * expected) << b;
+    EXPECT_NEAR(peak->value, 1 / (b * std::sqrt(k - b * b / 4)), 1e-10 * peak->value) << b;
+  }
+}
+
+TEST(ResponsePeak, IsToldFromAPole) {
+  // 1/|x - x0| with a background that leans.
+  const double x0 = 1.2345678901;
+  const auto value = [&](double x) -> std::optional<double> { return std::abs(1e-3 / (x - x0) + 0.7 * x); };
+  const std::optional<ResponsePeak> pole = locate_peak(value, value, 1.1, 1.2345, 1.4);
+  ASSERT_TRUE(pole);
+  EXPECT_TRUE(std::isinf(pole->value));
+  EXPECT_NEAR(pole->x, x0, 1e-10 * x0);
+  EXPECT_LE(pole->error, 1e-10 * x0);
+}
+
+TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {
+  const auto value = [](double x) -> std::optional<double> {
+    if (x > 1.1) return std::nullopt;
+    return -x * x;
+  };
+  EXPECT_FALSE(locate_peak(value, value, -1, 0.5, 1.2));
+  EXPECT_TRUE(locate_peak(value, value, -1, 0.5, 1));
+}
+
+}  // namespace

@@ -1,0 +1,152 @@
+// hb check: harmonic balance against time integration on an independent path.
+#include <fmt/core.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tools/output/check_json.hpp"
+#include "tools/pictures/check_pictures.hpp"
+#include "tools/output/check_report.hpp"
+#include "tools/command/command.hpp"
+#include "tools/command/common_flags.hpp"
+#include "hb/analysis/cross_check.hpp"
+#include "tools/output/json_output.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/work/parallel_for.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+struct CheckFlags {
+  CommonFlags common;
+  std::string integrator, time_limit;
+  bool march = false;
+};
+
+CheckOptions check_options(const CheckFlags& flags) {
+  CheckOptions options;
+  options.march = flags.march;
+  if (!flags.time_limit.empty())
+    options.time_limit = number_flag("--time-limit", flags.time_limit, 1e-3, 1e6, "seconds from 0.001 to 1000000");
+  const std::string& name = flags.integrator;
+  if (name.empty() || name == "automatic")
+    options.integrator = Integrator::automatic;
+  else if (name == "adams")
+    options.integrator = Integrator::adams;
+  else if (name == "bdf")
+    options.integrator = Integrator::bdf;
+  else if (name == "collocation")
+    options.integrator = Integrator::collocation;
+  else
+    throw UsageError(fmt::format("--integrator: found \"{}\", allowed: automatic, adams, bdf, collocation", name));
+  return options;
+}
+
+// FROM, FROM + STEP, ... not beyond TO (a thousandth of a step is forgiven).
+std::vector<double> speeds_of(const SpeedRange& range, const Units& units) {
+  constexpr double most = 100000;
+  const Speeds& speeds = range.speeds;
+  const double steps = speeds.step > 0 ? std::floor((speeds.to - speeds.from) / speeds.step + 1e-3) : 0;
+  if (!(steps < most)) throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {:.0f}", steps + 1, most));
+  std::vector<double> result;
+  for (int k = 0; k <= static_cast<int>(steps); ++k) {
+    const double value = speeds.from + k * speeds.step;
+    result.push_back(range.in_rpm ? speed_from_rpm(value, units) : value);
+  }
+  return result;
+}
+
+// On standard error if that is a terminal: speeds done, and the integration under way if it takes long.
+class CheckProgress {
+ public:
+  explicit CheckProgress(std::size_t num_speeds) : num_speeds_(num_speeds), shown_(isatty(STDERR_FILENO) != 0) {}
+  CheckProgress(const CheckProgress&) = delete;
+  CheckProgress& operator=(const CheckProgress&) = delete;
+  ~CheckProgress() {
+    if (dirty_) fmt::print(stderr, "\r\033[K");
+  }
+
+  void begin(const std::string& rod, const std::string& speed, Integrator integrator, double seconds) {
+    const std::lock_guard lock(mutex_);
+    if (!shown_ || (seconds < 1 && Clock::now() - start_ < std::chrono::milliseconds(400))) return;
+    dirty_ = true;
+    fmt::print(stderr, "\r\033[K{} of {} speeds done; {} at {}: {}, about {:.0f} s", num_done_, num_speeds_, rod, speed,
+               to_string(integrator), std::ceil(seconds));
+  }
+  void end() {
+    const std::lock_guard lock(mutex_);
+    ++num_done_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::size_t num_speeds_, num_done_ = 0;
+  bool shown_, dirty_ = false;
+  Clock::time_point start_ = Clock::now();
+  std::mutex mutex_;
+};
+
+int run_check(const CheckFlags& flags) {
+  Scene scene = read_scene(flags.common.scene_file, overrides(flags.common));
+  const Settings options = settings(flags.common, scene);
+  const CheckOptions check_with = check_options(flags);
+  const std::vector<double> speeds = speeds_of(speed_range(flags.common, scene), scene.units);
+  std::optional<OutputFolder> folder;
+  if (options.out) folder.emplace(*options.out);
+
+  const SceneModel model = make_model(std::move(scene), options);
+  std::vector<SpeedCheck> checks(speeds.size());
+  {
+    CheckProgress progress(speeds.size());
+    parallel_for(speeds.size(), options.threads, [&](std::size_t k) {
+      CheckOptions here = check_with;
+      here.begin = [&](const std::string& rod, Integrator integrator, double seconds) {
+        progress.begin(rod, speed_text(speeds[k], model.scene), integrator, seconds);
+      };
+      checks[k] = cross_check(model, speeds[k], options, here);
+      progress.end();
+    });
+  }
+
+  const nlohmann::ordered_json document = check_json(model, checks, options);
+  if (folder) {
+    folder->write("check.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_check_pictures(model, checks, *folder, options.plots);
+    folder->commit();
+  }
+  if (options.json)
+    print_json(document);
+  else
+    fmt::print("{}", check_report(model, checks, options));
+  const bool agree = std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.agrees(); });
+  const bool reached =
+      std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.shortfalls.empty(); });
+  return !agree ? exit_failed : reached ? exit_ok : exit_not_reached;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand(
+      "check", "cross-check against time integration on an independent path; exit 1 when they disagree");
+  const auto flags = std::make_shared<CheckFlags>();
+  add_scene_flags(*command, flags->common);
+  add_analysis_flags(*command, flags->common);
+  command->add_option("--integrator", flags->integrator, "automatic, adams, bdf (CVODE) or collocation (Radau)")
+      ->type_name("NAME");
+  command->add_option("--time-limit", flags->time_limit, "seconds for each rod and speed; default 60")
+      ->type_name("SECONDS");
+  command->add_flag("--march", flags->march, "also march from rest until the transient has died out");
+  command->callback([flags, &status] { status = run_check(*flags); });
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,257 @@
+#include "tools/command/common_flags.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+
+#include "tools/command/command.hpp"
+
+namespace hb::tools {
+namespace {
+
+constexpr int max_modes = 60;  // what the Ritz matrices are made for
+constexpr int max_threads = 1024;
+
+[[noreturn]] void refuse(const std::string& flag, const std::string& found, const std::string& allowed) {
+  throw UsageError(fmt::format("{}: found \"{}\", allowed: {}", flag, found, allowed));
+}
+
+// The whole text as a number, or nothing.
+template <class Number>
+std::optional<Number> parse(const std::string& text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return value;
+}
+
+template <class Enum>
+Enum choice_flag(const std::string& flag, const std::string& text,
+                 const std::vector<std::pair<const char*, Enum>>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names.push_back(name);
+  }
+  refuse(flag, text, fmt::format("{}", fmt::join(names, ", ")));
+}
+
+std::variant<int, AutoModes> modes_flag(const std::string& text) {
+  if (text == "auto") return AutoModes{};
+  return integer_flag("--modes", text, 1, max_modes, fmt::format("an integer 1 to {}, or auto", max_modes));
+}
+
+Only only_flag(const std::string& text, bool verdict_allowed) {
+  Only only{false, false, false, false};
+  for (const std::string& part : list_flag("--only", text)) {
+    if (part == "steady") {
+      only.steady = true;
+    } else if (part == "stability") {
+      only.stability = true;
+    } else if (part == "reactions") {
+      only.reactions = true;
+    } else if (part == "shape") {
+      only.shape = true;
+    } else if (part == "verdict" && verdict_allowed) {
+      only.verdict = true;
+    } else {
+      refuse("--only", part,
+             fmt::format("steady, stability, {}reactions, shape, several joined by commas",
+                         verdict_allowed ? "verdict, " : ""));
+    }
+  }
+  // Exponents asked for beside it contain the verdict.
+  only.verdict = only.verdict && !only.stability;
+  only.stability = only.stability || only.verdict;
+  return only;
+}
+
+// "A:B:STEP" or "N", positive.
+Speeds speeds_flag(const std::string& flag, const std::string& text) {
+  const std::string allowed =
+      fmt::format("a positive number, {:g} to {:g}, or FROM:TO:STEP with FROM <= TO and STEP > 0", slowest, fastest);
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ':') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  if (parts.size() != 1 && parts.size() != 3) refuse(flag, text, allowed);
+  std::vector<double> numbers;
+  for (const std::string& part : parts) {
+    const std::optional<double> value = parse<double>(part);
+    if (!value || !(*value >= slowest && *value <= fastest)) refuse(flag, text, allowed);
+    numbers.push_back(*value);
+  }
+  if (numbers.size() == 1) return {numbers[0], numbers[0], 0};
+  if (!(numbers[0] <= numbers[1])) refuse(flag, text, allowed);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+// An empty text stands for a flag that was not given: one that is given has something to say.
+void add_value(CLI::App& app, const char* name, std::string& text, const char* meaning, const char* type) {
+  app.add_option(name, text, meaning)->type_name(type)->check([](const std::string& value) {
+    return value.empty() ? std::string("found \"\", allowed: a value") : std::string();
+  });
+}
+
+}  // namespace
+
+double number_flag(const std::string& flag, const std::string& text, double lowest, double highest,
+                   const std::string& allowed) {
+  const std::optional<double> value = parse<double>(text);
+  if (!value || !(*value >= lowest && *value <= highest)) refuse(flag, text, allowed);
+  return *value;
+}
+
+int integer_flag(const std::string& flag, const std::string& text, int lowest, int highest,
+                 const std::string& allowed) {
+  const std::optional<int> value = parse<int>(text);
+  if (!value || *value < lowest || *value > highest) refuse(flag, text, allowed);
+  return *value;
+}
+
+std::vector<std::string> list_flag(const std::string& flag, const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == ',') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  for (const std::string& part : parts) {
+    if (part.empty()) refuse(flag, text, "names joined by single commas");
+  }
+  return parts;
+}
+
+void add_scene_flags(CLI::App& app, CommonFlags& flags) {
+  app.add_option("SCENE", flags.scene_file, "scene file (TOML)")->required();
+  app.add_option("--set", flags.set, "replace a scene number for this run, as in AB.J=60 or *.J=60; repeatable")
+      ->type_name("PATH=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--out", flags.out, "write CSV and pictures (SVG, PNG) into this folder")->type_name("DIR");
+  app.add_flag("--json", flags.json, "one JSON document on standard output, nothing else there");
+  app.add_flag("--no-plots", flags.no_plots, "no pictures in the folder of --out");
+  app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
+}
+
+void add_single_speed_flags(CLI::App& app, CommonFlags& flags) {
+  flags.single_speed = true;
+  add_value(app, "--bound", flags.bound, "error bound: estimated, or proved where a proof is found", "KIND");
+}
+
+void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
+  const auto add = [&](const char* name, std::string& text, const char* meaning, const char* type) {
+    add_value(app, name, text, meaning, type);
+  };
+  add("--modes", flags.modes, "Ritz terms per elastic link, 1 to 60, or auto", "I");
+  add("--tol", flags.tolerance, "relative error wanted, 1e-14 to 0.1", "T");
+  add("--rods", flags.rods, "elastic links to look at, as in AB,CD; default all", "NAMES");
+  add("--only", flags.only, "compute only these: steady,stability,reactions,shape", "LIST");
+  add("--rpm", flags.rpm, "speed of the crank in revolutions per minute", "N");
+  add("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm", "W");
+  add("--threads", flags.threads, "number of threads, 1 or more", "N");
+  add("--steady-method", flags.steady_method, "automatic, direct or iterative", "METHOD");
+  add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation, determinant or bound",
+      "METHOD");
+}
+
+std::vector<Override> overrides(const CommonFlags& flags) {
+  std::vector<Override> result;
+  for (const std::string& text : flags.set) {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+      refuse("--set", text, "PATH=VALUE, as in AB.J=60");
+    }
+    result.push_back({text.substr(0, equals), text.substr(equals + 1)});
+  }
+  return result;
+}
+
+Settings settings(const CommonFlags& flags, const Scene& scene) {
+  Settings result;
+  result.modes = flags.modes.empty() ? scene.analysis.modes : modes_flag(flags.modes);
+  const auto* hill = std::get_if<HillSystem>(&scene.model);
+  if (hill) {
+    const int size = static_cast<int>(hill->num_modes());
+    const int* asked = std::get_if<int>(&result.modes);
+    if (asked && *asked != size) refuse("--modes", flags.modes, fmt::format("{}, the size of [hill] mass", size));
+    result.modes = size;
+  }
+  result.tolerance = flags.tolerance.empty()
+                         ? scene.analysis.tolerance
+                         : number_flag("--tol", flags.tolerance, 1e-14, 0.1, "a number from 1e-14 to 0.1");
+  if (!flags.rods.empty()) result.rods = list_flag("--rods", flags.rods);
+  if (!flags.only.empty()) result.only = only_flag(flags.only, flags.single_speed);
+  if (hill && !result.only.steady && !result.only.stability) {
+    refuse("--only", flags.only, "steady, stability: a [hill] scene has no joints and no shape");
+  }
+  if (!flags.threads.empty()) {
+    result.threads =
+        integer_flag("--threads", flags.threads, 1, max_threads, fmt::format("an integer 1 to {}", max_threads));
+  }
+  if (!flags.steady_method.empty()) {
+    result.steady_method = choice_flag<SteadyMethod>("--steady-method", flags.steady_method,
+                                                     {{"automatic", SteadyMethod::automatic},
+                                                      {"direct", SteadyMethod::direct},
+                                                      {"iterative", SteadyMethod::iterative}});
+  }
+  if (!flags.bound.empty()) {
+    result.bound = choice_flag<SteadyBound>("--bound", flags.bound,
+                                            {{"estimated", SteadyBound::estimated}, {"proved", SteadyBound::proved}});
+  }
+  if (!flags.stability_method.empty()) {
+    result.stability_method = choice_flag<StabilityMethod>("--stability-method", flags.stability_method,
+                                                           {{"automatic", StabilityMethod::automatic},
+                                                            {"hill", StabilityMethod::hill},
+                                                            {"slaving", StabilityMethod::slaving},
+                                                            {"propagation", StabilityMethod::propagation},
+                                                            {"determinant", StabilityMethod::determinant},
+                                                            {"bound", StabilityMethod::bound}});
+  }
+  if (flags.out) {
+    // "--out --json" names no folder.
+    if (flags.out->empty() || flags.out->front() == '-') refuse("--out", *flags.out, "a folder (-x as ./-x)");
+    result.out = *flags.out;
+  }
+  result.json = flags.json;
+  result.plots = !flags.no_plots;
+  result.stats = flags.stats;
+  return result;
+}
+
+SpeedRange speed_range(const CommonFlags& flags, const Scene& scene) {
+  if (!flags.rpm.empty() && !flags.omega.empty()) {
+    throw UsageError(
+        fmt::format("--omega: found \"{}\" beside --rpm {}, allowed: one of the two", flags.omega, flags.rpm));
+  }
+  if (!flags.rpm.empty()) return {speeds_flag("--rpm", flags.rpm), true};
+  if (!flags.omega.empty()) return {speeds_flag("--omega", flags.omega), false};
+  if (scene.analysis.rpm) return {*scene.analysis.rpm, true};
+  if (scene.analysis.omega) return {{*scene.analysis.omega, *scene.analysis.omega, 0}, false};
+  throw UsageError(fmt::format(
+      "--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm N, or --omega W (rad per {})",
+      scene.file.string(), scene.units.time));
+}
+
+double single_speed(const CommonFlags& flags, const Scene& scene) {
+  const auto [speeds, in_rpm] = speed_range(flags, scene);
+  if (speeds.step != 0) {
+    const bool from_flag = !flags.rpm.empty() || !flags.omega.empty();
+    throw UsageError(fmt::format("{}: found the range {}:{}:{}{}, allowed: one speed; give one with --rpm N",
+                                 in_rpm ? "--rpm" : "--omega", speeds.from, speeds.to, speeds.step,
+                                 from_flag ? "" : " in the scene's [analysis]"));
+  }
+  return in_rpm ? speed_from_rpm(speeds.from, scene.units) : speeds.from;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,162 @@
+#include "tools/output/check_json.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json difference(const RodCheck& rod, const std::optional<Comparison>& c) {
+  return rod.compared() && c ? number(c->difference) : Json();
+}
+
+Json allowed(const RodCheck& rod, const std::optional<Comparison>& c) {
+  return rod.compared() && c ? number(c->allowed) : Json();
+}
+
+// null where nothing could be compared.
+Json agrees(const RodCheck& rod) { return rod.compared() || rod.both_singular ? Json(rod.agrees()) : Json(); }
+
+Json exponents_json(const std::vector<Exponent>& exponents) {
+  Json list = Json::array();
+  for (const Exponent& e : exponents) list.push_back({number(e.value.real()), number(e.value.imag())});
+  return list;
+}
+
+Json shooting_json(const ShootingResult& shooting) {
+  const bool has_exponents = !shooting.exponents.empty();
+  Json json = {{"status", to_string(shooting.status)},
+               {"integrator", to_string(shooting.integrator)},
+               {"integrator_tolerance", number(shooting.integrator_tolerance)},
+               {"q_error", shooting.orbit.q.size() > 0 ? number(shooting.q_error) : Json()},
+               {"growth_rate", has_exponents ? number(shooting.growth_rate) : Json()},
+               {"growth_error", has_exponents ? number(shooting.growth_error) : Json()},
+               {"exponents", exponents_json(shooting.exponents)},
+               {"verdict", to_string(shooting.verdict)},
+               {"segments", shooting.num_segments},
+               {"steps", shooting.steps},
+               {"evaluations", shooting.evaluations},
+               {"seconds", shooting.seconds},
+               {"predicted_seconds", number(shooting.predicted_seconds)}};
+  if (!shooting.message.empty()) json["message"] = shooting.message;
+  return json;
+}
+
+Json marching_json(const MarchingResult& marching) {
+  Json json = {{"status", to_string(marching.status)},
+               {"integrator", to_string(marching.integrator)},
+               {"turns", marching.turns},
+               {"q_error", number(marching.q_error)},
+               {"steps", marching.steps},
+               {"seconds", marching.seconds}};
+  if (!marching.message.empty()) json["message"] = marching.message;
+  return json;
+}
+
+Json rod_json(const RodCheck& rod, double tolerance) {
+  Json json;
+  json["q_difference"] = difference(rod, rod.q);
+  json["exponent_difference"] = difference(rod, rod.exponents);
+  json["agrees"] = agrees(rod);
+  json["q_allowed"] = allowed(rod, rod.q);
+  json["exponent_allowed"] = allowed(rod, rod.exponents);
+  json["q1_difference"] = difference(rod, rod.q1);
+  json["q1_allowed"] = allowed(rod, rod.q1);
+  if (rod.deflection) {
+    json["deflection_difference"] = number(rod.deflection->difference);
+    json["deflection_allowed"] = number(rod.deflection->allowed);
+  }
+  if (rod.marched) {
+    json["marching_difference"] = number(rod.marched->difference);
+    json["marching_allowed"] = number(rod.marched->allowed);
+  }
+  Json& series = json["harmonic_balance"];
+  series = {{"tolerance", tolerance},
+            {"error_bound", number(rod.steady.error_bound)},
+            {"harmonics", rod.steady.num_harmonics}};
+  if (rod.stability) {
+    series["growth_rate"] = number(rod.stability->growth_rate);
+    series["growth_error"] = number(rod.stability->growth_error);
+    series["exponents"] = exponents_json(rod.stability->exponents);
+    series["verdict"] = to_string(rod.stability->verdict);
+  }
+  json["shooting"] = shooting_json(rod.shooting);
+  if (rod.marching) json["marching"] = marching_json(*rod.marching);
+  if (!rod.compared()) json["not_compared"] = rod.not_compared;
+  return json;
+}
+
+Json single_json(const SceneModel& model, const SpeedCheck& check, const Settings& settings) {
+  Json json;
+  json["title"] = scene_name(model.scene);
+  json["rpm"] = rpm_from_speed(check.speed, model.scene.units);
+  json["omega"] = check.speed;
+  json["agrees"] = check.agrees();
+  json["rods"] = Json::object();
+  for (const RodCheck& rod : check.rods) json["rods"][rod.name] = rod_json(rod, settings.tolerance);
+  if (check.joints) {
+    const auto compared = [](const Comparison& c) {
+      return Json{{"difference", number(c.difference)}, {"allowed", number(c.allowed)}, {"agrees", c.agrees()}};
+    };
+    json["joints"] = compared(check.joints->forces);
+    json["joints"]["worst"] = check.joints->worst;
+    json["torque"] = compared(check.joints->torque);
+  }
+  return json;
+}
+
+Json range_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+  Json json;
+  json["title"] = scene_name(model.scene);
+  json["rpm"] = Json::array();
+  json["omega"] = Json::array();
+  json["agrees"] = std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.agrees(); });
+  json["rods"] = Json::object();
+  for (const SpeedCheck& check : checks) {
+    json["rpm"].push_back(rpm_from_speed(check.speed, model.scene.units));
+    json["omega"].push_back(check.speed);
+    for (const RodCheck& rod : check.rods) {
+      Json& entry = json["rods"][rod.name];
+      entry["q_difference"].push_back(difference(rod, rod.q));
+      entry["q_allowed"].push_back(allowed(rod, rod.q));
+      entry["exponent_difference"].push_back(difference(rod, rod.exponents));
+      entry["exponent_allowed"].push_back(allowed(rod, rod.exponents));
+      entry["verdict"].push_back(to_string(rod.shooting.verdict));
+      entry["agrees"].push_back(agrees(rod));
+    }
+    const bool joints = check.joints.has_value();
+    json["joints_difference"].push_back(joints ? number(check.joints->forces.difference) : Json());
+    json["torque_difference"].push_back(joints ? number(check.joints->torque.difference) : Json());
+  }
+  if (const std::optional<WorstCase> worst = worst_case(checks))
+    json["worst"] = {{"rpm", rpm_from_speed(worst->speed, model.scene.units)},
+                     {"rod", worst->where},
+                     {"what", worst->comparison.what},
+                     {"difference", number(worst->comparison.difference)},
+                     {"allowed", number(worst->comparison.allowed)}};
+  return json;
+}
+
+}  // namespace
+
+Json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings) {
+  Json json = checks.size() > 1 ? range_json(model, checks) : single_json(model, checks.front(), settings);
+  double series = 0, shooting = 0, marching = 0;
+  for (const SpeedCheck& check : checks) {
+    series += check.seconds_harmonic_balance;
+    shooting += check.seconds_shooting;
+    marching += check.seconds_marching;
+  }
+  json["seconds"] = {{"harmonic_balance", series}, {"shooting", shooting}};
+  if (marching > 0) json["seconds"]["marching"] = marching;
+  return json;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,175 @@
+#include "tools/output/check_report.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Text = fmt::memory_buffer;
+
+template <class... Args>
+void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
+}
+
+// Exponents are the only comparison that is not relative.
+std::string with_unit(const Comparison& c, const OutputUnits& units) {
+  return c.what == "exponents" ? c.what + bracketed(units.rate) : c.what;
+}
+
+void add_comparison(Text& text, const Comparison& c, const OutputUnits& units) {
+  add(text, "  {:<24} {:>10.2e}  {:>10.2e}  {}\n", with_unit(c, units), c.difference, c.allowed,
+      c.agrees() ? "agrees" : "DISAGREES");
+}
+
+std::string differs(const Comparison& c, const OutputUnits& units) {
+  return fmt::format("{} differs by {:.2e}, allowed {:.2e}", with_unit(c, units), c.difference, c.allowed);
+}
+
+void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const OutputUnits& units) {
+  const ShootingResult& shooting = rod.shooting;
+  add(text, "\n{}\n", rod.name);
+  if (rod.steady.status == SteadyStatus::singular)
+    add(text, "  harmonic balance         {}\n", status_text(rod.steady.status));
+  else
+    add(text, "  harmonic balance         asked {:.1e}, bound {:.1e}, {} harmonics\n", settings.tolerance,
+        rod.steady.error_bound, rod.steady.num_harmonics);
+  if (shooting.orbit.q.size() == 0)
+    add(text, "  shooting                 {}: {}\n", to_string(shooting.status), shooting.message);
+  else
+    add(text, "  shooting                 asked {:.1e}, reached {:.1e}; {}, {} steps, {} segment{} a turn, {:.3g} s\n",
+        shooting_tolerance(settings), shooting.q_error, to_string(shooting.integrator), shooting.steps,
+        shooting.num_segments, shooting.num_segments == 1 ? "" : "s", shooting.seconds);
+  if (settings.stats)
+    add(text, "  work                     {} evaluations, predicted {:.3g} s; {} {:.1e}\n", shooting.evaluations,
+        shooting.predicted_seconds,
+        shooting.integrator == Integrator::collocation ? "finest cell [rad]" : "finest local tolerance",
+        shooting.integrator_tolerance);
+  if (rod.marching)
+    add(text, "  marching from rest       {}: {}{} turns, {} steps, {:.3g} s\n", to_string(rod.marching->status),
+        rod.marching->message.empty() ? "" : rod.marching->message + "; ", rod.marching->turns, rod.marching->steps,
+        rod.marching->seconds);
+  if (!rod.compared()) {
+    const bool said = shooting.orbit.q.size() == 0 && !rod.both_singular;
+    add(text, "  not compared{}\n", said ? "" : "             " + rod.not_compared);
+    return;
+  }
+  add(text, "  {:<24} {:>10}  {:>10}\n", "", "difference", "allowed");
+  for (const Comparison& comparison : rod.comparisons()) add_comparison(text, comparison, units);
+  if (!rod.stability) return;
+  add(text, "  growth rate{:<13} {} and {}\n", bracketed(units.rate),
+      with_error(rod.stability->growth_rate, rod.stability->growth_error),
+      with_error(shooting.growth_rate, shooting.growth_error));
+  add(text, "  exponents listed         {} and {}{}\n", rod.stability->exponents.size(), shooting.exponents.size(),
+      shooting.some_below ? "; the others decay below what the integration resolves" : "");
+  add(text, "  verdict                  {} and {}\n", to_string(rod.stability->verdict), to_string(shooting.verdict));
+}
+
+void add_times(Text& text, const std::vector<SpeedCheck>& checks) {
+  double series = 0, shooting = 0, marching = 0;
+  for (const SpeedCheck& check : checks) {
+    series += check.seconds_harmonic_balance;
+    shooting += check.seconds_shooting;
+    marching += check.seconds_marching;
+  }
+  add(text, "time: harmonic balance {:.3g} s, shooting {:.3g} s", series, shooting);
+  if (marching > 0) add(text, ", marching {:.3g} s", marching);
+  add(text, "\n");
+}
+
+void add_single(Text& text, const SceneModel& model, const SpeedCheck& check, const Settings& settings) {
+  const OutputUnits units = output_units(model.scene);
+  add(text, "{}, {}: harmonic balance against time integration\n", scene_name(model.scene),
+      speed_text(check.speed, model.scene));
+  for (const RodCheck& rod : check.rods) add_rod(text, rod, settings, units);
+  if (check.joints) {
+    add(text, "\njoints\n  {:<24} {:>10}  {:>10}\n", "", "difference", "allowed");
+    add_comparison(text, check.joints->forces, units);
+    add_comparison(text, check.joints->torque, units);
+    add(text, "  nearest to its allowance {}\n", check.joints->worst);
+  }
+  add(text, "\n");
+}
+
+void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+  const OutputUnits units = output_units(model.scene);
+  const auto speed_column = [&](double speed) {
+    return model.linkage() != nullptr ? rpm_from_speed(speed, model.scene.units) : speed;
+  };
+  add(text, "{}: harmonic balance against time integration\n\n", scene_name(model.scene));
+  add(text, "{:>10}  {:<12} {:>10} {:>10} {:>10} {:>10}  {:<10} {:<18} {}\n",
+      model.linkage() != nullptr ? "rpm" : "omega", "rod", "q diff.", "allowed", "exp. diff.", "allowed", "verdict",
+      "integrator", "agrees");
+  const auto cells = [](const std::optional<Comparison>& c) {
+    return c ? fmt::format("{:>10.2e} {:>10.2e}", c->difference, c->allowed) : fmt::format("{:>21}", "");
+  };
+  for (const SpeedCheck& check : checks) {
+    const double speed = speed_column(check.speed);
+    for (const RodCheck& rod : check.rods) {
+      if (!rod.compared()) {
+        add(text, "{:>10.6g}  {:<12} {}\n", speed, rod.name, rod.not_compared);
+        continue;
+      }
+      add(text, "{:>10.6g}  {:<12} {} {}  {:<10} {:<18} {}\n", speed, rod.name, cells(rod.q), cells(rod.exponents),
+          to_string(rod.shooting.verdict), to_string(rod.shooting.integrator), rod.agrees() ? "yes" : "NO");
+    }
+    if (check.joints)
+      for (const auto& [name, c] : {std::pair<const char*, const Comparison&>{"joint forces", check.joints->forces},
+                                    {"torque", check.joints->torque}})
+        add(text, "{:>10}  {:<12} {} {:>53}{}\n", "", name, cells(c), "", c.agrees() ? "yes" : "NO");
+  }
+  if (const std::optional<WorstCase> worst = worst_case(checks))
+    add(text, "\nworst case: {} at {}, {}\n", worst->where, speed_text(worst->speed, model.scene),
+        differs(worst->comparison, units));
+}
+
+void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+  const OutputUnits units = output_units(model.scene);
+  bool agree = true, complete = true, any = false;
+  for (const SpeedCheck& check : checks) {
+    const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
+    agree = agree && check.agrees();
+    for (const RodCheck& rod : check.rods) {
+      const bool known = rod.compared() || rod.both_singular;
+      complete = complete && known;
+      any = any || known;
+      for (const Comparison& c : rod.comparisons())
+        if (!c.agrees()) add(text, "DISAGREES: {}{}: {}\n", at, rod.name, differs(c, units));
+      if (rod.opposite_verdicts())
+        add(text, "DISAGREES: {}{}: harmonic balance says {}, time integration {}\n", at, rod.name,
+            to_string(rod.stability->verdict), to_string(rod.shooting.verdict));
+    }
+    if (check.joints && !check.joints->forces.agrees())
+      add(text, "DISAGREES: {}{}: {}\n", at, check.joints->worst, differs(check.joints->forces, units));
+    if (check.joints && !check.joints->torque.agrees())
+      add(text, "DISAGREES: {}{}\n", at, differs(check.joints->torque, units));
+    for (const std::string& sentence : check.shortfalls) add(text, "NOT REACHED: {}{}\n", at, sentence);
+  }
+  add(text, "{}\n",
+      !agree     ? "The paths DISAGREE."
+      : complete ? "The paths agree within the sum of their error bars."
+      : !any     ? "Nothing could be compared."
+                 : "Not everything could be compared; what could agrees within the sum of the error bars.");
+}
+
+}  // namespace
+
+std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings) {
+  Text text;
+  if (checks.size() > 1)
+    add_range(text, model, checks);
+  else
+    add_single(text, model, checks.front(), settings);
+  add_times(text, checks);
+  add_verdict(text, model, checks);
+  return fmt::to_string(text);
+}
+
+}  // namespace hb::tools

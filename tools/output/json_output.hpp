@@ -1,0 +1,19 @@
+// The JSON documents of `hb`: keys as users and outside checks read them, numbers in the scene's units with all their
+// digits. A number that does not exist (the error bound of a state that was not found) is null.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "hb/analysis/linkage_analysis.hpp"
+
+namespace hb::tools {
+
+[[nodiscard]] nlohmann::ordered_json steady_json(const SceneModel& model, const SpeedResult& result,
+                                                 const Settings& settings);
+[[nodiscard]] nlohmann::ordered_json units_json(const Units& units);
+[[nodiscard]] nlohmann::ordered_json stages_json(const std::vector<Stage>& stages);
+// The document with a newline, on standard output.
+void print_json(const nlohmann::ordered_json& document);
+
+}  // namespace hb::tools

@@ -1,0 +1,291 @@
+#include "tools/output/map_output.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tools/output/json_output.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+bool missing(const MapPoint& point) { return point.source == MapSource::missing; }
+
+// Rows along x, one per y.
+template <class Value>
+Json grid_json(const StabilityMap& map, const std::vector<MapPoint>& points, const Value& value) {
+  const std::size_t nx = map.x.size();
+  Json rows = Json::array();
+  for (std::size_t j = 0; j < map.y.size(); ++j) {
+    Json row = Json::array();
+    for (std::size_t i = 0; i < nx; ++i) {
+      const MapPoint& point = points[i + nx * j];
+      row.push_back(missing(point) ? Json() : Json(value(point)));
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+void add_grids(Json& json, const StabilityMap& map, const std::vector<MapPoint>& points) {
+  json["growth_rate"] = grid_json(map, points, [](const MapPoint& p) { return p.growth_rate; });
+  json["verdict"] = grid_json(map, points, [](const MapPoint& p) { return to_string(p.verdict); });
+  json["kind"] = grid_json(map, points, [](const MapPoint& p) { return to_string(p.kind); });
+  json["growth_error"] = grid_json(
+      map, points, [](const MapPoint& p) { return std::isfinite(p.growth_error) ? Json(p.growth_error) : Json(); });
+}
+
+Json points_json(const BoundaryCurve& curve) {
+  Json points = Json::array();
+  for (const BoundaryPoint& p : curve.points) points.push_back(Json::array({p.x, p.y}));
+  return points;
+}
+
+Json curve_json(const BoundaryCurve& curve) {
+  double error = 0;
+  for (const BoundaryPoint& p : curve.points) error = std::max(error, p.error);
+  return {{"kind", to_string(curve.kind)}, {"closed", curve.closed}, {"error", error}, {"points", points_json(curve)}};
+}
+
+Json curves_json(const MapResult& result, const std::vector<RodCurve>& curves) {
+  Json json = Json::array();
+  for (const RodCurve& c : curves) {
+    Json entry = curve_json(c.curve);
+    entry["rod"] = result.rods[c.rod];
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json axis_json(const PlaneAxis& axis, const std::vector<double>& values) {
+  return {{"path", axis.path}, {"values", values}};
+}
+
+std::string first_line(const MapDocument& document, const std::string& what) {
+  const MapResult& r = document.result;
+  return fmt::format("{}: {} over {} and {}", scene_name(document.scene), what, r.x_axis.path, r.y_axis.path);
+}
+
+struct Counts {
+  std::size_t stable = 0, unstable = 0, undecided = 0, missing = 0, interpolated = 0;
+};
+
+Counts counts(const std::vector<MapPoint>& points) {
+  Counts n;
+  for (const MapPoint& p : points) {
+    if (missing(p)) {
+      ++n.missing;
+      continue;
+    }
+    ++(p.verdict == Verdict::stable ? n.stable : p.verdict == Verdict::unstable ? n.unstable : n.undecided);
+    n.interpolated += p.source == MapSource::interpolated;
+  }
+  return n;
+}
+
+}  // namespace
+
+double growth_per_turn(const MapPoint& point) { return point.growth_rate * 2 * std::numbers::pi / point.speed; }
+
+double tenfold_time(const MapPoint& point) {
+  return point.growth_rate > 0 ? std::numbers::ln10 / point.growth_rate : HUGE_VAL;
+}
+
+Json map_json(const MapDocument& document) {
+  const MapResult& r = document.result;
+  const StabilityMap& first = r.maps.front();
+  const Counts n = counts(r.worst);
+  Json json;
+  json["title"] = document.scene.title;
+  json["x"] = axis_json(r.x_axis, r.x());
+  json["y"] = axis_json(r.y_axis, r.y());
+  json["modes"] = document.num_modes;
+  json["boundary_tolerance"] = document.tolerance;
+  add_grids(json, first, r.worst);
+  json["interpolated"] =
+      grid_json(first, r.worst, [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
+  json["growth_per_turn"] = grid_json(first, r.worst, growth_per_turn);
+  json["boundaries"] = curves_json(r, r.boundaries);
+  Json rods = Json::object();
+  for (std::size_t k = 0; k < r.rods.size(); ++k) {
+    Json& rod = rods[r.rods[k]];
+    add_grids(rod, r.maps[k], r.maps[k].points);
+    rod["boundaries"] = Json::array();
+    for (const BoundaryCurve& curve : r.maps[k].boundaries) rod["boundaries"].push_back(curve_json(curve));
+  }
+  json["rods"] = std::move(rods);
+  if (!r.damping.empty()) {
+    json["damping_range"] = Json::array();
+    for (const DampingCurves& d : r.damping) {
+      json["damping_range"].push_back({{"factor", d.factor}, {"boundaries", curves_json(r, d.boundaries)}});
+    }
+  }
+  json["resonance_lines"] = Json::array();
+  for (const ResonanceLine& line : r.lines) {
+    json["resonance_lines"].push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
+  }
+  json["boundary_points_not_reached"] = boundary_points_not_reached(r);
+  json["counts"] = {{"stable", n.stable},
+                    {"unstable", n.unstable},
+                    {"undecided", n.undecided},
+                    {"missing", n.missing},
+                    {"interpolated", n.interpolated}};
+  json["missing"] = Json::array();
+  for (const MissingPoints& m : r.missing) {
+    json["missing"].push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
+  }
+  json["units"] = units_json(document.scene.units);
+  return json;
+}
+
+CsvFile map_grid_csv(const MapDocument& document) {
+  const MapResult& r = document.result;
+  const std::size_t nx = r.x().size();
+  const std::string time = document.scene.units.time;
+  CsvFile file;
+  file.name = "map_grid.csv";
+  file.comment = {first_line(document, "growth rate, largest over the rods"),
+                  "verdict 1 unstable, 0 undecided, -1 stable; interpolated 1: inside a cell of one verdict; "
+                  "nan: no system"};
+  file.columns = {
+      r.x_axis.path, r.y_axis.path, "growth [1/" + time + "]", "growth per turn", "tenfold time [" + time + "]",
+      "verdict",     "interpolated"};
+  for (const std::string& rod : r.rods) file.columns.push_back("growth " + rod + " [1/" + time + "]");
+  file.rows.resize(static_cast<Eigen::Index>(r.worst.size()), static_cast<Eigen::Index>(file.columns.size()));
+  for (std::size_t p = 0; p < r.worst.size(); ++p) {
+    const MapPoint& point = r.worst[p];
+    const auto row = static_cast<Eigen::Index>(p);
+    const bool none = missing(point);
+    const double verdict = point.verdict == Verdict::unstable ? 1 : point.verdict == Verdict::stable ? -1 : 0;
+    file.rows(row, 0) = r.x()[p % nx];
+    file.rows(row, 1) = r.y()[p / nx];
+    file.rows(row, 2) = none ? nan : point.growth_rate;
+    file.rows(row, 3) = none ? nan : growth_per_turn(point);
+    file.rows(row, 4) = none ? nan : tenfold_time(point);
+    file.rows(row, 5) = none ? nan : verdict;
+    file.rows(row, 6) = none ? nan : double(point.source == MapSource::interpolated);
+    for (std::size_t k = 0; k < r.rods.size(); ++k) {
+      file.rows(row, static_cast<Eigen::Index>(7 + k)) = none ? nan : r.maps[k].points[p].growth_rate;
+    }
+  }
+  return file;
+}
+
+CsvFile map_boundary_csv(const MapDocument& document, const std::vector<RodCurve>& curves, const std::string& name,
+                         const std::string& what) {
+  const MapResult& r = document.result;
+  CsvFile file;
+  file.name = name;
+  file.comment = {first_line(document, what), fmt::format("rods: {}", fmt::join(r.rods, ", ")),
+                  "kind 1: +1, -1: period doubling, 0: complex; error: half of the bracket that is left"};
+  file.columns = {"curve", "rod", "kind", r.x_axis.path, r.y_axis.path, "error"};
+  std::size_t count = 0;
+  for (const RodCurve& c : curves) count += c.curve.points.size() + 1;
+  file.rows = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(count), 6, nan);
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < curves.size(); ++k) {
+    const BoundaryKind kind = curves[k].curve.kind;
+    const double number = kind == BoundaryKind::plus_one ? 1 : kind == BoundaryKind::minus_one ? -1 : 0;
+    for (const BoundaryPoint& p : curves[k].curve.points) {
+      file.rows.row(row++) << double(k + 1), double(curves[k].rod + 1), number, p.x, p.y, p.error;
+    }
+    ++row;
+  }
+  return file;
+}
+
+CsvFile map_resonance_csv(const MapDocument& document) {
+  const MapResult& r = document.result;
+  CsvFile file;
+  file.name = "map_resonance.csv";
+  file.comment = {first_line(document, "parametric resonance lines of the mean frequencies of " + r.rods.front())};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < r.lines.size(); ++k) {
+    file.comment.push_back(fmt::format("line {}: speed = {}", k + 1, r.lines[k].name(false)));
+    for (const auto& piece : r.lines[k].pieces) count += piece.size() + 1;
+  }
+  file.columns = {"line", r.x_axis.path, r.y_axis.path};
+  file.rows = Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(count), 3, nan);
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < r.lines.size(); ++k) {
+    for (const auto& piece : r.lines[k].pieces) {
+      for (const auto& p : piece) file.rows.row(row++) << double(k + 1), p[0], p[1];
+      ++row;
+    }
+  }
+  return file;
+}
+
+std::string map_summary(const MapDocument& document) {
+  const MapResult& r = document.result;
+  const Counts n = counts(r.worst);
+  const double all = static_cast<double>(r.worst.size());
+  std::string text = fmt::format("{}\n", scene_name(document.scene));
+  text += fmt::format("  x  {} = {} ... {}, {} values\n  y  {} = {} ... {}, {} values\n", r.x_axis.path, r.x().front(),
+                      r.x().back(), r.x().size(), r.y_axis.path, r.y().front(), r.y().back(), r.y().size());
+  text += fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes);
+  text +=
+      fmt::format("  stable {:.4g} %, unstable {:.4g} %, undecided {:.4g} %", 100 * static_cast<double>(n.stable) / all,
+                  100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
+  if (n.missing > 0) text += fmt::format(", no system {:.4g} %", 100 * static_cast<double>(n.missing) / all);
+  text += fmt::format(" of {} points", r.worst.size());
+  if (n.interpolated > 0) text += fmt::format(" ({} of them interpolated)", n.interpolated);
+  text += "\n";
+  const MapPoint* fastest = nullptr;
+  for (const MapPoint& p : r.worst) {
+    if (!missing(p) && (fastest == nullptr || p.growth_rate > fastest->growth_rate)) fastest = &p;
+  }
+  if (fastest != nullptr) {
+    const auto place = static_cast<std::size_t>(fastest - r.worst.data());
+    text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per turn) at {} = {:.6g}, {} = {:.6g}\n",
+                        fastest->growth_rate, document.scene.units.time, growth_per_turn(*fastest), r.x_axis.path,
+                        r.x()[place % r.x().size()], r.y_axis.path, r.y()[place / r.x().size()]);
+  }
+  for (const MissingPoints& m : r.missing) {
+    text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,
+                        m.x, r.y_axis.path, m.y, m.message);
+  }
+  if (const std::size_t missed = boundary_points_not_reached(r); missed > 0) {
+    double worst = 0;
+    for (const StabilityMap& map : r.maps) {
+      for (const BoundaryCurve& curve : map.boundaries) {
+        for (const BoundaryPoint& p : curve.points) {
+          worst = std::max(worst, p.error / std::max(std::abs(p.along_x ? p.x : p.y), 1e-300));
+        }
+      }
+    }
+    text += fmt::format(
+        "  NOT REACHED: {} boundary {} known to less than 1e-10, where the growth rate's error moves {}: to {:.1e} at "
+        "worst\n",
+        missed, missed == 1 ? "point is" : "points are", missed == 1 ? "it" : "them", worst);
+  }
+  if (r.boundaries.empty()) return text + "  no stability boundary\n";
+  text += fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind",
+                      "points", r.x_axis.path, r.y_axis.path);
+  constexpr std::size_t most = 30;
+  for (std::size_t k = 0; k < r.boundaries.size() && k < most; ++k) {
+    const auto& points = r.boundaries[k].curve.points;
+    const auto [x0, x1] = std::minmax_element(points.begin(), points.end(),
+                                              [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.x < b.x; });
+    const auto [y0, y1] = std::minmax_element(points.begin(), points.end(),
+                                              [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.y < b.y; });
+    text += fmt::format("    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", r.rods[r.boundaries[k].rod],
+                        to_string(r.boundaries[k].curve.kind), points.size(),
+                        fmt::format("{:.8g} ... {:.8g}", x0->x, x1->x), fmt::format("{:.8g} ... {:.8g}", y0->y, y1->y));
+  }
+  if (r.boundaries.size() > most) text += fmt::format("    ... {} more (--json has all)\n", r.boundaries.size() - most);
+  return text;
+}
+
+}  // namespace hb::tools

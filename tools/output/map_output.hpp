@@ -1,0 +1,37 @@
+// A stability map as JSON, CSV and a few lines of text.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/output/csv_output.hpp"
+#include "hb/analysis/map_result.hpp"
+
+namespace hb::tools {
+
+struct MapDocument {
+  const MapResult& result;
+  const Scene& scene;
+  Eigen::Index num_modes = 0;
+  double tolerance = 0;  // of boundary points, relative
+};
+
+[[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
+
+// x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1), then
+// growth of each rod; NaN where there is no system.
+[[nodiscard]] CsvFile map_grid_csv(const MapDocument& document);
+// Curve, rod (from 1), kind (1, -1, 0 complex), x, y, error; a row of NaN between curves.
+[[nodiscard]] CsvFile map_boundary_csv(const MapDocument& document, const std::vector<RodCurve>& curves,
+                                       const std::string& name, const std::string& what);
+// Line, x, y; a row of NaN between pieces.
+[[nodiscard]] CsvFile map_resonance_csv(const MapDocument& document);
+
+[[nodiscard]] std::string map_summary(const MapDocument& document);
+
+// Growth per turn, and the time to grow tenfold (infinite where it does not grow).
+[[nodiscard]] double growth_per_turn(const MapPoint& point);
+[[nodiscard]] double tenfold_time(const MapPoint& point);
+
+}  // namespace hb::tools

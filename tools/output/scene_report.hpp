@@ -1,0 +1,26 @@
+// What a scene means, as `hb scene` tells it: a table for people and a JSON document in the scene's units.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "lib/scene/scene.hpp"
+
+namespace hb::tools {
+
+// Angle between coupler and rocker, or between coupler and the normal of the guide, folded to [0, pi/2]: how well the
+// dyad passes force on. Smallest over the turn.
+struct TransmissionAngle {
+  double smallest = 0;  // rad
+  double crank_angle = 0;  // rad
+};
+[[nodiscard]] TransmissionAngle transmission_angle(const Linkage& linkage, int dyad);
+
+// Natural frequencies at rest without axial load, omega_i = (i pi/l)^2 sqrt(EJ/mu), i = 1..count, rad per unit time.
+[[nodiscard]] std::vector<double> natural_frequencies(const Body& link, int count);
+
+[[nodiscard]] std::string scene_table(const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json scene_json(const Scene& scene);
+
+}  // namespace hb::tools

@@ -1,0 +1,500 @@
+#include "tools/output/sweep_output.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tools/output/json_output.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/path_unit.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Text = fmt::memory_buffer;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+template <class... Args>
+void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
+}
+
+bool is_speed(const SweepScene& scene) { return scene.axis().kind != Axis::Kind::parameter; }
+
+// Whole turns only: an axis that is not the speed has its own unit, unknown here.
+std::string axis_unit(const SweepScene& scene) {
+  switch (scene.axis().kind) {
+    case Axis::Kind::rpm: return "rpm";
+    case Axis::Kind::omega: return "rad/" + scene.scene().units.time;
+    case Axis::Kind::parameter: break;
+  }
+  return "";
+}
+
+// A number, or null where it is not finite.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+template <class Value>
+Json over_points(const std::vector<SweepPoint>& points, const Value& value) {
+  Json array = Json::array();
+  array.get_ref<Json::array_t&>().reserve(points.size());
+  for (const SweepPoint& point : points) array.push_back(point.problem.empty() ? value(point) : Json(nullptr));
+  return array;
+}
+
+Json verdict_json(const RodPoint& rod) {
+  return rod.stability ? Json(to_string(rod.stability->stability.verdict)) : Json(nullptr);
+}
+
+Json exponents_json(const Stability& stability) {
+  Json array = Json::array();
+  for (const Exponent& exponent : stability.exponents)
+    array.push_back(Json::array({exponent.value.real(), exponent.value.imag()}));
+  return array;
+}
+
+Json rod_json(const SweepResult& result, std::size_t r, const std::vector<SweepPoint>& points) {
+  Json json;
+  json["modes"] = result.rods[r].num_modes;
+  const auto of_rod = [&](const auto& value) {
+    return over_points(points, [&](const SweepPoint& point) { return Json(value(point.rods[r])); });
+  };
+  if (result.computed.steady) {
+    json["max_abs"] = of_rod([](const RodPoint& rod) { return rod.max_abs.empty() ? Json(nullptr) : Json(rod.max_abs); });
+    json["error_bound"] = of_rod([](const RodPoint& rod) { return number(rod.error_bound); });
+    json["resonance_distance"] = of_rod([](const RodPoint& rod) { return number(rod.resonance_distance); });
+  }
+  if (result.computed.shape) {
+    json["deflection"] = of_rod([](const RodPoint& rod) { return number(rod.deflection.value_or(nan)); });
+    json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment.value_or(nan)); });
+  }
+  if (result.computed.stability) {
+    json["growth_rate"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_rate); });
+    json["growth_error"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_error); });
+    json["verdict"] = of_rod(verdict_json);
+    json["exponents"] = of_rod([](const RodPoint& rod) { return exponents_json(rod.stability->stability); });
+  }
+  return json;
+}
+
+Json ranges_json(const std::vector<SweepPoint>& points, const std::function<const TurnRange*(const SweepPoint&)>& range) {
+  Json json;
+  for (const bool largest : {false, true}) {
+    json[largest ? "max" : "min"] = over_points(points, [&](const SweepPoint& point) {
+      const TurnRange* value = range(point);
+      return value ? number(largest ? value->max : value->min) : Json(nullptr);
+    });
+  }
+  return json;
+}
+
+void add_forces(Json& json, const SweepResult& result) {
+  Json& joints = json["joints"] = Json::object();
+  for (std::size_t c = 0; c < result.joint_components.size(); ++c) {
+    const std::string& name = result.joint_components[c];
+    const std::size_t space = name.rfind(' ');
+    const std::string joint = name.substr(0, space), component = name.substr(space + 1);
+    joints[joint][component] = ranges_json(
+        result.points, [&](const SweepPoint& p) { return c < p.joints.size() ? &p.joints[c] : nullptr; });
+    joints[joint][component + "_rigid"] = ranges_json(
+        result.points, [&](const SweepPoint& p) { return c < p.joints_rigid.size() ? &p.joints_rigid[c] : nullptr; });
+  }
+  json["torque"] = ranges_json(result.points, [](const SweepPoint& p) { return p.torque ? &*p.torque : nullptr; });
+  json["torque"]["rigid"] =
+      ranges_json(result.points, [](const SweepPoint& p) { return p.torque_rigid ? &*p.torque_rigid : nullptr; });
+}
+
+Json critical_json(const SweepResult& result, const CriticalPoint& point, const SweepScene& scene) {
+  Json json = {{"rod", result.rods[point.rod].name}, {"x", point.peak.x}};
+  if (is_speed(scene)) json["rpm"] = rpm_from_speed(point.speed, scene.scene().units);
+  json["omega"] = point.speed;
+  json["error"] = point.peak.error;
+  json["q"] = point.component + 1;
+  json["max_abs"] = number(point.peak.value);
+  json["unbounded"] = std::isinf(point.peak.value);
+  json["prominence"] = point.prominence;
+  if (point.mode >= 0) {
+    json["mode"] = point.mode + 1;
+    json["order"] = point.order;
+    json["frequency"] = point.frequency;
+    json["damping"] = point.damping;
+  }
+  return json;
+}
+
+// No more digits than are known.
+std::string located(double x, double error) {
+  constexpr int most = 12, fewest = 3;
+  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
+  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
+}
+
+Json band_json(const UnstableBand& band) {
+  return {{"from", band.from},
+          {"to", band.to},
+          {"from_kind", band.open_from ? Json(nullptr) : Json(to_string(band.kind_from))},
+          {"to_kind", band.open_to ? Json(nullptr) : Json(to_string(band.kind_to))},
+          {"from_error", band.error_from},
+          {"to_error", band.error_to},
+          {"fastest_growth", band.fastest},
+          {"fastest_at", band.fastest_x}};
+}
+
+std::string kind_words(BoundaryKind kind) {
+  switch (kind) {
+    case BoundaryKind::plus_one: return "with the period of the crank (+1)";
+    case BoundaryKind::minus_one: return "period doubling (-1)";
+    case BoundaryKind::complex: break;
+  }
+  return "two frequencies (complex pair)";
+}
+
+std::string subject(const SweepScene& scene, const SweepResult& result, std::size_t rod) {
+  return scene.first().linkage() ? result.rods[rod].name : "system";
+}
+
+std::string about(const SweepScene& scene, const std::string& what) {
+  return fmt::format("{}: {}", scene_name(scene.scene()), what);
+}
+
+}  // namespace
+
+std::string axis_label(const SweepScene& scene) {
+  switch (scene.axis().kind) {
+    case Axis::Kind::rpm: return "crank speed [rpm]";
+    case Axis::Kind::omega: return "omega [rad/" + scene.scene().units.time + "]";
+    case Axis::Kind::parameter: break;
+  }
+  return scene.axis().path + bracketed(path_unit(scene.axis().path, scene.scene().units));
+}
+
+Json sweep_json(const SweepScene& scene, const SweepResult& result) {
+  const Units& units = scene.scene().units;
+  const std::vector<SweepPoint>& points = result.points;
+  Json json;
+  json["title"] = scene.scene().title;
+  json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
+  if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
+  json["tolerance"] = scene.settings().tolerance;
+  json["units"] = units_json(units);
+  json["x"] = {{"path", scene.axis().path}, {"values", scene.axis().values}};
+  Json rpm = Json::array(), omega = Json::array();
+  for (const SweepPoint& point : points) {
+    rpm.push_back(scene.axis().kind == Axis::Kind::rpm     ? point.x
+                  : scene.axis().kind == Axis::Kind::omega ? rpm_from_speed(point.speed, units)
+                                                           : scene.fixed_rpm());
+    omega.push_back(point.speed);
+  }
+  json["rpm"] = std::move(rpm);
+  json["omega"] = std::move(omega);
+  Json& rods = json["rods"] = Json::object();
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(result, r, points);
+  if (result.computed.steady) {
+    std::vector<double> critical, critical_x;
+    for (const CriticalPoint& point : result.critical) critical_x.push_back(point.peak.x);
+    std::sort(critical_x.begin(), critical_x.end());
+    critical_x.erase(std::unique(critical_x.begin(), critical_x.end()), critical_x.end());
+    if (is_speed(scene)) {
+      for (const double x : critical_x)
+        critical.push_back(scene.axis().kind == Axis::Kind::rpm ? x : rpm_from_speed(x, units));
+      json["critical_rpm"] = critical;
+    } else {
+      json["critical_rpm"] = Json::array();
+    }
+    json["critical_x"] = critical_x;
+    Json& list = json["critical"] = Json::array();
+    for (const CriticalPoint& point : result.critical) list.push_back(critical_json(result, point, scene));
+  }
+  if (result.computed.stability) {
+    Json& bands = json["unstable_bands"] = Json::object();
+    Json& details = json["band_details"] = Json::object();
+    for (const SweepRod& rod : result.rods) {
+      if (!rod.reported) continue;
+      Json pairs = Json::array(), list = Json::array();
+      for (const UnstableBand& band : rod.bands) {
+        pairs.push_back(Json::array({band.from, band.to}));
+        list.push_back(band_json(band));
+      }
+      bands[rod.name] = std::move(pairs);
+      details[rod.name] = std::move(list);
+    }
+  }
+  if (result.computed.reactions) add_forces(json, result);
+  Json problems = Json::array();
+  for (std::size_t k = 0; k < points.size(); ++k)
+    if (!points[k].problem.empty()) problems.push_back({{"index", k}, {"x", points[k].x}, {"reason", points[k].problem}});
+  if (!problems.empty()) json["problems"] = std::move(problems);
+  if (!result.refined.empty()) {
+    Json& refined = json["refined"] = Json::object();
+    Json x = Json::array();
+    for (const SweepPoint& point : result.refined) x.push_back(point.x);
+    refined["x"] = std::move(x);
+    for (std::size_t r = 0; r < result.rods.size(); ++r)
+      if (result.rods[r].reported) refined["rods"][result.rods[r].name] = rod_json(result, r, result.refined);
+  }
+  if (scene.settings().stats) json["stats"] = stages_json(result.stages);
+  return json;
+}
+
+std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
+  const OutputUnits units = output_units(scene.scene());
+  const std::vector<double>& values = scene.axis().values;
+  const std::string unit = axis_unit(scene), path = scene.axis().path;
+  Text text;
+  add(text, "{}: {} = {:.10g} to {:.10g}{}, {} points", scene_name(scene.scene()), path, values.front(), values.back(),
+      unit.empty() || unit == path ? "" : " " + unit, values.size());
+  if (!is_speed(scene)) add(text, " at {}", speed_text(result.points.front().speed, scene.scene()));
+  add(text, "\n");
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const SweepRod& rod = result.rods[r];
+    if (!rod.reported) continue;
+    add(text, "\n{}: {} {}\n", rod.name, rod.num_modes,
+        scene.first().linkage() ? (rod.num_modes == 1 ? "mode" : "modes")
+                                : (rod.num_modes == 1 ? "unknown" : "unknowns"));
+    // A row for every so many points.
+    constexpr std::size_t rows = 16;
+    const std::size_t every = (values.size() + rows - 1) / rows;
+    add(text, "  {:>14}", path);
+    if (result.computed.steady) add(text, "  {:>14}", "max |q_1|" + bracketed(units.response));
+    if (result.computed.shape) {
+      add(text, "  {:>15}  {:>14}", "deflection" + bracketed(units.length), "moment [N m]");
+    }
+    if (result.computed.stability) add(text, "  {:>16}  {}", "growth" + bracketed(units.rate), "verdict");
+    add(text, "\n");
+    for (std::size_t k = 0; k < values.size(); k += every) {
+      const SweepPoint& point = result.points[k];
+      add(text, "  {:>14.8g}", point.x);
+      if (!point.problem.empty()) {
+        add(text, "  does not close\n");
+        continue;
+      }
+      const RodPoint& here = point.rods[r];
+      if (result.computed.steady) add(text, "  {:>14.6g}", here.max_abs.empty() ? nan : here.max_abs.front());
+      if (result.computed.shape) {
+        add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan),
+            here.bending_moment.value_or(nan) * units.moment);
+      }
+      if (result.computed.stability) {
+        add(text, "  {:>16.6g}  {}", here.stability->stability.growth_rate,
+            here.stability->stability.verdict == Verdict::unstable ? "UNSTABLE"
+                                                                   : to_string(here.stability->stability.verdict));
+      }
+      add(text, "\n");
+    }
+    if (every > 1) add(text, "  (every {}th point; --json and --out have all)\n", every);
+    if (result.computed.stability) {
+      add(text, "  {}\n", rod.bands.empty() ? "no unstable band" : "unstable bands");
+      for (const UnstableBand& band : rod.bands) {
+        add(text, "    {}{} .. {}{}  fastest growth of its points {:.4g} {} at {:.6g}; begins {}, ends {}\n",
+            band.open_from ? "(open) " : "", located(band.from, band.error_from), located(band.to, band.error_to),
+            band.open_to ? " (open)" : "", band.fastest, units.rate,
+            band.fastest_x, band.open_from ? "before the sweep" : kind_words(band.kind_from),
+            band.open_to ? "beyond the sweep" : kind_words(band.kind_to));
+      }
+    }
+    if (result.computed.steady) {
+      std::size_t found = 0;
+      for (const CriticalPoint& point : result.critical) found += point.rod == r;
+      add(text, "  {}\n", found == 0 ? "no resonance peak" : "resonance peaks");
+      for (const CriticalPoint& point : result.critical) {
+        if (point.rod != r) continue;
+        if (std::isinf(point.peak.value)) {
+          add(text, "    {:.12g}  |q_{}| unbounded: a multiplier passes +1", point.peak.x, point.component + 1);
+        } else {
+          add(text, "    {:.12g}  max |q_{}| = {:.6g}", point.peak.x, point.component + 1, point.peak.value);
+        }
+        if (point.mode >= 0) {
+          add(text, ", mode {} at order {} ({:.5g} rad/{}, {:.3g} per turn of the crank)", point.mode + 1, point.order,
+              point.frequency, units.time, point.frequency / point.speed);
+        }
+        add(text, "\n");
+      }
+    }
+  }
+  const auto closed = static_cast<std::size_t>(std::count_if(
+      result.points.begin(), result.points.end(), [](const SweepPoint& point) { return point.problem.empty(); }));
+  if (closed < result.points.size()) {
+    const auto first = std::find_if(result.points.begin(), result.points.end(),
+                                    [](const SweepPoint& point) { return !point.problem.empty(); });
+    add(text, "\n{} of {} points have no answer; the first: {}\n", result.points.size() - closed, result.points.size(),
+        first->problem);
+  }
+  for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  return fmt::to_string(text);
+}
+
+SweepColumns sweep_columns(const SweepResult& result, std::size_t rod) {
+  SweepColumns columns;
+  int next = 3;
+  if (result.computed.steady) {
+    columns.first_peak = next;
+    next += result.rods[rod].num_modes + 1;
+  }
+  if (result.computed.shape) {
+    columns.deflection = next++;
+    columns.bending_moment = next++;
+  }
+  if (result.computed.stability) {
+    columns.growth = next;
+    columns.first_frequency = next + 3;
+  }
+  return columns;
+}
+
+CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::size_t r) {
+  const OutputUnits units = output_units(scene.scene());
+  const Only& only = result.computed;
+  const SweepRod& rod = result.rods[r];
+  const int I = rod.num_modes;
+  const std::vector<const SweepPoint*> points = all_points(result);
+  CsvFile file;
+  file.name = file_name("sweep_" + rod.name) + ".csv";
+  file.comment = {about(scene, rod.name + " along " + scene.axis().path),
+                  "points asked for and, between them, resonance peaks with their flanks and stability boundaries"};
+  file.columns = {axis_label(scene), "asked for"};
+  if (only.steady) {
+    for (int i = 1; i <= I; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));
+    file.columns.push_back("error bound");
+  }
+  if (only.shape) {
+    file.columns.push_back("deflection [" + units.length + "]");
+    file.columns.push_back("bending moment [N m]");
+  }
+  if (only.stability) {
+    file.columns.insert(file.columns.end(), {"growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate),
+                                             "verdict"});
+    file.comment.push_back("verdict: 1 unstable, 0 undecided, -1 stable; per mode frequency (unfolded) and growth rate");
+    for (int i = 1; i <= I; ++i) {
+      file.columns.push_back(fmt::format("frequency of mode {} [Hz]", i));
+      file.columns.push_back(fmt::format("growth of mode {}{}", i, bracketed(units.rate)));
+    }
+  }
+  file.rows.setConstant(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(file.columns.size()), nan);
+  std::vector<std::vector<ModeState>> modes;
+  if (only.stability) modes = tracks(result, r, points);
+  const double hertz = 1 / (2 * std::numbers::pi * scene.scene().units.time_in_s);
+  const auto in_grid = [&](const SweepPoint* p) {
+    return p >= result.points.data() && p < result.points.data() + result.points.size();
+  };
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const SweepPoint& point = *points[k];
+    auto row = file.rows.row(static_cast<Eigen::Index>(k));
+    Eigen::Index column = 0;
+    row(column++) = point.x;
+    row(column++) = in_grid(points[k]) ? 1 : 0;
+    if (!point.problem.empty()) continue;
+    const RodPoint& here = point.rods[r];
+    if (only.steady) {
+      for (std::size_t i = 0; i < here.max_abs.size(); ++i) row(column + static_cast<Eigen::Index>(i)) = here.max_abs[i];
+      column += I;
+      row(column++) = here.error_bound;
+    }
+    if (only.shape) {
+      row(column++) = here.deflection.value_or(nan);
+      row(column++) = here.bending_moment.value_or(nan) * units.moment;
+    }
+    if (only.stability) {
+      const Stability& stability = here.stability->stability;
+      row(column++) = stability.growth_rate;
+      row(column++) = stability.growth_error;
+      row(column++) = stability.verdict == Verdict::unstable ? 1 : stability.verdict == Verdict::stable ? -1 : 0;
+      for (const ModeState& mode : modes[k]) {
+        row(column++) = mode.frequency * hertz;
+        row(column++) = mode.growth;
+      }
+    }
+  }
+  return file;
+}
+
+CsvFile sweep_forces_csv(const SweepScene& scene, const SweepResult& result) {
+  const OutputUnits units = output_units(scene.scene());
+  const std::vector<const SweepPoint*> points = all_points(result);
+  CsvFile file;
+  file.name = "sweep_joint_forces.csv";
+  file.comment = {about(scene, "joint forces along " + scene.axis().path + ", smallest and largest over the turn"),
+                  "x along, y across the coupler of the joint's dyad; LINK.1 acts on the link, LINK.0 is passed on to "
+                  "the link before it, pivots and guides act on their link"};
+  file.columns = {axis_label(scene)};
+  std::vector<std::string> names = result.joint_components;
+  names.push_back("torque");
+  for (const std::string& name : names) {
+    const char* unit = name == "torque" ? "N m" : "N";
+    for (const char* what : {"smallest", "largest", "rigid smallest", "rigid largest"})
+      file.columns.push_back(fmt::format("{} {} [{}]", name, what, unit));
+  }
+  file.rows.setConstant(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(file.columns.size()), nan);
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const SweepPoint& point = *points[k];
+    auto row = file.rows.row(static_cast<Eigen::Index>(k));
+    row(0) = point.x;
+    if (!point.torque) continue;
+    Eigen::Index column = 1;
+    const auto put = [&](const TurnRange& elastic, const TurnRange& rigid, double factor) {
+      for (const double value : {elastic.min, elastic.max, rigid.min, rigid.max}) row(column++) = factor * value;
+    };
+    for (std::size_t c = 0; c < point.joints.size(); ++c) put(point.joints[c], point.joints_rigid[c], units.force);
+    put(*point.torque, *point.torque_rigid, units.moment);
+  }
+  return file;
+}
+
+CsvFile critical_csv(const SweepScene& scene, const SweepResult& result) {
+  const OutputUnits units = output_units(scene.scene());
+  CsvFile file;
+  file.name = "critical.csv";
+  std::string rods;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
+  file.comment = {about(scene, "local maxima of the largest |q_i| along " + scene.axis().path),
+                  "rods: " + rods + "; mode and order n = omega/Omega: 0 if not known"};
+  file.columns = {"rod", axis_label(scene), "error", "i", "max |q_i|" + bracketed(units.response), "mode", "order",
+                  "frequency [Hz]", "damping" + bracketed(units.rate), "prominence"};
+  file.rows.resize(static_cast<Eigen::Index>(result.critical.size()), 10);
+  for (std::size_t k = 0; k < result.critical.size(); ++k) {
+    const CriticalPoint& p = result.critical[k];
+    file.rows.row(static_cast<Eigen::Index>(k)) << static_cast<double>(p.rod + 1), p.peak.x, p.peak.error,
+        p.component + 1, p.peak.value, p.mode + 1, p.order,
+        p.frequency / (2 * std::numbers::pi * scene.scene().units.time_in_s), p.damping, p.prominence;
+  }
+  return file;
+}
+
+CsvFile bands_csv(const SweepScene& scene, const SweepResult& result) {
+  const OutputUnits units = output_units(scene.scene());
+  CsvFile file;
+  file.name = "unstable_bands.csv";
+  std::string rods;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
+  file.comment = {about(scene, "unstable bands along " + scene.axis().path),
+                  "rods: " + rods + "; kinds of the multiplier at the ends: 1, -1, 0 a complex pair; open: the sweep ends "
+                                    "inside the band"};
+  file.columns = {"rod", axis_label(scene) + " from", "to", "open below", "open above", "kind from", "kind to",
+                  "fastest growth" + bracketed(units.rate), "at"};
+  std::size_t count = 0;
+  for (const SweepRod& rod : result.rods) count += rod.bands.size();
+  file.rows.resize(static_cast<Eigen::Index>(count), 9);
+  const auto kind = [](BoundaryKind k) { return k == BoundaryKind::plus_one ? 1 : k == BoundaryKind::minus_one ? -1 : 0; };
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    for (const UnstableBand& band : result.rods[r].bands) {
+      file.rows.row(row++) << static_cast<double>(r + 1), band.from, band.to, band.open_from, band.open_to,
+          kind(band.kind_from), kind(band.kind_to), band.fastest, band.fastest_x;
+    }
+  }
+  return file;
+}
+
+}  // namespace hb::tools

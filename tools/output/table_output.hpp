@@ -1,0 +1,13 @@
+// Results as text for people, in the units of output_units.hpp.
+#pragma once
+
+#include <string>
+
+#include "hb/analysis/linkage_analysis.hpp"
+
+namespace hb::tools {
+
+[[nodiscard]] std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings);
+[[nodiscard]] std::string stages_table(const std::vector<Stage>& stages);
+
+}  // namespace hb::tools

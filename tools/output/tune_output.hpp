@@ -1,0 +1,29 @@
+// What `hb tune` says: table, JSON, designs tried and the tuned scene.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "tools/output/csv_output.hpp"
+#include "hb/analysis/tune/tune_problem.hpp"
+
+namespace hb::tools {
+
+[[nodiscard]] std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene);
+
+// Every design tried: variables, goal, conditions' excess.
+[[nodiscard]] CsvFile history_csv(const TuneTask& task, const TuneResult& result);
+// Names of its files: the design found, or the nearest where none meets all conditions.
+inline constexpr const char *tuned_file = "tuned.toml", *nearest_file = "nearest.toml";
+[[nodiscard]] const char* scene_file(const TuneResult& result);
+// The scene with the tuned numbers, which begins with a comment where something was not reached; relative paths of
+// further files lead from `folder`.
+[[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
+                                      const std::filesystem::path& scene_file, const std::filesystem::path& folder);
+
+// Empty, or why the exit status is "not reached".
+[[nodiscard]] std::string shortfall(const TuneResult& result);
+
+}  // namespace hb::tools

@@ -1,0 +1,116 @@
+#include "tools/output/wording.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace hb::tools {
+namespace {
+
+// How the leading exponent's disturbance returns: after one turn the same, reversed, or at a frequency of its own.
+std::string kind_of(const Stability& stability, double speed) {
+  if (stability.exponents.empty()) return "";
+  const double frequency = std::abs(stability.exponents.front().value.imag());
+  const double slack = std::max(stability.exponents.front().error, 1e-9 * speed);
+  if (frequency <= slack) return ", with the period of the crank";
+  if (std::abs(frequency - speed / 2) <= slack) return ", at half the crank's speed (period doubling)";
+  return "";
+}
+
+}  // namespace
+
+std::string scene_name(const Scene& scene) {
+  return scene.title.empty() ? scene.file.filename().string() : scene.title;
+}
+
+double rpm_of(double speed, const Units& units) {
+  const double rpm = rpm_from_speed(speed, units);
+  const double rounded = std::stod(fmt::format("{:.15g}", rpm));
+  return speed_from_rpm(rounded, units) == speed ? rounded : rpm;
+}
+
+std::string speed_text(double speed, const Scene& scene) {
+  if (std::holds_alternative<Linkage>(scene.model))
+    return fmt::format("{:.10g} rpm", rpm_from_speed(speed, scene.units));
+  return fmt::format("omega = {:.10g} rad/{}", speed, scene.units.time);
+}
+
+int trusted_digits(double value, double error) {
+  constexpr int fewest = 3, most = 10;
+  if (value == 0 || !(error < std::abs(value))) return fewest;
+  if (error == 0) return most;
+  return std::clamp(static_cast<int>(std::floor(std::log10(std::abs(value) / error))) + 1, fewest, most);
+}
+
+std::string with_error(double value, double error) {
+  return fmt::format("{:.{}g} +/- {:.1e}", value + 0.0, trusted_digits(value, error), error);
+}
+
+std::string verdict_sentence(const Stability& stability, double speed, const Units& units) {
+  const double growth = stability.growth_rate + 0.0;  // no -0
+  const double turn = 2 * std::numbers::pi / speed;
+  switch (stability.verdict) {
+    case Verdict::stable: {
+      const double slowest = growth + stability.growth_error, halving = std::numbers::ln2 / -slowest;
+      return fmt::format(
+          "stable: every disturbance dies out, in the long run at least as fast as exp({:.4g} t): halved in "
+          "{:.3g} {} ({:.3g} turns)",
+          slowest, halving, units.time, halving / turn);
+    }
+    case Verdict::unstable: {
+      const double tenfold = std::numbers::ln10 / growth;
+      return fmt::format(
+          "UNSTABLE: disturbances grow as exp({:.4g} t){}: tenfold in {:.3g} {} ({:.3g} turns). The periodic "
+          "state exists but would not be seen in a machine",
+          growth, kind_of(stability, speed), tenfold, units.time, tenfold / turn);
+    }
+    case Verdict::undecided:
+      break;
+  }
+  return fmt::format("undecided: the growth rate {:.3g} +/- {:.1e} per {} may be of either sign", growth,
+                     stability.growth_error, units.time);
+}
+
+std::vector<std::string> elastic_rockers(const Linkage& linkage) {
+  std::vector<std::string> names;
+  for (const Dyad& dyad : linkage.dyads) {
+    const auto* rocker = std::get_if<Rocker>(&dyad.closing);
+    if (rocker && rocker->body.elastic) names.push_back(rocker->body.name);
+  }
+  return names;
+}
+
+std::string force_frames(const std::vector<std::string>& elastic_rockers) {
+  std::string text = "x along, y across the coupler of the joint's dyad";
+  for (const std::string& name : elastic_rockers) text += fmt::format("; {0}.0 and {0}.1 along and across {0}", name);
+  return text;
+}
+
+const char* status_text(SteadyStatus status) {
+  switch (status) {
+    case SteadyStatus::converged:
+      return "converged";
+    case SteadyStatus::not_reached:
+      return "tolerance not reached";
+    case SteadyStatus::singular:
+      break;
+  }
+  return "singular";
+}
+
+const char* method_text(SteadyMethod method) {
+  switch (method) {
+    case SteadyMethod::direct:
+      return "direct";
+    case SteadyMethod::iterative:
+      return "iterative";
+    case SteadyMethod::automatic:
+      break;
+  }
+  return "automatic";
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,31 @@
+// Sentences and short texts that tables, pictures and notes share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/steady/steady_state.hpp"
+#include "lib/scene/scene.hpp"
+
+namespace hb::tools {
+
+// The scene's title, or its file's name.
+[[nodiscard]] std::string scene_name(const Scene& scene);
+// The speed in rpm; of the numbers that mean this speed the one with the fewest digits, as someone would have given it.
+[[nodiscard]] double rpm_of(double speed, const Units& units);
+// "300 rpm", or "omega = 2.05 rad/s" for a [hill] scene.
+[[nodiscard]] std::string speed_text(double speed, const Scene& scene);
+// What the verdict means for a disturbance, with the time to halve or to grow tenfold.
+[[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Units& units);
+// "-16.045448 +/- 1.2e-11": digits as far as the error allows.
+[[nodiscard]] std::string with_error(double value, double error);
+// Significant digits of a value that an error leaves, 3 to 10.
+[[nodiscard]] int trusted_digits(double value, double error);
+// Along and across what the components x and y of joint forces are; elastic rockers have joints in frames of their own.
+[[nodiscard]] std::string force_frames(const std::vector<std::string>& elastic_rockers);
+[[nodiscard]] std::vector<std::string> elastic_rockers(const Linkage& linkage);
+[[nodiscard]] const char* status_text(SteadyStatus status);
+[[nodiscard]] const char* method_text(SteadyMethod method);
+
+}  // namespace hb::tools

@@ -1,0 +1,102 @@
+// Joint forces and driving torque over the turn, elastic beside rigid.
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "tools/pictures/figure_text.hpp"
+#include "tools/pictures/figures.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+double largest_change(const FourierSeries& elastic, const FourierSeries& rigid) {
+  const Eigen::Index H = std::max(elastic.num_harmonics(), rigid.num_harmonics());
+  const FourierSeries change(fourier::resized(elastic, H).c - fourier::resized(rigid, H).c);
+  double largest = 0;
+  for (Eigen::Index c = 0; c < change.num_components(); ++c)
+    largest = std::max(largest, fourier::max_abs(change, c).value);
+  return largest;
+}
+
+}  // namespace
+
+std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& result, const std::string& csv) {
+  const Linkage& linkage = *model.linkage();
+  // Joints of one picture: those of the bodies of a dyad; the crank has its own.
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
+    const int dyad = static_cast<int>(d);
+    groups.push_back(
+        {linkage.dyads[d].coupler.name, {linkage.dyads[d].coupler.name, body_name(linkage, closing_index(dyad))}});
+  }
+  groups.push_back({linkage.crank.body.name, {linkage.crank.body.name}});
+
+  std::vector<Figure> figures;
+  for (const auto& [name, bodies] : groups) {
+    std::string panels;
+    int num_rows = 0;
+    int column = 2;
+    double change = 0;  // of any component
+    for (const JointForce& joint : result.forces->joints) {
+      const int components = static_cast<int>(joint.rigid.num_components());
+      const std::string body = joint.name.substr(0, joint.name.find('.'));
+      if (std::find(bodies.begin(), bodies.end(), body) != bodies.end()) {
+        ++num_rows;
+        change = std::max(change, largest_change(joint.elastic, joint.rigid));
+        for (int c = 0; c < components; ++c) {
+          const char* component = components == 1 ? "n" : c == 0 ? "x" : "y";
+          panels += fmt::format(
+              "stats '{2}' using {3} nooutput\nlow = STATS_min; high = STATS_max\nstats '{2}' using {4} nooutput\n"
+              "r = (high > STATS_max ? high : STATS_max) - (low < STATS_min ? low : STATS_min); if (r > 0) {{ set "
+              "ytics nice(r/3) }}\n"
+              "set ylabel '{0} {1} [N]'\nplot '{2}' using 1:{3} with lines lt 1 title 'elastic', "
+              "'' using 1:{4} with lines lt 2 dashtype 2 title 'rigid'\nunset key\n",
+              literal(joint.name), component, csv, column + 2 * c, column + 2 * c + 1);
+        }
+        if (components == 1) panels += "set multiplot next\n";
+      }
+      column += 2 * components;
+    }
+    if (num_rows == 0) continue;
+    std::vector<std::string> own_frames = elastic_rockers(linkage);
+    std::erase_if(own_frames, [&](const std::string& rocker) { return rocker != bodies.back(); });
+    Figure figure;
+    figure.name = figure_name("forces", name);
+    figure.width = 1000;
+    figure.height = 130 + 230 * num_rows;
+    figure.commands = fmt::format(
+        "set multiplot layout {},2 title {}\nset tmargin 2.2\nset key at graph 1, graph 1.02 right bottom horizontal "
+        "samplen 3\n{}{}"
+        "set ytics autofreq\n{}unset multiplot\nset tmargin -1\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset "
+        "xtics autofreq\n"
+        "set key default\n",
+        num_rows,
+        scene_title(model, result,
+                    fmt::format("joint forces of {}: {}\nelasticity changes them by {:.4g} N at most", literal(name),
+                                literal(force_frames(own_frames)), change * output_units(model.scene).force)),
+        turn_axis, turn_label(model), panels);
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+Figure torque_figure(const SceneModel& model, const SpeedResult& result, const std::string& csv) {
+  Figure figure;
+  figure.name = "torque";
+  figure.commands = fmt::format(
+      "set title {}\n{}{}set ytics autofreq\nset ylabel 'driving torque on the crank [N m]'\nset key outside right top "
+      "Left reverse "
+      "samplen 3\n"
+      "plot '{}' using 1:2 with lines lt 1 title 'elastic', '' using 1:3 with lines lt 2 dashtype 2 title 'rigid'\n"
+      "unset title\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset xtics autofreq\nset key default\n",
+      scene_title(model, result,
+                  fmt::format("driving torque; elasticity changes it by {:.4g} N m at most",
+                              largest_change(result.forces->torque, result.forces->torque_rigid) *
+                                  output_units(model.scene).moment)),
+      turn_axis, turn_label(model), csv);
+  return figure;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,192 @@
+#include "tools/pictures/map_plot.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/output/output_units.hpp"
+#include "tools/output/path_unit.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+// Blue where disturbances die out, white at zero, red where they grow; readable without colour vision.
+constexpr const char* palette =
+    "set palette defined (-1 '#2166ac', -0.5 '#67a9cf', -0.12 '#d1e5f0', 0 '#f7f7f7', 0.12 '#fddbc7', 0.5 '#ef8a62', "
+    "1 '#b2182b')\n";
+
+std::string axis_label(const MapDocument& document, const PlaneAxis& axis) {
+  if (axis.role == PlaneAxis::Role::rpm) return quoted("speed [rpm]");
+  if (axis.role == PlaneAxis::Role::omega) return quoted("speed [rad/" + document.scene.units.time + "]");
+  return quoted(axis.path + bracketed(path_unit(axis.path, document.scene.units)));
+}
+
+struct ColourScale {
+  std::string value;  // gnuplot expression of columns 3 (growth), 4 (per turn)
+  std::string label;
+  double scale = 1;  // values up to about here are shown linearly, larger ones by their logarithm
+  double largest = 1;
+};
+
+ColourScale colour_scale(const MapDocument& document, MapColour colour) {
+  const std::string time = document.scene.units.time;
+  const bool per_turn = colour == MapColour::per_turn;
+  std::vector<double> sizes;
+  for (const MapPoint& p : document.result.worst) {
+    if (p.source != MapSource::missing) sizes.push_back(std::abs(per_turn ? growth_per_turn(p) : p.growth_rate));
+  }
+  ColourScale result;
+  result.value = per_turn ? "$4" : "$3";
+  result.label = per_turn                            ? "growth exponent per turn"
+                 : colour == MapColour::tenfold_time ? "time to grow (right of 0) or to fall tenfold [" + time + "]"
+                                                     : "growth rate [1/" + time + "]";
+  if (sizes.empty()) return result;
+  std::sort(sizes.begin(), sizes.end());
+  result.largest = sizes.back() > 0 ? sizes.back() : 1;
+  // The median of what is not zero in sight of the largest.
+  const auto first = std::upper_bound(sizes.begin(), sizes.end(), 1e-6 * result.largest);
+  result.scale = first == sizes.end() ? result.largest : *(first + (sizes.end() - first) / 2);
+  return result;
+}
+
+// 1, 2, 5, 10, ... within the scale, both signs, at places asinh(v/scale).
+std::string ticks(const ColourScale& c, MapColour colour) {
+  std::vector<double> values;
+  const double top = std::floor(std::log10(c.largest));
+  const double bottom = std::floor(std::log10(c.scale));
+  const double first = std::min(bottom, top - 1);
+  const bool dense = top - first <= 2;
+  for (double e = first; e <= top; ++e) {
+    for (const double m : {1.0, 2.0, 5.0}) {
+      const double v = m * std::pow(10.0, e);
+      if (v <= c.largest * 1.0001 && v >= 0.4 * c.scale && (dense || m == 1)) values.push_back(v);
+    }
+  }
+  std::string text = "set cbtics (\"0\" 0";
+  for (const double v : values) {
+    const double place = std::asinh(v / c.scale);
+    const std::string up =
+        colour == MapColour::tenfold_time ? fmt::format("{:.3g}", std::log(10.0) / v) : fmt::format("{:g}", v);
+    const std::string down = colour == MapColour::tenfold_time ? up : "−" + up;
+    text += fmt::format(", \"{}\" {}, \"{}\" {}", up, place, down, -place);
+  }
+  return text + ")\n";
+}
+
+// Names of the lines where they leave the picture, or at their middle when that place is taken.
+std::string line_labels(const MapResult& r) {
+  const double x0 = r.x().front(), x1 = r.x().back(), y0 = r.y().front(), y1 = r.y().back();
+  struct Placed {
+    double u, v;
+  };
+  std::vector<Placed> taken;
+  std::string text;
+  for (const ResonanceLine& line : r.lines) {
+    const auto longest = std::max_element(line.pieces.begin(), line.pieces.end(),
+                                          [](const auto& a, const auto& b) { return a.size() < b.size(); });
+    if (longest->size() < 4) continue;
+    for (const double along : {0.96, 0.85, 0.7, 0.5, 0.3}) {
+      // From the low end upward, whichever way the piece runs.
+      const bool upward = longest->back()[1] >= longest->front()[1];
+      const auto n = static_cast<std::size_t>((upward ? along : 1 - along) * static_cast<double>(longest->size() - 1));
+      const double u = ((*longest)[n][0] - x0) / (x1 - x0), v = ((*longest)[n][1] - y0) / (y1 - y0);
+      const bool free = u > 0.03 && u < 0.95 && v > 0.03 && v < 0.97 &&
+                        std::none_of(taken.begin(), taken.end(), [&](const Placed& p) {
+                          return std::abs(p.u - u) < 0.09 && std::abs(p.v - v) < 0.05;
+                        });
+      if (!free) continue;
+      taken.push_back({u, v});
+      text += fmt::format("set label '{}' at graph {:.4f},{:.4f} center front textcolor '#222222' font ',11' boxed\n",
+                          line.name(true), u, v);
+      break;
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour colour) {
+  const MapResult& r = document.result;
+  const ColourScale c = colour_scale(document, colour);
+  const double limit = std::asinh(c.largest / c.scale);
+  Figure figure;
+  figure.name = "map";
+  figure.width = 1000;
+  figure.height = 720;
+  const std::string rods = std::holds_alternative<Linkage>(document.scene.model)
+                               ? fmt::format(", {}{}", fmt::join(r.rods, ", "), r.rods.size() > 1 ? " (the worst)" : "")
+                               : "";
+  const bool some_missing = !r.missing.empty();
+  const bool some_undecided = std::any_of(r.worst.begin(), r.worst.end(), [](const MapPoint& p) {
+    return p.source != MapSource::missing && p.verdict == Verdict::undecided;
+  });
+  figure.commands = fmt::format(
+      "set title '{{/:Bold {}}}'.\"\\n\".{}\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {}\n"
+      "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
+      "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom horizontal maxrows 3 samplen 3 "
+      "width 1\n"
+      "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
+      literal(scene_name(document.scene)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),
+      r.y().front(), r.y().back(), axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label),
+      -limit, limit, ticks(c, colour), palette, line_labels(r));
+  if (some_missing) {
+    figure.commands +=
+        "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
+  }
+  std::vector<std::string> layers = {
+      fmt::format("'{}' using 1:2:(asinh({}/{})) with image notitle", files.grid, c.value, c.scale)};
+  if (some_undecided) {
+    layers.push_back(
+        fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha notitle", files.grid));
+    layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#c6c6c6' title 'undecided'");
+  }
+  if (some_missing) {
+    layers.push_back(
+        "keyentry with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system: the linkage does not "
+        "turn through'");
+  }
+  if (!r.lines.empty()) {
+    layers.push_back(
+        fmt::format("'{}' using 2:3 with lines linewidth 0.8 dashtype (6,6) linecolor '#444444' title "
+                    "'resonance lines of the mean frequencies (speed = ...)'",
+                    files.resonance));
+  }
+  struct Kind {
+    BoundaryKind kind;
+    int number;
+    const char *colour, *title;
+  };
+  for (const Kind& kind : {Kind{BoundaryKind::minus_one, -1, "#000000", "boundary −1: half the speed"},
+                           Kind{BoundaryKind::plus_one, 1, "#00735a", "boundary +1: once per turn"},
+                           Kind{BoundaryKind::complex, 0, "#7b3294", "boundary, complex pair"}}) {
+    const auto has = [&](const std::vector<RodCurve>& curves) {
+      return std::any_of(curves.begin(), curves.end(), [&](const RodCurve& rc) { return rc.curve.kind == kind.kind; });
+    };
+    if (has(r.boundaries)) {
+      layers.push_back(
+          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 2.2 linecolor '{}' title '{}'",
+                      files.boundaries, kind.number, kind.colour, kind.title));
+    }
+    for (std::size_t d = 0; d < r.damping.size(); ++d) {
+      if (!has(r.damping[d].boundaries)) continue;
+      layers.push_back(
+          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 1.2 dashtype {} linecolor '{}' "
+                      "title '{} at damping x {:g}'",
+                      files.damping[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
+                      kind.number == 0   ? "complex"
+                      : kind.number == 1 ? "+1"
+                                         : "−1",
+                      r.damping[d].factor));
+    }
+  }
+  figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));
+  figure.commands += "unset label\nunset object\nset key default\nset bmargin -1\nset xrange [*:*]\nset yrange [*:*]\n";
+  return figure;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,359 @@
+#include "tools/pictures/sweep_figures.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "tools/output/output_folder.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+constexpr int max_curves = 6;
+
+constexpr const char* clean_up =
+    "unset object\nunset arrow\nunset label\nunset logscale\nset xrange [*:*]\nset yrange [*:*]\nset format '%g'\n"
+    "unset title\nunset xlabel\nunset ylabel\nset key default\nset rmargin -1\nset lmargin -1\n";
+
+std::string title(const SweepScene& scene, const SweepResult& result, std::size_t rod, const std::string& shown) {
+  const std::string subject = scene.first().linkage() ? ", " + result.rods[rod].name : "";
+  std::string at;
+  if (scene.axis().kind == Axis::Kind::parameter) at = " at " + speed_text(result.points.front().speed, scene.scene());
+  return "set title '{/:Bold " + literal(scene_name(scene.scene()) + subject + at) + "}'.\"\\n\".'" + shown + "'\n";
+}
+
+std::string axis(const SweepScene& scene) {
+  const std::vector<double>& values = scene.axis().values;
+  return fmt::format("set xrange [{}:{}]\nset xlabel {}\n", values.front(), values.back(), quoted(axis_label(scene)));
+}
+
+std::string shaded(const SweepRod& rod) {
+  std::string text;
+  for (const UnstableBand& band : rod.bands) {
+    text += fmt::format(
+        "set object rectangle from first {}, graph 0 to first {}, graph 1 fillcolor rgb '#d55e00' fillstyle solid 0.18 "
+        "noborder behind\n",
+        band.from, band.to);
+  }
+  return text;
+}
+
+std::string shaded_note(const SweepRod& rod) { return rod.bands.empty() ? "" : "; shaded: unstable"; }
+
+std::string figure_name(const std::string& kind, const std::string& name) { return file_name(kind + "_" + name); }
+
+// Finite values of a column.
+std::vector<double> finite(const CsvFile& csv, int column) {
+  std::vector<double> values;
+  for (Eigen::Index k = 0; k < csv.rows.rows(); ++k)
+    if (std::isfinite(csv.rows(k, column - 1))) values.push_back(csv.rows(k, column - 1));
+  return values;
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Values of a column at points of the sweep where every rod is stable; of all points if that is nowhere or not known.
+std::vector<double> where_stable(const SweepResult& result, const CsvFile& csv, int column) {
+  const std::vector<const SweepPoint*> points = all_points(result);
+  std::vector<double> values;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const bool stable = std::all_of(points[k]->rods.begin(), points[k]->rods.end(), [](const RodPoint& rod) {
+      return !rod.stability || rod.stability->stability.verdict == Verdict::stable;
+    });
+    const double value = csv.rows(static_cast<Eigen::Index>(k), column - 1);
+    if (stable && std::isfinite(value)) values.push_back(value);
+  }
+  return values.empty() ? finite(csv, column) : values;
+}
+
+double largest(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
+                       const std::string& critical) {
+  const SweepRod& rod = result.rods[r];
+  const SweepColumns columns = sweep_columns(result, r);
+  const int I = rod.num_modes;
+  const auto frequency = [&](int mode) { return columns.first_frequency + 2 * mode; };
+  const double from = scene.axis().values.front(), to = scene.axis().values.back();
+
+  // Crank frequency in Hz: factor * x, or constant.
+  const double seconds = scene.scene().units.time_in_s;
+  double factor = 0, constant = 0;
+  switch (scene.axis().kind) {
+    case Axis::Kind::rpm:
+      factor = 1.0 / 60;
+      break;
+    case Axis::Kind::omega:
+      factor = 1 / (2 * std::numbers::pi * seconds);
+      break;
+    case Axis::Kind::parameter:
+      constant = result.points.front().speed / (2 * std::numbers::pi * seconds);
+      break;
+  }
+  const double fastest = factor * to + constant;
+  // High enough for the two lowest modes and for two turns of the crank.
+  double top = 2 * fastest;
+  for (int mode = 0; mode < std::min(I, 2); ++mode) top = std::max(top, 1.15 * largest(finite(csv, frequency(mode))));
+
+  Figure figure;
+  figure.name = figure_name("campbell", rod.name);
+  figure.width = 1060;
+  figure.height = 640;
+  std::string& text = figure.commands;
+  text += title(scene, result, r,
+                "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
+                    "; dots: resonance peaks" + shaded_note(rod));
+  text += axis(scene) + shaded(rod);
+  text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [Hz]'\nunset key\nset rmargin 20\n", top);
+  const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
+  text += fmt::format(
+      "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 "
+      "'#fc8d59', "
+      "1 '#99000d')\nset cbrange [{}:{}]\nset cblabel 'growth rate of the mode [{}]' font ',11' offset -0.5, 0\n"
+      "set cbtics font ',10'\nset colorbox user origin 0.88, 0.2 size 0.018, 0.6\n",
+      -scale, scale, literal(output_units(scene.scene()).rate));
+
+  std::string plot = "plot ";
+  std::string separator;
+  const auto add = [&](const std::string& item) {
+    plot += separator + item;
+    separator = ", \\\n  ";
+  };
+  // Orders that leave the picture before its right end are labelled at the top, the others at the right.
+  const double lowest = factor * from + constant;
+  const int most = std::min(24, static_cast<int>(std::ceil(top / std::max(fastest, 1e-300))) + 12);
+  double last_label = HUGE_VAL;
+  for (int half = 1; half <= 2 * most; ++half) {
+    const bool whole = half % 2 == 0;
+    const double order = half / 2.0;
+    if (!whole && half > 12) continue;
+    if (order * lowest > top) break;
+    add(fmt::format("{} * ({} * x + {}) with lines linecolor rgb '{}' linewidth {} dashtype {} notitle", order, factor,
+                    constant, whole ? "#b0b0b0" : "#c8c8c8", whole ? 0.9 : 0.6, whole ? 1 : 2));
+    if (!whole) continue;
+    const double at_end = order * fastest;
+    const std::string name = order == 1 ? "Ω" : fmt::format("{}Ω", half / 2);
+    if (at_end <= top) {
+      text += fmt::format("set label '{}' at {}, {} left offset 0.4, 0 textcolor rgb '#777777' font ',10'\n", name, to,
+                          at_end);
+    } else if (const double x = factor > 0 ? (top / order - constant) / factor : HUGE_VAL;
+               x < last_label - 0.035 * (to - from) && x > from) {
+      last_label = x;
+      text += fmt::format("set label '{}' at {}, {} center offset 0, 0.5 textcolor rgb '#777777' font ',10'\n", name, x,
+                          top);
+    }
+  }
+  const int shown = std::min(I, max_curves);
+  for (int i = 0; i < std::min(shown, 3); ++i) {
+    for (int j = i + 1; j < std::min(shown, 3); ++j) {
+      for (const char* sign : {"+", "-"}) {
+        add(fmt::format(
+            "'{}' using 1:(abs(column({}) {} column({}))/2) with lines linecolor rgb '#56b4e9' linewidth 0.8 "
+            "dashtype 3 notitle",
+            csv.name, frequency(j), sign, frequency(i)));
+      }
+    }
+  }
+  // Locked to the crank a mode's frequency is known up to a multiple of half the speed: the line breaks where that
+  // changes.
+  constexpr double jump = 0.25;  // of the speed
+  for (int mode = 0; mode < shown; ++mode) {
+    text += fmt::format("before{} = NaN\n", mode);
+    add(fmt::format(
+        "'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
+        "jumps ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
+        "linewidth 3 linecolor palette notitle",
+        csv.name, frequency(mode), mode, jump, factor, constant, mode, frequency(mode) + 1, scale, scale,
+        frequency(mode) + 1, -scale, -scale, frequency(mode) + 1));
+    // Named where it is first seen inside the picture.
+    for (Eigen::Index k = 0; k < csv.rows.rows(); ++k) {
+      const double y = csv.rows(k, frequency(mode) - 1), x = csv.rows(k, 0);
+      if (!(y <= 0.97 * top) || !(x >= from + 0.01 * (to - from))) continue;
+      text += fmt::format("set label '{}mode {}' at {}, {} left offset 0.3, 0.7 font ',11' front\n",
+                          scene.first().linkage() ? literal(rod.name) + " " : "", mode + 1, x, y);
+      break;
+    }
+  }
+  if (result.computed.steady && !result.critical.empty()) {
+    add(fmt::format(
+        "'{}' using (column(1) == {} && column(6) > 0 ? column(2) : NaN):8 with points pointtype 7 pointsize "
+        "0.7 linecolor rgb '#000000' notitle",
+        critical, r + 1));
+  }
+  text += plot + "\nunset colorbox\nunset cblabel\n" + clean_up;
+  return figure;
+}
+
+Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
+  const SweepRod& rod = result.rods[r];
+  const SweepColumns columns = sweep_columns(result, r);
+  const int shown = std::min(rod.num_modes, max_curves);
+  Figure figure;
+  figure.name = figure_name("peaks", rod.name);
+  const std::string meaning = scene.first().linkage() ? "q_i: amplitude of sin(iπx/l)" : "q_i: unknowns of the system";
+  std::string& text = figure.commands;
+  text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(rod)) + axis(scene) + shaded(rod);
+  double top = 0, bottom = HUGE_VAL;
+  for (int i = 0; i < shown; ++i) {
+    for (const double value : where_stable(result, csv, columns.first_peak + i)) {
+      if (!(value > 0)) continue;
+      top = std::max(top, value);
+      bottom = std::min(bottom, value);
+    }
+  }
+  if (top > 0) {
+    bottom = std::max(bottom, 1e-12 * top);
+    text += fmt::format("set logscale y\nset yrange [{}:{}]\nset format y '{}'\n", bottom / 2, 10 * top,
+                        top / bottom > 300 ? "10^{%T}" : "%g");
+  }
+  text += fmt::format("set ylabel 'largest |q_i|{}'\nset key outside right top Left reverse samplen 2\nplot ",
+                      bracketed(output_units(scene.scene()).response));
+  for (int i = 0; i < shown; ++i) {
+    text += fmt::format("{}'{}' using 1:{} with lines lt {} linewidth 1.8 title 'q_{{{}}}'", i == 0 ? "" : ", ",
+                        csv.name, columns.first_peak + i, i + 1, i + 1);
+  }
+  text += std::string("\n") + clean_up;
+  return figure;
+}
+
+Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
+  const SweepRod& rod = result.rods[r];
+  const SweepColumns columns = sweep_columns(result, r);
+  Figure figure;
+  figure.name = figure_name("deflection", rod.name);
+  figure.height = 640;
+  std::string& text = figure.commands;
+  std::string heading =
+      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(rod));
+  heading.replace(0, 10, "");  // without "set title "
+  heading.pop_back();
+  text += fmt::format(
+      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char 4.5 spacing char 0, char 1.5\n",
+      heading);
+  text += axis(scene) + shaded(rod);
+  const auto range = [&](int column) {
+    const std::vector<double> values = where_stable(result, csv, column);
+    double low = HUGE_VAL;
+    for (const double value : values)
+      if (value > 0) low = std::min(low, value);
+    return std::isfinite(low) ? fmt::format("set yrange [{}:{}]\n", low / 2, 10 * largest(values)) : std::string();
+  };
+  text += fmt::format(
+      "unset key\nset logscale y\nset format x ''\nunset xlabel\nset ylabel 'deflection [{}]'\n{}"
+      "plot '{}' using 1:{} with lines lt 1 linewidth 1.8\n"
+      "set format x '%g'\nset xlabel {}\nset ylabel 'bending moment [N m]'\n{}"
+      "plot '{}' using 1:{} with lines lt 2 linewidth 1.8\nunset multiplot\n",
+      literal(output_units(scene.scene()).length), range(columns.deflection), csv.name, columns.deflection,
+      quoted(axis_label(scene)), range(columns.bending_moment), csv.name, columns.bending_moment);
+  text += clean_up;
+  return figure;
+}
+
+Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
+  const SweepRod& rod = result.rods[r];
+  const SweepColumns columns = sweep_columns(result, r);
+  const OutputUnits units = output_units(scene.scene());
+  const std::vector<double> growth = finite(csv, columns.growth);
+  Figure figure;
+  figure.name = figure_name("growth", rod.name);
+  std::string& text = figure.commands;
+  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(rod)) +
+          axis(scene) + shaded(rod);
+  // Around the leading rate: modes that decay far faster would hide it.
+  const double low = growth.empty() ? -1 : *std::min_element(growth.begin(), growth.end());
+  const double high = std::max(largest(growth), 0.0);
+  const double span = std::max(high - low, 1e-300);
+  text += fmt::format(
+      "set yrange [{}:{}]\nset ylabel 'growth rate{}'\nset key outside right top Left reverse samplen 2\n"
+      "set arrow from graph 0, first 0 to graph 1, first 0 nohead linecolor rgb '#000000' linewidth 0.8\nplot ",
+      low - 0.35 * span, high + 0.1 * span, bracketed(units.rate));
+  text += fmt::format("'{}' using 1:{} with lines linecolor rgb '#bbbbbb' linewidth 5 title 'leading'", csv.name,
+                      columns.growth);
+  const int shown = std::min(rod.num_modes, max_curves);
+  for (int mode = 0; mode < shown; ++mode) {
+    text += fmt::format(", '' using 1:{} with lines lt {} linewidth 1.4 title 'mode {}'",
+                        columns.first_frequency + 2 * mode + 1, mode + 1, mode + 1);
+  }
+  text += "\n";
+  text += clean_up;
+  return figure;
+}
+
+std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResult& result, const CsvFile& csv) {
+  const Linkage& linkage = *scene.first().linkage();
+  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
+    const std::string& coupler = linkage.dyads[d].coupler.name;
+    groups.push_back({coupler, {coupler, body_name(linkage, closing_index(static_cast<int>(d)))}});
+  }
+  const std::string& crank = linkage.crank.body.name;
+  groups.push_back({crank, {crank, "torque"}});
+  std::string bands;
+  for (const SweepRod& rod : result.rods) bands += shaded(rod);
+
+  std::vector<Figure> figures;
+  for (const auto& [name, bodies] : groups) {
+    std::string panels;
+    int num_panels = 0;
+    std::vector<std::string> components = result.joint_components;
+    components.push_back("torque");
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      const std::string body = components[c].substr(0, components[c].find('.'));
+      if (std::find(bodies.begin(), bodies.end(), body) == bodies.end()) continue;
+      const int column = 2 + 4 * static_cast<int>(c);
+      double low = 0, high = 0;
+      for (int k = 0; k < 4; ++k) {
+        const std::vector<double> values = where_stable(result, csv, column + k);
+        if (values.empty()) continue;
+        low = std::min(low, *std::min_element(values.begin(), values.end()));
+        high = std::max(high, largest(values));
+        if (k < 2) continue;
+        const std::vector<double> rigid = finite(csv, column + k);  // over the whole sweep
+        low = std::min(low, *std::min_element(rigid.begin(), rigid.end()));
+        high = std::max(high, largest(rigid));
+      }
+      const double margin = 0.15 * (high - low);
+      const std::string range = high > low ? fmt::format("set yrange [{}:{}]\n", low - margin, high + margin) : "";
+      panels += fmt::format(
+          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#0072b2' fillstyle solid "
+          "0.25 "
+          "notitle, '' using 1:{} with lines lt 1 title 'elastic', '' using 1:{} with lines lt 1 notitle, "
+          "'' using 1:{} with lines lt 2 dashtype 2 title 'rigid', '' using 1:{} with lines lt 2 dashtype 2 notitle\n"
+          "unset key\n",
+          range, literal(components[c]), components[c] == "torque" ? "N m" : "N", csv.name, column, column + 1, column,
+          column + 1, column + 2, column + 3);
+      ++num_panels;
+    }
+    if (num_panels == 0) continue;
+    const int rows = (num_panels + 1) / 2;
+    Figure figure;
+    figure.name = figure_name("sweep_forces", name);
+    figure.width = 1000;
+    figure.height = 130 + 230 * rows;
+    figure.commands = fmt::format(
+        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'smallest and largest force over the turn, elastic "
+        "beside "
+        "rigid; shaded: unstable'\nset key at screen 0.99, screen 0.995 right top vertical samplen 3\nset format '%g'\n"
+        "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset xtics autofreq\nset ytics autofreq\n",
+        rows, literal(scene_name(scene.scene()) + ", joints of " + name), axis(scene), bands, panels);
+    figure.commands += clean_up;
+    figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,28 @@
+// The pictures of `hb sweep`, drawn from the CSV files of sweep_output.hpp. Unstable bands are shaded in all of them.
+#pragma once
+
+#include <vector>
+
+#include "tools/pictures/gnuplot.hpp"
+#include "tools/output/sweep_output.hpp"
+
+namespace hb::tools {
+
+// Frequencies of the modes over the axis, coloured by growth rate; order lines n Omega; parametric resonances: half
+// orders k Omega/2, met by omega_i and by (omega_i +- omega_j)/2; resonance peaks as dots.
+[[nodiscard]] Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::size_t rod,
+                                     const CsvFile& csv, const std::string& critical);
+// Peaks of the q_i, logarithmic.
+[[nodiscard]] Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::size_t rod,
+                                  const CsvFile& csv);
+// Largest deflection and bending moment.
+[[nodiscard]] Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::size_t rod,
+                                   const CsvFile& csv);
+// Growth rate of the slowest decay or fastest growth, and of every mode.
+[[nodiscard]] Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::size_t rod,
+                                   const CsvFile& csv);
+// Joint forces and torque, elastic beside rigid: one figure per dyad, one for the crank.
+[[nodiscard]] std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResult& result,
+                                                      const CsvFile& csv);
+
+}  // namespace hb::tools

@@ -1,0 +1,19 @@
+// Pictures of both designs of `hb tune`, and the tables they are drawn from: response and growth over the speed,
+// Campbell diagrams, and the stability map over the speed and over the way from one design to the other.
+#pragma once
+
+#include <vector>
+
+#include "tools/pictures/gnuplot.hpp"
+#include "tools/output/output_folder.hpp"
+#include "hb/analysis/tune/tune_problem.hpp"
+
+namespace hb::tools {
+
+// Response and growth curves of both designs.
+void write_curves(const TuneTask& task, const TuneResult& result, const Scene& scene, OutputFolder& folder);
+// Writes the other tables. Empty at a single speed.
+[[nodiscard]] std::vector<Figure> tune_figures(const TuneTask& task, const TuneResult& result, const Scene& scene,
+                                               OutputFolder& folder);
+
+}  // namespace hb::tools

@@ -1,0 +1,40 @@
+#include "tools/work/progress.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+namespace hb::tools {
+namespace {
+
+constexpr std::chrono::milliseconds quiet_start(400), refresh(100);
+
+std::string duration(double seconds) {
+  if (seconds < 90) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400) return fmt::format("{:.0f} min", seconds / 60);
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+}  // namespace
+
+Progress::Progress(std::string what, std::size_t total)
+    : what_(std::move(what)), total_(total), shown_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
+
+Progress::~Progress() {
+  if (dirty_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::advance(std::size_t steps) {
+  if (!shown_) return;
+  const std::lock_guard lock(mutex_);
+  done_ += steps;
+  const Clock::time_point now = Clock::now();
+  if (now - start_ < quiet_start || now - last_ < refresh || done_ == 0) return;
+  last_ = now;
+  dirty_ = true;
+  const double spent = std::chrono::duration<double>(now - start_).count();
+  const double left = spent * static_cast<double>(total_ - done_) / static_cast<double>(done_);
+  fmt::print(stderr, "\r\033[K{}: {} of {} ({:.0f} %), {} left", what_, done_, total_,
+             100.0 * static_cast<double>(done_) / static_cast<double>(total_), duration(left));
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,191 @@
+#include "tools/work/shared_work.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <exception>
+#include <stdexcept>
+
+#include "tools/command/command.hpp"
+#include "tools/work/parallel_for.hpp"
+#include "tools/work/progress.hpp"
+#include "tools/work/ranks.hpp"
+
+namespace hb::tools {
+namespace {
+
+// Parts that are kept together: often enough for a kill to lose little, seldom enough not to wait for the disk.
+std::size_t parts_per_chunk(std::size_t count) { return std::clamp<std::size_t>(count / 100, 1, 64); }
+
+// Each part after its length.
+Part joined(const std::vector<Part>& parts, std::size_t from, std::size_t to) {
+  Part numbers;
+  for (std::size_t k = from; k < to; ++k) {
+    numbers.push_back(static_cast<double>(parts[k].size()));
+    numbers.insert(numbers.end(), parts[k].begin(), parts[k].end());
+  }
+  return numbers;
+}
+
+void split(const Part& numbers, std::vector<Part>& parts, std::size_t from, std::size_t to) {
+  auto next = numbers.begin();
+  for (std::size_t k = from; k < to; ++k) {
+    if (next == numbers.end() || !(*next >= 0) || *next > static_cast<double>(numbers.end() - next - 1)) {
+      throw std::out_of_range("part of a result: of another kind");
+    }
+    const auto size = static_cast<std::ptrdiff_t>(*next++);
+    parts[k].assign(next, next + size);
+    next += size;
+  }
+}
+
+std::filesystem::path part_file(std::filesystem::path folder) {
+  if (!folder.has_filename()) folder = folder.parent_path();
+  return folder.string() + ".part";
+}
+
+}  // namespace
+
+std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
+                                    const std::function<Part(std::size_t)>& part) {
+  const std::uint64_t step = step_++ << 32;
+  const std::size_t chunk_size = parts_per_chunk(count);
+  std::vector<Part> all(count);
+  Progress progress(what, count);
+  const auto from = [&](std::size_t chunk) { return chunk * chunk_size; };
+  const auto to = [&](std::size_t chunk) { return std::min(from(chunk) + chunk_size, count); };
+  const auto compute = [&](std::size_t chunk) {
+    for (std::size_t k = from(chunk); k < to(chunk); ++k) all[k] = part(k);
+  };
+  const auto keep = [&](std::size_t chunk) {
+    if (kept_ != nullptr) kept_->store(step + chunk, joined(all, from(chunk), to(chunk)));
+  };
+  const std::size_t num_chunks = (count + chunk_size - 1) / chunk_size;
+  if (ranks().size() == 1) {
+    const bool complete = parallel_for(
+        num_chunks, num_threads_,
+        [&](std::size_t chunk) {
+          if (const Part* earlier = kept_ != nullptr ? kept_->find(step + chunk) : nullptr) {
+            split(*earlier, all, from(chunk), to(chunk));
+          } else {
+            compute(chunk);
+            keep(chunk);
+          }
+          progress.advance(to(chunk) - from(chunk));
+        },
+        stop_);
+    if (!complete) throw WorkStopped();
+    return all;
+  }
+
+  // Messages between the ranks: a state, then chunk, length and numbers of each chunk.
+  std::vector<bool> known(num_chunks, false);
+  const auto add = [&](Part& message, std::size_t chunk) {
+    const Part numbers = joined(all, from(chunk), to(chunk));
+    message.push_back(static_cast<double>(chunk));
+    message.push_back(static_cast<double>(numbers.size()));
+    message.insert(message.end(), numbers.begin(), numbers.end());
+  };
+  const auto take = [&](const Part& message) {
+    for (std::size_t next = 1; next < message.size();) {
+      const auto chunk = static_cast<std::size_t>(message[next]), length = static_cast<std::size_t>(message[next + 1]);
+      const auto start = message.begin() + static_cast<std::ptrdiff_t>(next) + 2;
+      split(Part(start, start + static_cast<std::ptrdiff_t>(length)), all, from(chunk), to(chunk));
+      known[chunk] = true;
+      progress.advance(to(chunk) - from(chunk));
+      next += 2 + length;
+    }
+  };
+  constexpr double running = 0, stopped = 1, failed = 2;
+  Part earlier = {running};
+  for (std::size_t chunk = 0; kept_ != nullptr && chunk < num_chunks; ++chunk)
+    if (const Part* found = kept_->find(step + chunk)) {
+      split(*found, all, from(chunk), to(chunk));
+      add(earlier, chunk);
+    }
+  take(ranks().gathered(earlier).front());
+
+  std::vector<std::size_t> pending;
+  for (std::size_t chunk = 0; chunk < num_chunks; ++chunk)
+    if (!known[chunk]) pending.push_back(chunk);
+  const auto size = static_cast<std::size_t>(ranks().size()), rank = static_cast<std::size_t>(ranks().rank());
+  // Rounds: often enough for a kill to lose little.
+  const std::size_t per_round = size * static_cast<std::size_t>(num_threads_) * 2;
+  for (std::size_t first = 0; first < pending.size(); first += per_round) {
+    std::vector<std::size_t> own;
+    for (std::size_t i = first; i < std::min(first + per_round, pending.size()); ++i)
+      if (i % size == rank) own.push_back(pending[i]);
+    Part message = {running};
+    std::exception_ptr failure;
+    try {
+      const bool complete = parallel_for(
+          own.size(), num_threads_, [&](std::size_t i) { compute(own[i]); }, stop_);
+      if (!complete) message[0] = stopped;
+      if (complete)
+        for (const std::size_t chunk : own) add(message, chunk);
+    } catch (...) {
+      message = {failed};
+      failure = std::current_exception();
+    }
+    bool stop = false, other_failed = false;
+    for (const Part& numbers : ranks().gathered(message)) {
+      take(numbers);
+      stop = stop || numbers[0] == stopped;
+      other_failed = other_failed || numbers[0] == failed;
+    }
+    if (failure) std::rethrow_exception(failure);
+    if (other_failed) throw OtherRankFailed();
+    // The first rank keeps what all have done; should that fail, the others have to know.
+    Part state = {running};
+    try {
+      for (std::size_t i = first; i < std::min(first + per_round, pending.size()); ++i)
+        if (known[pending[i]]) keep(pending[i]);
+    } catch (...) {
+      state = {failed};
+      failure = std::current_exception();
+    }
+    for (const Part& numbers : ranks().gathered(state)) other_failed = other_failed || numbers[0] == failed;
+    if (failure) std::rethrow_exception(failure);
+    if (other_failed) throw OtherRankFailed();
+    if (stop) throw WorkStopped();
+  }
+  return all;
+}
+
+bool run_kept(const std::string& command, const std::optional<std::filesystem::path>& out, bool resume,
+              std::uint64_t key, int num_threads, const std::function<void(SharedWork&)>& work) {
+  if (!out) {
+    if (resume) throw UsageError("--resume: found no --out, allowed: the folder of the run to go on with");
+    SharedWork unkept(num_threads);
+    work(unkept);
+    if (!ranks().first()) throw ShareDone();
+    return true;
+  }
+  if (!ranks().first()) {
+    const InterruptGuard guard;
+    SharedWork share(num_threads, nullptr, interrupted);
+    work(share);
+    throw ShareDone();
+  }
+  Checkpoint checkpoint(part_file(*out), key, resume, "the same scene and flags");
+  if (resume) fmt::print(stderr, "hb {}: {} finished parts found\n", command, checkpoint.num_finished());
+  const InterruptGuard guard;
+  SharedWork kept(num_threads, &checkpoint, interrupted);
+  try {
+    work(kept);
+  } catch (const WorkStopped&) {
+    fmt::print(stderr, "hb {}: stopped; what is finished is kept in {}: the same command with --resume goes on\n",
+               command, checkpoint.file().string());
+    return false;
+  } catch (const std::out_of_range& error) {
+    throw UsageError(fmt::format("--resume: {} cannot be read ({}), allowed: what the same version of hb left",
+                                 checkpoint.file().string(), error.what()));
+  } catch (...) {
+    checkpoint.remove();
+    throw;
+  }
+  checkpoint.remove();
+  return true;
+}
+
+}  // namespace hb::tools
