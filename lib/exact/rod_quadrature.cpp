@@ -1,0 +1,68 @@
+#include "lib/exact/rod_quadrature.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace hb {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// P_0 .. P_n at s by (k+1) P_{k+1} = (2k+1) s P_k - k P_{k-1}.
+Eigen::VectorXd legendre(Eigen::Index n, double s) {
+  Eigen::VectorXd P(n + 1);
+  P(0) = 1;
+  if (n > 0) P(1) = s;
+  for (Eigen::Index k = 1; k < n; ++k) {
+    const double m = static_cast<double>(k);
+    P(k + 1) = ((2 * m + 1) * s * P(k) - m * P(k - 1)) / (m + 1);
+  }
+  return P;
+}
+
+}  // namespace
+
+// Points are the roots of P_Q by Newton's iteration, weights 2/((1 - s^2) P_Q'(s)^2) on (-1, 1). The Lagrange
+// polynomial of point m is sum_{j<Q} (2j+1)/2 weight_m P_j(s_m) P_j(s), and
+//     int_{-1}^s P_0 = s + 1,   int_{-1}^s P_j = (P_{j+1} - P_{j-1})/(2j+1).
+RodQuadrature::RodQuadrature(double l, Eigen::Index num_modes, Eigen::Index num_points) : length(l) {
+  const Eigen::Index I = num_modes, Q = num_points > 0 ? num_points : 2 * I + 16;
+  const double n = static_cast<double>(Q);
+  Eigen::VectorXd roots(Q), unit_weight(Q);
+  Eigen::MatrixXd P(Q + 1, Q);
+  for (Eigen::Index k = 0; k < Q; ++k) {
+    double s = -std::cos(pi * (static_cast<double>(k) + 0.75) / (n + 0.5)), slope = 1;
+    for (int step = 0; step < 8; ++step) {
+      const Eigen::VectorXd at_s = legendre(Q, s);
+      slope = n * (s * at_s(Q) - at_s(Q - 1)) / (s * s - 1);
+      s -= at_s(Q) / slope;
+    }
+    roots(k) = s;
+    unit_weight(k) = 2 / ((1 - s * s) * slope * slope);
+    P.col(k) = legendre(Q, s);
+  }
+  x = l / 2 * (1 + roots.array()).matrix();
+  weight = l / 2 * unit_weight;
+
+  Eigen::MatrixXd antiderivative(Q, Q);  // row k, column j: int_{-1}^{s_k} P_j
+  antiderivative.col(0) = roots.array() + 1;
+  for (Eigen::Index j = 1; j < Q; ++j)
+    antiderivative.col(j) = (P.row(j + 1) - P.row(j - 1)).transpose() / static_cast<double>(2 * j + 1);
+  const Eigen::VectorXd half_odd = Eigen::VectorXd::LinSpaced(Q, 0.5, n - 0.5);  // (2j+1)/2
+  integral = l / 2 * antiderivative * half_odd.asDiagonal() * P.topRows(Q) * unit_weight.asDiagonal();
+  integral_square = integral.transpose() * weight.asDiagonal() * integral;
+  rest = weight.cwiseProduct((l - x.array()).matrix());
+
+  s.resize(Q, I), s1.resize(Q, I), s2.resize(Q, I), sum_s.resize(I);
+  for (Eigen::Index i = 0; i < I; ++i) {
+    const double k = static_cast<double>(i + 1) * pi / l;
+    s.col(i) = (k * x.array()).sin();
+    s1.col(i) = k * (k * x.array()).cos();
+    s2.col(i) = -k * k * s.col(i);
+    sum_s(i) = i % 2 == 0 ? 2 / k : 0.0;
+  }
+  rest_s = integral.transpose() * weight.asDiagonal() * s;
+}
+
+}  // namespace hb
