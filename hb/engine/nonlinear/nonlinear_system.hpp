@@ -38,8 +38,8 @@ struct NonlinearSystem {
   Eigen::Index num_unknowns = 0;  // n
   // Omega(p), rad per unit time, positive.
   std::function<double(double parameter)> speed;
-  // Fills `residual` (resizing it) at all samples, or says where r does not exist. May keep scratch: one call at a time.
-  // A function of its arguments alone.
+  // Fills `residual` (resizing it) at all samples, or says where r does not exist. May keep scratch: one call at a
+  // time. A function of its arguments alone.
   std::function<std::optional<EvaluationFailure>(double parameter, const MotionSamples& motion, Derivatives wanted,
                                                  ResidualSamples& residual)>
       evaluate;
