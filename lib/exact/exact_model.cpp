@@ -121,6 +121,8 @@ std::vector<RodSurroundings> surroundings(const ExactModel::Impl& model, const s
 // Directions of Dual when rod s is varied: its chord with two rates, then its load along, across, moment.
 constexpr Index chord_direction = 0, load_direction = 3;
 
+constexpr Index axial_force_answer = 6;
+
 // What the answers of rod r, base motion and X, do when the chord and the load of rod s change; 7 x 6 per angle.
 using Influence = Eigen::Matrix<double, 7, 6>;
 
@@ -264,6 +266,18 @@ Index ExactModel::num_modes() const { return impl_->num_modes(); }
 Index ExactModel::first_mode(std::size_t rod) const { return impl_->first[rod]; }
 double ExactModel::force_per_residual(std::size_t rod) const {
   return impl_->constants[rod].bending * impl_->constants[rod].length / 2;
+}
+
+double ExactModel::driven_mass(std::size_t rod) const {
+  constexpr Index num_angles = 64;
+  const CrankAngles angles(linkage(), num_angles);
+  const MatrixXd zero = MatrixXd::Zero(num_modes(), num_angles);
+  const std::vector<BentRod> rods = bent_rods(*impl_, {zero, zero, zero});
+  const Influences influences(*impl_, rods, angles, 1);
+  double mass = 0;
+  for (Index j = 0; j < num_angles; ++j)
+    mass = std::max(mass, std::abs(influences(j, rod, rod)(axial_force_answer, chord_direction + 2)));
+  return mass;
 }
 
 ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, const RitzSamples& motion,

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "lib/linkage/balance.hpp"
+#include "lib/linkage/joint_rows.hpp"
 #include "lib/fourier/turn_sampling.hpp"
 
 namespace hb {
@@ -13,60 +14,6 @@ namespace {
 using Complex = std::complex<double>;
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-// One row of the result: which vector of the balance, in which body's frame.
-struct Row {
-  enum class Kind { crank_pivot, joint0, joint1, ground, rocker0, rocker1, guide } kind;
-  int dyad;  // whose force
-  int frame;  // body whose frame it is resolved in
-  std::string name;
-};
-
-std::vector<Row> rows_of(const Linkage& linkage) {
-  using Kind = Row::Kind;
-  std::vector<Row> rows;
-  rows.push_back(
-      {Kind::crank_pivot, 0, linkage.dyads.empty() ? 0 : coupler_index(0), linkage.crank.body.name + ".pivot"});
-  for (int d = 0; d < static_cast<int>(linkage.dyads.size()); ++d) {
-    const Dyad& dyad = linkage.dyads[at(d)];
-    const int coupler = coupler_index(d), closing = closing_index(d);
-    rows.push_back({Kind::joint0, d, coupler, dyad.coupler.name + ".0"});
-    rows.push_back({Kind::joint1, d, coupler, dyad.coupler.name + ".1"});
-    const std::string& name = body_name(linkage, closing);
-    if (const auto* rocker = std::get_if<Rocker>(&dyad.closing)) {
-      rows.push_back({Kind::ground, d, coupler, name + ".pivot"});
-      if (rocker->body.elastic) {
-        rows.push_back({Kind::rocker0, d, closing, name + ".0"});
-        rows.push_back({Kind::rocker1, d, closing, name + ".1"});
-      }
-    } else {
-      rows.push_back({Kind::guide, d, closing, name + ".guide"});
-    }
-  }
-  return rows;
-}
-
-Complex resolved(const Row& row, const MechanismForces& forces, const std::vector<BodyMotion>& motion) {
-  const auto vector = [&]() -> Complex {
-    switch (row.kind) {
-      case Row::Kind::crank_pivot:
-        return forces.crank_pivot;
-      case Row::Kind::joint0:
-        return forces.dyads[at(row.dyad)].joint0;
-      case Row::Kind::joint1:
-        return forces.dyads[at(row.dyad)].joint1;
-      case Row::Kind::rocker0:
-        return -forces.dyads[at(row.dyad)].ground;
-      case Row::Kind::rocker1:
-        return -forces.dyads[at(row.dyad)].joint1;
-      case Row::Kind::ground:
-      case Row::Kind::guide:
-        break;
-    }
-    return forces.dyads[at(row.dyad)].ground;
-  };
-  return std::conj(motion[at(row.frame)].e) * vector();
-}
 
 // Samples of q, q', q'' of one link, I x N each.
 struct ResponseSamples {
@@ -98,7 +45,7 @@ double left_out(const TurnSeries& turn, Eigen::Index row) {
 // Sampled per crank angle: rigid and elastic (x, y) of every row, then rigid and elastic torque.
 JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                          double tolerance) {
-  const std::vector<Row> rows = rows_of(linkage);
+  const std::vector<JointRow> rows = joint_rows(linkage);
   const auto num_rows = static_cast<Eigen::Index>(rows.size());
   std::vector<TurnComponent> components(static_cast<std::size_t>(4 * num_rows), TurnComponent{force_group, 1});
   components.insert(components.end(), 2, TurnComponent{torque_group, 1});
@@ -131,7 +78,7 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
         forces = forces_rigid;
       }
       for (Eigen::Index i = 0; i < num_rows; ++i) {
-        const Row& row = rows[static_cast<std::size_t>(i)];
+        const JointRow& row = rows[static_cast<std::size_t>(i)];
         const Complex f_rigid = resolved(row, forces_rigid, motion), f = resolved(row, forces, motion);
         samples.col(j).segment<4>(4 * i) << f_rigid.real(), f_rigid.imag(), f.real(), f.imag();
       }
@@ -148,8 +95,8 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
 
   JointForces result;
   for (Eigen::Index i = 0; i < num_rows; ++i) {
-    const Row& row = rows[static_cast<std::size_t>(i)];
-    const bool normal_only = row.kind == Row::Kind::guide;
+    const JointRow& row = rows[static_cast<std::size_t>(i)];
+    const bool normal_only = row.kind == JointRow::Kind::guide;
     const Eigen::Index first = 4 * i + (normal_only ? 1 : 0), count = normal_only ? 1 : 2;
     result.joints.push_back({row.name, cut_rows(turn, first, count), cut_rows(turn, first + 2, count)});
     for (Eigen::Index c = 0; c < count; ++c)

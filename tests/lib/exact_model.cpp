@@ -10,6 +10,7 @@
 #include "tests/support/bent_positions.hpp"
 #include "tests/support/random_linkage.hpp"
 #include "tests/support/six_link.hpp"
+#include "tests/support/slider_crank.hpp"
 
 namespace hb {
 namespace {
@@ -314,29 +315,8 @@ TEST(ExactModel, MotionOfTheSixLinkMechanismIsTheReferences) {
   }
 }
 
-// The slider-crank of the IVP test set, B. Simeon, Mathematical Modelling of Systems 2 (1996) 1-18.
-Linkage simeon_slider_crank() {
-  Linkage linkage;
-  linkage.gravity = 0;
-  linkage.crank.body = six_link::rigid_body("crank", 0.15, 0, 0, 0);
-  Dyad dyad;
-  dyad.on = {0, 0.15, "crank"};
-  const Elastic elastic{.youngs_modulus = 2e11,
-                        .area = 64e-6,
-                        .second_moment = std::pow(0.008, 4) / 12,
-                        .density = 1e-6,
-                        .internal_damping = 4.0602759e-5};
-  dyad.coupler = six_link::elastic_body("rod", 0.30, 0.151104, elastic);
-  Slider slider;
-  slider.name = "slider";
-  slider.mass = 0.075552;
-  dyad.closing = slider;
-  linkage.dyads = {dyad};
-  return linkage;
-}
-
 TEST(ExactModel, MotionOfTheSliderCrankIsTheReferences) {
-  const ExactModel model(simeon_slider_crank(), {{1, 2}});
+  const ExactModel model(slider_crank::linkage(), {{1, 2}});
   const struct {
     double speed, q1, q2;
   } cases[] = {
