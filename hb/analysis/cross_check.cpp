@@ -200,7 +200,9 @@ std::vector<Comparison> RodCheck::comparisons() const {
 bool RodCheck::opposite_verdicts() const {
   if (!compared() || !stability) return false;
   const Verdict a = stability->verdict, b = shooting.verdict;
-  return (a == Verdict::stable && b == Verdict::unstable) || (a == Verdict::unstable && b == Verdict::stable);
+  const auto grows = [](Verdict verdict) { return verdict == Verdict::unstable; };
+  const auto stays = [](Verdict verdict) { return verdict == Verdict::stable || verdict == Verdict::bounded; };
+  return (stays(a) && grows(b)) || (grows(a) && stays(b));
 }
 
 bool RodCheck::agrees() const {

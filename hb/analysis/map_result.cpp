@@ -9,14 +9,11 @@ namespace {
 
 constexpr std::size_t max_lines = 10;
 
-// Least stable point of all rods: unstable before undecided before stable, then by growth.
+// Least stable point of all rods: by the worst verdict, then by growth.
 MapPoint worse(const MapPoint& a, const MapPoint& b) {
   if (a.source == MapSource::missing || b.source == MapSource::missing) return {};
-  const auto rank = [](const MapPoint& p) {
-    return p.verdict == Verdict::unstable ? 2 : p.verdict == Verdict::undecided;
-  };
   MapPoint result = b.growth_rate > a.growth_rate ? b : a;
-  if (rank(a) != rank(b)) result.verdict = rank(a) > rank(b) ? a.verdict : b.verdict;
+  result.verdict = worst(a.verdict, b.verdict);
   if (a.source == MapSource::interpolated || b.source == MapSource::interpolated) {
     result.source = MapSource::interpolated;
   }

@@ -70,6 +70,35 @@ TEST(IndependentParts, ExponentsOfTheGroupsAreThoseOfTheWhole) {
   }
 }
 
+TEST(IndependentParts, ModesCoupledOneWayAreGroupsOfTheirOwn) {
+  HillSystem system = three_oscillators(1);
+  system.stiffness[0].c(3, 1) = 40;  // mode 0 feels mode 1
+  system.damping(2, 1) = 7;  // mode 2 too
+  const ScaledSystem scaled = scale_system(system, 1.7);
+  EXPECT_EQ(independent_groups(scaled).size(), 1u);
+  const std::vector<std::vector<int>> groups = one_way_groups(scaled);
+  ASSERT_EQ(groups.size(), 2u);
+  EXPECT_EQ(groups[0], (std::vector<int>{0, 2}));
+  EXPECT_EQ(groups[1], std::vector<int>{1});
+}
+
+// Strong coupling one way leaves the exponents as they are, and their errors.
+TEST(IndependentParts, ExponentsOfModesCoupledOneWayAreThoseOfEachAlone) {
+  for (const double Omega : {0.4, 1.7, 2.3, 5.0}) {
+    HillSystem system = three_oscillators(1);
+    const Stability apart = analyse_stability(system, Omega);
+    system.stiffness[0].c(3, 1) = 4e5;
+    system.damping(2, 1) = 7e3;
+    const Stability result = analyse_stability(system, Omega);
+    ASSERT_EQ(result.exponents.size(), apart.exponents.size());
+    for (std::size_t i = 0; i < apart.exponents.size(); ++i) {
+      EXPECT_EQ(result.exponents[i].value, apart.exponents[i].value);
+      EXPECT_EQ(result.exponents[i].error, apart.exponents[i].error);
+    }
+    EXPECT_EQ(result.verdict, apart.verdict);
+  }
+}
+
 TEST(IndependentParts, AShorterPeriodHasTheSameExponentsFoldedToTheTurn) {
   for (const Index k : {2, 3}) {
     EXPECT_EQ(common_divisor(scale_system(three_oscillators(k), 1)), k);

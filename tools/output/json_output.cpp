@@ -67,6 +67,7 @@ void add_stability(Json& json, const RodResult& rod) {
   json["growth_rate"] = stability.growth_rate + 0.0;
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
   json["exponent_error"] = stability.growth_error;
+  json["growth_interval"] = {stability.growth_low + 0.0, stability.growth_high + 0.0};
   json["verdict"] = to_string(stability.verdict);
   json["stability_method"] = to_string(stability.method);
   json["stability_converged"] = stability.converged;

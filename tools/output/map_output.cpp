@@ -78,7 +78,21 @@ std::string first_line(const MapDocument& document, const std::string& what) {
 }
 
 struct Counts {
-  std::size_t stable = 0, unstable = 0, undecided = 0, missing = 0, interpolated = 0;
+  std::size_t stable = 0, bounded = 0, undecided = 0, unstable = 0, missing = 0, interpolated = 0;
+
+  std::size_t& of(Verdict verdict) {
+    switch (verdict) {
+      case Verdict::stable:
+        return stable;
+      case Verdict::bounded:
+        return bounded;
+      case Verdict::undecided:
+        break;
+      case Verdict::unstable:
+        return unstable;
+    }
+    return undecided;
+  }
 };
 
 Counts counts(const std::vector<MapPoint>& points) {
@@ -88,7 +102,7 @@ Counts counts(const std::vector<MapPoint>& points) {
       ++n.missing;
       continue;
     }
-    ++(p.verdict == Verdict::stable ? n.stable : p.verdict == Verdict::unstable ? n.unstable : n.undecided);
+    ++n.of(p.verdict);
     n.interpolated += p.source == MapSource::interpolated;
   }
   return n;
@@ -136,11 +150,8 @@ Json map_json(const MapDocument& document) {
     json["resonance_lines"].push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
   }
   json["boundary_points_not_reached"] = boundary_points_not_reached(r);
-  json["counts"] = {{"stable", n.stable},
-                    {"unstable", n.unstable},
-                    {"undecided", n.undecided},
-                    {"missing", n.missing},
-                    {"interpolated", n.interpolated}};
+  json["counts"] = {{"stable", n.stable},       {"bounded", n.bounded}, {"unstable", n.unstable},
+                    {"undecided", n.undecided}, {"missing", n.missing}, {"interpolated", n.interpolated}};
   json["missing"] = Json::array();
   for (const MissingPoints& m : r.missing) {
     json["missing"].push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
@@ -156,8 +167,7 @@ CsvFile map_grid_csv(const MapDocument& document) {
   CsvFile file;
   file.name = "map_grid.csv";
   file.comment = {first_line(document, "growth rate, largest over the rods"),
-                  "verdict 1 unstable, 0 undecided, -1 stable; interpolated 1: inside a cell of one verdict; "
-                  "nan: no system"};
+                  std::string(verdict_numbers) + "; interpolated 1: inside a cell of one verdict; nan: no system"};
   file.columns = {
       r.x_axis.path, r.y_axis.path, "growth [1/" + time + "]", "growth per turn", "tenfold time [" + time + "]",
       "verdict",     "interpolated"};
@@ -167,13 +177,12 @@ CsvFile map_grid_csv(const MapDocument& document) {
     const MapPoint& point = r.worst[p];
     const auto row = static_cast<Eigen::Index>(p);
     const bool none = missing(point);
-    const double verdict = point.verdict == Verdict::unstable ? 1 : point.verdict == Verdict::stable ? -1 : 0;
     file.rows(row, 0) = r.x()[p % nx];
     file.rows(row, 1) = r.y()[p / nx];
     file.rows(row, 2) = none ? nan : point.growth_rate;
     file.rows(row, 3) = none ? nan : growth_per_turn(point);
     file.rows(row, 4) = none ? nan : tenfold_time(point);
-    file.rows(row, 5) = none ? nan : verdict;
+    file.rows(row, 5) = none ? nan : verdict_number(point.verdict);
     file.rows(row, 6) = none ? nan : double(point.source == MapSource::interpolated);
     for (std::size_t k = 0; k < r.rods.size(); ++k) {
       file.rows(row, static_cast<Eigen::Index>(7 + k)) = none ? nan : r.maps[k].points[p].growth_rate;
@@ -235,9 +244,9 @@ std::string map_summary(const MapDocument& document) {
   text += fmt::format("  x  {} = {} ... {}, {} values\n  y  {} = {} ... {}, {} values\n", r.x_axis.path, r.x().front(),
                       r.x().back(), r.x().size(), r.y_axis.path, r.y().front(), r.y().back(), r.y().size());
   text += fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes);
-  text +=
-      fmt::format("  stable {:.4g} %, unstable {:.4g} %, undecided {:.4g} %", 100 * static_cast<double>(n.stable) / all,
-                  100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
+  text += fmt::format("  stable {:.4g} %, bounded {:.4g} %, unstable {:.4g} %, undecided {:.4g} %",
+                      100 * static_cast<double>(n.stable) / all, 100 * static_cast<double>(n.bounded) / all,
+                      100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
   if (n.missing > 0) text += fmt::format(", no system {:.4g} %", 100 * static_cast<double>(n.missing) / all);
   text += fmt::format(" of {} points", r.worst.size());
   if (n.interpolated > 0) text += fmt::format(" ({} of them interpolated)", n.interpolated);

@@ -374,7 +374,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   if (only.stability) {
     file.columns.insert(file.columns.end(), {"growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate),
                                              "verdict"});
-    file.comment.push_back("verdict: 1 unstable, 0 undecided, -1 stable; per mode frequency (unfolded) and growth rate");
+    file.comment.push_back(std::string(verdict_numbers) + "; per mode frequency (unfolded) and growth rate");
     for (int i = 1; i <= I; ++i) {
       file.columns.push_back(fmt::format("frequency of mode {} [Hz]", i));
       file.columns.push_back(fmt::format("growth of mode {}{}", i, bracketed(units.rate)));
@@ -408,7 +408,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
       const Stability& stability = here.stability->stability;
       row(column++) = stability.growth_rate;
       row(column++) = stability.growth_error;
-      row(column++) = stability.verdict == Verdict::unstable ? 1 : stability.verdict == Verdict::stable ? -1 : 0;
+      row(column++) = verdict_number(stability.verdict);
       for (const ModeState& mode : modes[k]) {
         row(column++) = mode.frequency * hertz;
         row(column++) = mode.growth;

@@ -87,7 +87,7 @@ void add_stability(Text& text, const RodResult& rod, double speed, const Scene& 
         stability.uncertain.empty() ? "" : ":");
     add_exponents(text, stability.uncertain, "?");
   }
-  add(text, "  growth rate       {} {}{}\n", with_error(stability.growth_rate, stability.growth_error), units.rate,
+  add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
       stability.converged ? "" : "  NOT REACHED");
   if (rod.growth_modes_error)
     add(text, "  its cut           {:.1e} of the larger of itself and the speed, estimated\n", *rod.growth_modes_error);

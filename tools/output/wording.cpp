@@ -49,24 +49,53 @@ std::string with_error(double value, double error) {
   return fmt::format("{:.{}g} +/- {:.1e}", value + 0.0, trusted_digits(value, error), error);
 }
 
+int verdict_number(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::stable:
+      return -1;
+    case Verdict::bounded:
+      return -2;
+    case Verdict::undecided:
+      break;
+    case Verdict::unstable:
+      return 1;
+  }
+  return 0;
+}
+
+std::string growth_text(const Stability& stability) {
+  const double above = stability.growth_high - stability.growth_rate;
+  const double below = stability.growth_rate - stability.growth_low;
+  // Twice as large on one side: said apart.
+  if (!(std::max(above, below) > 2 * std::min(above, below)))
+    return with_error(stability.growth_rate, stability.growth_error);
+  return fmt::format("{:.{}g} +{:.1e} -{:.1e}", stability.growth_rate + 0.0,
+                     trusted_digits(stability.growth_rate, std::min(above, below)), above, below);
+}
+
 std::string verdict_sentence(const Stability& stability, double speed, const Units& units) {
   const double growth = stability.growth_rate + 0.0;  // no -0
   const double turn = 2 * std::numbers::pi / speed;
   switch (stability.verdict) {
     case Verdict::stable: {
-      const double slowest = growth + stability.growth_error, halving = std::numbers::ln2 / -slowest;
+      const double slowest = stability.growth_high, halving = std::numbers::ln2 / -slowest;
       return fmt::format(
           "stable: every disturbance dies out, in the long run at least as fast as exp({:.4g} t): halved in "
           "{:.3g} {} ({:.3g} turns)",
           slowest, halving, units.time, halving / turn);
     }
     case Verdict::unstable: {
-      const double tenfold = std::numbers::ln10 / growth;
+      // Where little is known of how fast, the least that is certain.
+      const bool certain = stability.growth_error <= 0.1 * growth;
+      const double rate = certain ? growth : stability.growth_low, tenfold = std::numbers::ln10 / rate;
       return fmt::format(
-          "UNSTABLE: disturbances grow as exp({:.4g} t){}: tenfold in {:.3g} {} ({:.3g} turns). The periodic "
+          "UNSTABLE: disturbances grow {} exp({:.4g} t){}: tenfold in {}{:.3g} {} ({:.3g} turns). The periodic "
           "state exists but would not be seen in a machine",
-          growth, kind_of(stability, speed), tenfold, units.time, tenfold / turn);
+          certain ? "as" : "at least as fast as", rate, kind_of(stability, speed), certain ? "" : "at most ", tenfold,
+          units.time, tenfold / turn);
     }
+    case Verdict::bounded:
+      return "bounded: without damping disturbances neither grow nor die out";
     case Verdict::undecided:
       break;
   }

@@ -16,6 +16,8 @@ std::string verdict_text(const RodResult& rod) {
       return ", stable";
     case Verdict::unstable:
       return ", UNSTABLE: would not be seen in a machine";
+    case Verdict::bounded:
+      return ", bounded";
     case Verdict::undecided:
       break;
   }

@@ -121,9 +121,10 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                                ? fmt::format(", {}{}", fmt::join(r.rods, ", "), r.rods.size() > 1 ? " (the worst)" : "")
                                : "";
   const bool some_missing = !r.missing.empty();
-  const bool some_undecided = std::any_of(r.worst.begin(), r.worst.end(), [](const MapPoint& p) {
-    return p.source != MapSource::missing && p.verdict == Verdict::undecided;
-  });
+  const auto some = [&](Verdict verdict) {
+    return std::any_of(r.worst.begin(), r.worst.end(),
+                       [&](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == verdict; });
+  };
   figure.commands = fmt::format(
       "set title '{{/:Bold {}}}'.\"\\n\".{}\n"
       "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {}\n"
@@ -140,7 +141,12 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
   }
   std::vector<std::string> layers = {
       fmt::format("'{}' using 1:2:(asinh({}/{})) with image notitle", files.grid, c.value, c.scale)};
-  if (some_undecided) {
+  if (some(Verdict::bounded)) {
+    layers.push_back(fmt::format("'{}' using 1:2:(190):(174):(212):($6 == {} ? 255 : 0) with rgbalpha notitle",
+                                 files.grid, verdict_number(Verdict::bounded)));
+    layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#beaed4' title 'bounded: no damping'");
+  }
+  if (some(Verdict::undecided)) {
     layers.push_back(
         fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha notitle", files.grid));
     layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#c6c6c6' title 'undecided'");

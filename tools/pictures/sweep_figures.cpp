@@ -68,7 +68,7 @@ std::vector<double> where_stable(const SweepResult& result, const CsvFile& csv, 
   std::vector<double> values;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const bool stable = std::all_of(points[k]->rods.begin(), points[k]->rods.end(), [](const RodPoint& rod) {
-      return !rod.stability || rod.stability->stability.verdict == Verdict::stable;
+      return !rod.stability || rod.stability->stability.verdict <= Verdict::bounded;
     });
     const double value = csv.rows(static_cast<Eigen::Index>(k), column - 1);
     if (stable && std::isfinite(value)) values.push_back(value);

@@ -83,6 +83,8 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
   });
   visit(stability.growth_rate);
   visit(stability.growth_error);
+  visit(stability.growth_low);
+  visit(stability.growth_high);
   visit_as_number(visit, stability.verdict);
   visit_as_number(visit, stability.converged);
 }

@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "hb/engine/exponents/verdict.hpp"
 #include "hb/engine/system/scaled_system.hpp"
 #include "lib/hill_system.hpp"
 
 namespace hb {
-
-enum class Verdict { stable, unstable, undecided };
 
 enum class StabilityMethod {
   automatic,
@@ -35,19 +34,26 @@ struct StabilityOptions {
 // One Floquet exponent lambda: solutions e^{lambda t} p(t), p of period 2 pi/Omega.
 struct Exponent {
   std::complex<double> value;  // 1/time; imaginary part folded to (-Omega/2, Omega/2]
-  double error = 0;  // bound on |error|
+  double error = 0;  // of |value|, see Stability
   // Which mode it belongs to (index of the scaled coordinates, ascending mean frequency for rods): the mode that the
   // others were slaved to; inside a group of strongly coupled modes the nearest in frequency and damping.
   int mode = 0;
   // Frequency unfolded, >= 0: |Im lambda + k Omega| with the harmonic k that carries the motion.
   double frequency = 0;
+
+  // e^{lambda 2 pi/Omega}: what a turn at the speed Omega does to the disturbance.
+  [[nodiscard]] std::complex<double> multiplier(double speed) const;
 };
 
+// Errors of exponents are bounds, in floating-point arithmetic, only where coefficients are constant and for Mathieu's
+// equation by Hill's determinant. All others are a-posteriori estimates, larger than what they estimate by a margin
+// that tests/engine/stress_stability.cpp and tools/attack put to the test; each is derived in hb/engine/README.md.
 struct Stability {
   std::vector<Exponent> exponents;  // real part descending, then imaginary part ascending; those resolved (up to 2I)
   std::vector<Exponent> uncertain;  // the others that were found, their bars beyond 1e-6 of themselves or of Omega
   double growth_rate = 0;  // max Re lambda, 1/time
-  double growth_error = 0;  // bound on its error
+  double growth_error = 0;  // the larger of growth_high - growth_rate and growth_rate - growth_low; may be infinite
+  double growth_low = 0, growth_high = 0;  // the growth rate lies between them: what the verdict rests on
   Verdict verdict = Verdict::undecided;
   bool converged = false;  // growth_error within what was asked; for bounds: they decide
   StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
@@ -58,7 +64,6 @@ struct Stability {
 [[nodiscard]] Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options = {});
 [[nodiscard]] Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& options = {});
 
-[[nodiscard]] const char* to_string(Verdict verdict);
 [[nodiscard]] const char* to_string(StabilityMethod method);
 
 }  // namespace hb

@@ -1,29 +1,56 @@
 #include "hb/engine/system/independent_parts.hpp"
 
-#include <algorithm>
+#include <Eigen/Core>
 #include <numeric>
 
 namespace hb {
 
 using Eigen::Index;
 
-std::vector<std::vector<int>> independent_groups(const ScaledSystem& system) {
+namespace {
+
+using Reach = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
+// (i, j): mode i feels mode j.
+Reach couplings(const ScaledSystem& system) {
   const Index I = system.num_modes();
-  const auto coupled = [&](Index i, Index j) {
-    return system.G(i, j) != 0 || (system.K.c.row(i + I * j).array() != 0.0).any();
-  };
-  std::vector<int> group(static_cast<std::size_t>(I));
-  std::iota(group.begin(), group.end(), 0);
+  Reach coupled(I, I);
   for (Index i = 0; i < I; ++i)
-    for (Index j = 0; j < I; ++j) {
-      if (i == j || !coupled(i, j)) continue;
-      const int a = group[static_cast<std::size_t>(i)], b = group[static_cast<std::size_t>(j)];
-      std::replace(group.begin(), group.end(), std::max(a, b), std::min(a, b));
-    }
-  std::vector<std::vector<int>> groups(static_cast<std::size_t>(I));
-  for (int i = 0; i < int(I); ++i) groups[static_cast<std::size_t>(group[static_cast<std::size_t>(i)])].push_back(i);
-  std::erase_if(groups, [](const std::vector<int>& modes) { return modes.empty(); });
+    for (Index j = 0; j < I; ++j)
+      coupled(i, j) = i == j || system.G(i, j) != 0 || (system.K.c.row(i + I * j).array() != 0.0).any();
+  return coupled;
+}
+
+// Through any number of others (Warshall).
+Reach closure(Reach reach) {
+  for (Index via = 0; via < reach.rows(); ++via)
+    for (Index i = 0; i < reach.rows(); ++i)
+      if (reach(i, via)) reach.row(i) = reach.row(i) || reach.row(via);
+  return reach;
+}
+
+// Classes of an equivalence.
+std::vector<std::vector<int>> classes(const Reach& same) {
+  std::vector<std::vector<int>> groups;
+  for (Index i = 0; i < same.rows(); ++i) {
+    if (same.row(i).head(i).any()) continue;
+    std::vector<int>& group = groups.emplace_back();
+    for (Index j = i; j < same.rows(); ++j)
+      if (same(i, j)) group.push_back(static_cast<int>(j));
+  }
   return groups;
+}
+
+}  // namespace
+
+std::vector<std::vector<int>> independent_groups(const ScaledSystem& system) {
+  const Reach coupled = couplings(system);
+  return classes(closure(coupled || coupled.transpose()));
+}
+
+std::vector<std::vector<int>> one_way_groups(const ScaledSystem& system) {
+  const Reach reach = closure(couplings(system));
+  return classes(reach && reach.transpose());
 }
 
 ScaledSystem group_of(const ScaledSystem& system, const std::vector<int>& modes) {
@@ -34,7 +61,8 @@ ScaledSystem group_of(const ScaledSystem& system, const std::vector<int>& modes)
   part.T_inverse = system.T_inverse(modes, Eigen::all);
   part.G = system.G(modes, modes);
   part.K_rounding = system.K_rounding(modes, modes);
-  part.diagonal_damping = system.diagonal_damping;
+  part.diagonal_damping = part.G.isDiagonal(0);
+  part.conservative = system.conservative(modes);
   part.K = FourierSeries(m * m, system.K.num_harmonics());
   for (Index j = 0; j < m; ++j)
     for (Index i = 0; i < m; ++i)
@@ -63,6 +91,7 @@ ScaledSystem with_period_divided(const ScaledSystem& system, Index g) {
   shorter.G = system.G * factor;
   shorter.K_rounding = system.K_rounding * (factor * factor);
   shorter.diagonal_damping = system.diagonal_damping;
+  shorter.conservative = system.conservative;
   shorter.K = FourierSeries(system.K.num_components(), system.K.num_harmonics() / g);
   for (Index k = 0; k <= shorter.K.num_harmonics(); ++k) shorter.K.c.col(k) = factor * factor * system.K.c.col(g * k);
   return shorter;

@@ -71,6 +71,20 @@ Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index n
   return size;
 }
 
+// See ScaledSystem::conservative, in the coordinates of the given system.
+Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& system) {
+  const Eigen::Index I = system.num_modes();
+  Eigen::Array<bool, Eigen::Dynamic, 1> result = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(I, true);
+  for (Eigen::Index j = 0; j < I; ++j)
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      bool here = system.mass(i, j) == system.mass(j, i) && system.damping(i, j) == -system.damping(j, i);
+      for (const FourierSeries& part : system.stiffness)
+        here = here && (part.c.size() == 0 || part.c.row(i + I * j) == part.c.row(j + I * i));
+      if (!here) result(i) = result(j) = false;
+    }
+  return result;
+}
+
 }  // namespace
 
 Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
@@ -124,6 +138,8 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   scaled.K = without_rounding(scaled.K, I);
   // Adding three powers, products with L and T (none but scaling when they are diagonal), and the cut.
   const bool scaling = is_diagonal(L) && is_diagonal(T);
+  scaled.conservative = conservative_modes(system);
+  if (!scaling) scaled.conservative.setConstant(scaled.conservative.all());
   const double steps = scaling ? 4 : 4 + 2 * static_cast<double>(I);
   const Eigen::VectorXd stiffness_size = sizes(system.stiffness, I * I, speed);
   scaled.K_rounding = steps * eps / (speed * speed) * L.cwiseAbs() *

@@ -19,6 +19,8 @@ struct ScaledSystem {
   FourierSeries f;  // T^-1 M^-1 h / (Omega^2 load_scale): I components, largest |coefficient| about 1
   double load_scale = 0;  // 0: no load; then f is empty
   bool diagonal_damping = true;
+  // Per mode: in its rows and columns M and C are symmetric at all angles and B = -B^T, exactly, as given.
+  Eigen::Array<bool, Eigen::Dynamic, 1> conservative;
 
   Eigen::Index num_modes() const { return G.rows(); }
   // Mean of K, an I x I matrix, and its diagonal w_i^2; diagonal b_i of G.

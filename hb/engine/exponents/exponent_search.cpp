@@ -1,0 +1,323 @@
+#include "hb/engine/exponents/exponent_search.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "hb/engine/exponents/constant_coefficients.hpp"
+#include "hb/engine/exponents/hill_determinant.hpp"
+#include "hb/engine/exponents/hill_exponents.hpp"
+#include "hb/engine/exponents/slaving.hpp"
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+// Above, slaving each mode on its own is tried before all are propagated.
+constexpr Index most_modes_propagated = 10;
+
+std::vector<Index> all_modes(const ScaledSystem& system) {
+  std::vector<Index> all(std::size_t(system.num_modes()));
+  std::iota(all.begin(), all.end(), Index(0));
+  return all;
+}
+
+// |Im s + k| nearest to `near`.
+double unfolded(double s, double near) {
+  const double fraction = s - std::floor(s);
+  const double up = fraction + std::round(near - fraction), down = -fraction + std::round(near + fraction);
+  return std::abs(up - near) <= std::abs(down - near) ? std::abs(up) : std::abs(down);
+}
+
+// Gives every exponent its mode and its unfolded frequency: pairs go to the modes of the group whose mean equation
+// z^2 + b z + w^2 has the nearest root; each mode takes two.
+void name_modes(Exponents& exponents, const ScaledSystem& system, const std::vector<Index>& group) {
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  const std::size_t count = exponents.s.size();
+  exponents.mode.assign(count, 0);
+  exponents.frequency.assign(count, 0);
+  std::vector<int> room(group.size(), 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    double nearest = HUGE_VAL;
+    std::size_t chosen = 0;
+    for (std::size_t g = 0; g < group.size(); ++g) {
+      if (room[g] == 0) continue;
+      const cplx root = std::sqrt(cplx(b(group[g]) * b(group[g]) / 4 - w2(group[g]), 0));
+      for (const cplx mean : {-b(group[g]) / 2 + root, -b(group[g]) / 2 - root}) {
+        // The phase function gives the whole frequency; a turn's map gives it modulo 1.
+        const double im = std::abs(exponents.s[i].imag());
+        const double frequency = im > 0.5 ? im : unfolded(exponents.s[i].imag(), std::abs(mean.imag()));
+        const double distance = std::hypot(exponents.s[i].real() - mean.real(), frequency - std::abs(mean.imag()));
+        if (distance < nearest) {
+          nearest = distance;
+          chosen = g;
+          exponents.frequency[i] = frequency;
+        }
+      }
+    }
+    if (room[chosen] > 0) --room[chosen];
+    exponents.mode[i] = group[chosen];
+  }
+}
+
+// True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.
+bool spans(const ScaledSystem& system, MatrixXd states) {
+  const Index I = system.num_modes();
+  if (!states.allFinite()) return false;
+  const VectorXd w2 = system.mean_diagonal();
+  for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
+  states.colwise().normalize();
+  // Far above the errors of the subspaces.
+  return Eigen::PartialPivLU<MatrixXd>(states).rcond() > 1e-8;
+}
+
+// Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
+// what is allowed: ds = d alpha/(2 sqrt|w^2 - b^2/4|).
+double sufficient(const ScaledSystem& system, std::span<const Index> kept, double tolerance) {
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  double smallest = 1;
+  for (const Index s : kept) {
+    const cplx root = std::sqrt(cplx(b(s) * b(s) / 4 - w2(s), 0));
+    const double wanted = std::max(std::abs((-b(s) / 2 + root).real()), 0.01);
+    const double size = std::max(std::abs(w2(s)), 1e-4);
+    smallest = std::min(smallest, wanted * 2 * std::max(std::abs(root), 1e-3) / size);
+  }
+  return 1e-3 * tolerance * smallest;
+}
+
+// Slaving the others to them costs more than propagating all modes: cells as many as the fastest one needs, each with a
+// dense elimination.
+bool too_many(const ScaledSystem& system, const std::vector<Index>& together) {
+  const VectorXd w2 = system.mean_diagonal();
+  const auto work = [](double modes, double fastest2) {
+    return modes * modes * modes * std::max(12.0, 0.8 * std::sqrt(fastest2));
+  };
+  double fastest2 = 0;
+  for (const Index s : together) fastest2 = std::max(fastest2, std::abs(w2(s)));
+  return 2 * work(double(together.size()), fastest2) > work(double(system.num_modes()), w2.cwiseAbs().maxCoeff());
+}
+
+// Above this resonance strength reductions converge slowly, if at all (by experience with rods in bands of
+// instability).
+constexpr double strong_resonance = 3e-4;
+
+// Slaves the others to `together` and to the modes that pull at these, which are added to it until that converges;
+// empty where too many would have to be kept.
+std::optional<ReducedSystem> slave_to_resonant(const ScaledSystem& system, std::vector<Index>& together,
+                                               double tolerance) {
+  Index next = 0;
+  const auto with_next = [&] {
+    std::vector<Index> more = together;
+    more.push_back(next);
+    return more;
+  };
+  while (resonance_strength(system, together).maxCoeff(&next) > strong_resonance && !too_many(system, with_next()))
+    together = with_next();
+  while (!too_many(system, together)) {
+    ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
+    if (reduced.converged) return reduced;
+    resonance_strength(system, together).maxCoeff(&next);
+    together = with_next();
+  }
+  return std::nullopt;
+}
+
+// Exponents of one mode that are known better than those of a whole list take their place. A list that has lost them,
+// because they decay too fast for it, gets them.
+void sharpen(Exponents& list, const Exponents& pair) {
+  for (std::size_t p = 0; p < pair.s.size(); ++p) {
+    bool missing = true;
+    for (std::size_t i = 0; i < list.s.size(); ++i) {
+      const cplx apart = list.s[i] - pair.s[p];
+      const double turn = std::abs(apart.imag() - std::round(apart.imag()));
+      if (!(std::hypot(apart.real(), turn) <= list.error[i] + pair.error[p])) continue;
+      missing = false;
+      if (!(pair.error[p] < list.error[i])) continue;
+      list.s[i] = pair.s[p];
+      list.error[i] = pair.error[p];
+      list.mode[i] = pair.mode[p];
+      list.frequency[i] = pair.frequency[p];
+      break;
+    }
+    if (!missing || !(pair.s[p].real() < list.others_below)) continue;
+    list.add(pair.s[p], pair.error[p]);
+    list.mode.push_back(pair.mode[p]);
+    list.frequency.push_back(pair.frequency[p]);
+  }
+}
+
+}  // namespace
+
+ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance, bool leading_only) {
+  const std::vector<Index> all = all_modes(system);
+  ExponentSearch search;
+  search.exponents = propagated_exponents(slave_to(system, all), tolerance, leading_only);
+  name_modes(search.exponents, system, all);
+  search.method = StabilityMethod::propagation;
+  search.evidence = "all modes propagated over a turn by Radau IIA";
+  search.kept = all;
+  search.complete = true;
+  return search;
+}
+
+ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
+  const Index I = system.num_modes();
+  ExponentSearch search;
+  std::vector<Index> together;
+  std::vector<Exponents> alone(std::size_t(I), Exponents{});
+  std::vector<MatrixXd> starts(std::size_t(I), MatrixXd{});  // of the subspaces, per mode alone
+  MatrixXd start_together(2 * I, 0);
+  for (Index g = 0; g < I; ++g) {
+    const std::array<Index, 1> one{g};
+    const ReducedSystem reduced = slave_to(system, one, sufficient(system, one, tolerance));
+    if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
+    name_modes(alone[std::size_t(g)], system, {g});
+    if (reduced.converged && !alone[std::size_t(g)].s.empty())
+      starts[std::size_t(g)] = reduced.start;
+    else
+      together.push_back(g);
+  }
+  search.method = StabilityMethod::slaving;
+  if (!together.empty()) {
+    if (const auto reduced = slave_to_resonant(system, together, tolerance)) {
+      search.exponents = reduced_exponents(*reduced, tolerance);
+      name_modes(search.exponents, system, together);
+      start_together = reduced->start;
+    } else {
+      search = search_by_propagation(system, tolerance);
+      for (const Exponents& pair : alone) sharpen(search.exponents, pair);
+      return search;
+    }
+    search.evidence = fmt::format(
+        "{} modes propagated over a turn by Radau IIA, the others slaved to them; {} modes "
+        "each with the others slaved to it",
+        together.size(), I - Index(together.size()));
+  } else {
+    search.evidence = fmt::format("{} modes, each with the others slaved to it, their exponents from {}", I,
+                                  "the phase function, Hill's determinant or one turn's propagation");
+    search.exponents.converged = true;
+  }
+  MatrixXd states(2 * I, 2 * I);
+  states.leftCols(start_together.cols()) = start_together;
+  Index filled = start_together.cols();
+  for (Index g = 0; g < I; ++g)
+    if (std::find(together.begin(), together.end(), g) == together.end()) {
+      states.middleCols(filled, 2) = starts[std::size_t(g)];
+      filled += 2;
+      search.exponents.append(alone[std::size_t(g)]);
+      search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
+    }
+  search.complete = spans(system, std::move(states));
+  return search;
+}
+
+ExponentSearch search_by_hill(const ScaledSystem& system) {
+  const HillExponents hill = hill_exponents(system);
+  ExponentSearch search;
+  // From two modes the iteration may have gone to one exponent. Distinct ones have independent vectors: 2I are all.
+  const auto found_before = [&](std::size_t i) {
+    for (std::size_t k = 0; k < search.exponents.s.size(); ++k) {
+      const cplx apart = search.exponents.s[k] - hill.s[i];
+      const double turn = std::abs(apart.imag() - std::round(apart.imag()));
+      if (std::hypot(apart.real(), turn) <= search.exponents.error[k] + hill.error[i] + 1e-10) return true;
+    }
+    return false;
+  };
+  for (std::size_t i = 0; i < hill.s.size(); ++i) {
+    if (found_before(i)) continue;
+    search.exponents.add(hill.s[i], hill.error[i]);
+    search.exponents.mode.push_back(hill.mode[i]);
+    search.exponents.frequency.push_back(std::abs(hill.s[i].imag()));
+  }
+  search.complete = Index(search.exponents.s.size()) == 2 * system.num_modes();
+  search.method = StabilityMethod::hill;
+  search.evidence = "each exponent by Newton's method on the Hill equations, in a window centred on its mode";
+  return search;
+}
+
+ExponentSearch search_by_determinant(const ScaledSystem& system) {
+  ExponentSearch search;
+  search.method = StabilityMethod::determinant;
+  if (!system.diagonal_damping) {
+    search.evidence = "Hill's determinant was not taken: the damping is not diagonal";
+    return search;
+  }
+  const HillDeterminant determinant(system);
+  search.exponents = determinant.exponents();
+  name_modes(search.exponents, system, all_modes(system));
+  // How many lie to the right of zero is known from the winding of the determinant as well, if none lies too near.
+  const std::optional<int> growing = determinant.exponents_above(0);
+  int found = 0, unclear = search.exponents.others_below >= 0 ? 1 : 0;
+  for (std::size_t i = 0; i < search.exponents.s.size(); ++i) {
+    const double growth = search.exponents.s[i].real(), bar = search.exponents.error[i];
+    (growth > bar ? found : unclear) += growth >= -bar ? 1 : 0;
+  }
+  search.complete = !search.exponents.s.empty() && (!growing || unclear > 0 || *growing == found);
+  search.evidence = growing
+                        ? fmt::format("zeros of Hill's determinant on a circle; {} growing by its winding", *growing)
+                        : "zeros of Hill's determinant on a circle";
+  return search;
+}
+
+std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double tolerance,
+                                             const std::vector<int>& keep) {
+  const Index I = system.num_modes();
+  if (!system.diagonal_damping) return std::nullopt;
+  std::vector<Index> together(keep.begin(), keep.end());
+  if (together.empty()) {
+    const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+    Index slowest = 0;
+    double largest = -HUGE_VAL;
+    for (Index g = 0; g < I; ++g) {
+      const double growth = (-b(g) / 2 + std::sqrt(cplx(b(g) * b(g) / 4 - w2(g), 0))).real();
+      if (growth > largest) {
+        largest = growth;
+        slowest = g;
+      }
+    }
+    together.push_back(slowest);
+  }
+  if (const auto reduced = slave_to_resonant(system, together, tolerance)) {
+    ExponentSearch search;
+    search.exponents = reduced_exponents(*reduced, tolerance, true);
+    name_modes(search.exponents, system, together);
+    double growth = -HUGE_VAL;
+    for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
+      growth = std::max(growth, search.exponents.s[i].real() - search.exponents.error[i]);
+    if (std::max(reduced->others_below, search.exponents.others_below) < growth) {
+      search.method = StabilityMethod::slaving;
+      search.evidence = fmt::format("{} modes kept, the others slaved to them and bounded below the leading exponent",
+                                    together.size());
+      search.kept = together;
+      search.complete = true;
+      return search;
+    }
+  }
+  if (I > most_modes_propagated) return std::nullopt;
+  return search_by_propagation(system, tolerance, true);
+}
+
+ExponentSearch search_constant(const ScaledSystem& system) {
+  const TurnExponents roots = constant_exponents(system);
+  ExponentSearch search;
+  search.exponents.s = roots.s;
+  search.exponents.error = roots.error;
+  search.exponents.converged = true;
+  name_modes(search.exponents, system, all_modes(system));
+  search.method = StabilityMethod::hill;
+  search.evidence = "constant coefficients: roots of the characteristic equation";
+  search.complete = true;
+  return search;
+}
+
+}  // namespace hb

@@ -1,0 +1,44 @@
+// Ways to the exponents of one system whose modes all feel each other and whose K varies over the turn.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/engine/exponents/reduced_exponents.hpp"
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/system/scaled_system.hpp"
+
+namespace hb {
+
+struct ExponentSearch {
+  Exponents exponents;
+  StabilityMethod method = StabilityMethod::automatic;
+  std::string evidence;
+  std::vector<Eigen::Index> kept;  // modes propagated together
+  bool complete = false;  // all 2I exponents are listed, or lie below `exponents.others_below`
+};
+
+// All modes propagated over the turn. With `leading_only` exponents far below the leading one are bounded only.
+[[nodiscard]] ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance,
+                                                   bool leading_only = false);
+
+// Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
+// reduction converges.
+[[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance);
+
+// Only the leading exponents: the slowest modes (or `keep`) with the others slaved to them, and a bound that puts all
+// other exponents below; without such a bound all modes propagated. Empty if neither serves.
+[[nodiscard]] std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double tolerance,
+                                                           const std::vector<int>& keep);
+
+// Each exponent by Newton's method on the Hill equations.
+[[nodiscard]] ExponentSearch search_by_hill(const ScaledSystem& system);
+
+// Zeros of Hill's determinant near the leading exponent.
+[[nodiscard]] ExponentSearch search_by_determinant(const ScaledSystem& system);
+
+// Roots of the characteristic equation of constant coefficients.
+[[nodiscard]] ExponentSearch search_constant(const ScaledSystem& system);
+
+}  // namespace hb
