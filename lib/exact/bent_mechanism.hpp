@@ -183,11 +183,11 @@ Chord<T> chord_of(const BentMechanism<T>& mechanism, const std::vector<int>& rod
 
 // The bodies' motion; crank = e^{i tau}.
 template <class T>
-void move(const Linkage& linkage, const std::vector<int>& rod_of, std::complex<double> crank, double speed,
+void move(const Linkage& linkage, const std::vector<int>& rod_of, std::complex<double> crank, const T& speed,
           BentMechanism<T>& mechanism) {
   std::vector<BentMotion<T>>& motion = mechanism.motion;
   motion.resize(static_cast<std::size_t>(linkage.num_bodies()));
-  motion[0] = {plane<T>(linkage.crank.pivot), {}, {}, plane<T>(crank), T(speed), {}};
+  motion[0] = {plane<T>(linkage.crank.pivot), {}, {}, plane<T>(crank), speed, {}};
   for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
     const Dyad& dyad = linkage.dyads[d];
     const int coupler = coupler_index(static_cast<int>(d));

@@ -81,7 +81,7 @@ std::optional<ExactBreakdown> opened(const exact::BentMechanism<T>& mechanism, d
 
 // The whole mechanism at one angle: motion, loads, joint forces.
 template <class T>
-void solve(const ExactModel::Impl& model, const CrankAngles& angles, Index angle, double speed,
+void solve(const ExactModel::Impl& model, const CrankAngles& angles, Index angle, const T& speed,
            exact::BentMechanism<T>& mechanism) {
   exact::move(model.linkage, model.rod_of, angles.direction(angle), speed, mechanism);
   exact::load(model.linkage, model.rod_of, model.constants, angles.slider_forces.col(angle), mechanism);
@@ -118,13 +118,13 @@ std::vector<RodSurroundings> surroundings(const ExactModel::Impl& model, const s
   return result;
 }
 
-// Directions of Dual when rod s is varied: its chord with two rates, then its load along, across, moment.
-constexpr Index chord_direction = 0, load_direction = 3;
+// Directions of Dual when rod s is varied: its chord with two rates, then its load along, across, moment; the speed.
+constexpr Index chord_direction = 0, load_direction = 3, speed_direction = 6;
 
 constexpr Index axial_force_answer = 6;
 
-// What the answers of rod r, base motion and X, do when the chord and the load of rod s change; 7 x 6 per angle.
-using Influence = Eigen::Matrix<double, 7, 6>;
+// What the answers of rod r, base motion and X, do when the chord and the load of rod s change, and with the speed.
+using Influence = Eigen::Matrix<double, 7, 7>;
 
 class Influences {
  public:
@@ -135,7 +135,7 @@ class Influences {
     for (Index j = 0; j < angles.size(); ++j)
       for (std::size_t s = 0; s < rods.size(); ++s) {
         for (std::size_t r = 0; r < rods.size(); ++r) place(rods[r], j, mechanism.rods[r], r == s);
-        solve(model, angles, j, speed, mechanism);
+        solve(model, angles, j, varied(speed, speed_direction, true), mechanism);
         for (std::size_t r = 0; r < rods.size(); ++r) read(mechanism.rods[r], all_[index(j, r, s)]);
       }
   }
@@ -162,7 +162,7 @@ class Influences {
     const exact::BaseMotion<Dual>& b = state.base;
     Index row = 0;
     for (const Dual* answer : {&b.v_x, &b.v_y, &b.a_x, &b.a_y, &b.phi1, &b.phi2, &state.axial_force})
-      out.row(row++) = answer->slope.head<6>().transpose();
+      out.row(row++) = answer->slope.head<7>().transpose();
   }
 
   std::size_t index(Index angle, std::size_t r, std::size_t s) const {
@@ -181,6 +181,7 @@ void assemble(const ExactModel::Impl& model, const std::vector<RodDerivatives>& 
   const Index n = model.num_modes();
   const std::array<MatrixXd*, 3> by = {&out.by_q, &out.by_q1, &out.by_q2};
   for (MatrixXd* matrix : by) matrix->resize(n * n, num_angles);
+  out.by_speed.resize(n, num_angles);
   for (std::size_t s = 0; s < own.size(); ++s) {
     const Index first_s = model.first[s], I_s = model.rods[s].num_modes;
     // Rows: c, c', c'', F_x, F_y, moment of rod s; by q, q', q''.
@@ -203,10 +204,11 @@ void assemble(const ExactModel::Impl& model, const std::vector<RodDerivatives>& 
         for (Index k = 0; k < 6; ++k) effect.col(k) = own[r].by_base[static_cast<std::size_t>(k)].col(j);
         effect.col(6) = own[r].by_axial_force.col(j);
         through.noalias() = effect.lazyProduct(influences(j, r, s));
+        if (s == 0) out.by_speed.col(j).segment(first_r, I_r) = through.col(speed_direction);
         for (std::size_t z = 0; z < 3; ++z) {
           Eigen::Map<MatrixXd> whole(by[z]->col(j).data(), n, n);
           auto block = whole.block(first_r, first_s, I_r, I_s);
-          block.noalias() = through.lazyProduct(cause[z]);
+          block.noalias() = through.leftCols<6>().lazyProduct(cause[z]);
           if (r == s) block += Eigen::Map<const MatrixXd>(own[r].residual[z].col(j).data(), I_r, I_r);
         }
       }

@@ -49,6 +49,7 @@ struct ExactResidual {
   Eigen::MatrixXd r;
   // dr_i/dq_k, dr_i/dq'_k, dr_i/dq''_k, row i + n k; n*n x N. Empty unless asked for.
   Eigen::MatrixXd by_q, by_q1, by_q2;
+  Eigen::MatrixXd by_speed;  // dr_i/dOmega at the same angles and q, q', q''; n x N
   std::optional<ExactBreakdown> breakdown;
 };
 

@@ -196,6 +196,24 @@ TEST(ExactModel, DerivativesAreThoseOfTheResidual) {
   }
 }
 
+// The residual is a polynomial of degree two in the speed.
+TEST(ExactModel, DerivativeBySpeedIsThatOfTheResidual) {
+  Random random(3);
+  const std::vector<RandomLinkage> all = linkages(17, 12);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(label(all[k], k));
+    const Bent rods = bent(all[k].linkage, random);
+    const CrankAngles angles(all[k].linkage, 16);
+    const double speed = all[k].speed, h = speed / 4;
+    const RitzSamples motion = ritz_samples(rods.q(), speed, 16);
+    const MatrixXd faster = rods.model.residual(speed + h, angles, motion).r;
+    const MatrixXd slower = rods.model.residual(speed - h, angles, motion).r;
+    const ExactResidual here = rods.model.residual(speed, angles, motion, true);
+    EXPECT_LE((here.by_speed - (faster - slower) / (2 * h)).norm(),
+              1e-11 * here.by_speed.norm() + 10 * eps * here.r.norm() / h);
+  }
+}
+
 TEST(ExactModel, ForcesAreTheLinearOnesToSecondOrder) {
   Random random(8);
   const std::vector<RandomLinkage> all = linkages(20, 21);
