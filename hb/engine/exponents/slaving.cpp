@@ -95,6 +95,7 @@ class Iteration {
       for (Index j = 0; j < n_; ++j) sum += K(S_[s], F_[j]).abs().maxCoeff() + std::abs(G_(S_[s], F_[j])) * H_;
       kappa_ = std::max(kappa_, sum);
     }
+    residual_ = MatrixXd::Zero(2, n_ * m_);
     // Inverse of the constant part per (j, l, k); see below.
     inverse_.resize(std::size_t(n_ * m_ * (H_ + 1)));
     for (Index l = 0; l < m_; ++l)
@@ -109,7 +110,52 @@ class Iteration {
               ik + (ik - bg + bj), -wg + (ik - bg + bj) * (ik - bg) + wj;
           inverse_[slot(j, l, k)] = -A.inverse();
         }
+    weigh_residuals();
   }
+
+  // What a residual of the invariance equations does to alpha, hb/engine/README.md (E7): with the constant part's
+  // inverse M_k at its largest, whatever the harmonic that the residual is in, and the way through other fast modes,
+  //     |d alpha| <= sum_j l_j g_j |r_j|,      l = kappa (1 - g |K_FF|)^-1,   kappa_j = max_s |K_sj|.
+  // A residual in another harmonic than the resonant one is carried there by the modulation of the mode itself, so that
+  // |M_k r_k| alone, which is what the iteration changes by, would be too small where M is large in one harmonic only.
+  void weigh_residuals() {
+    MatrixXd gain(2, n_ * m_), rate(2, n_ * m_);  // of A, C and of their rates of change
+    for (Index l = 0; l < m_; ++l)
+      for (Index j = 0; j < n_; ++j) {
+        const Index q = j + n_ * l;
+        gain.col(q).setZero();
+        rate.col(q).setZero();
+        for (Index k = 0; k <= H_; ++k) {
+          const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
+          for (Index c = 0; c < 2; ++c) {
+            const double size = std::abs(M(0, c)) + weight_[std::size_t(l)] * std::abs(M(1, c));
+            gain(c, q) = std::max(gain(c, q), size);
+            rate(c, q) = std::max(rate(c, q), size * (double(k) + weight_[std::size_t(l)]));
+          }
+        }
+      }
+    MatrixXd through = MatrixXd::Identity(n_, n_);  // 1 - g |K_FF| off the diagonal
+    VectorXd direct = VectorXd::Zero(n_), damped = VectorXd::Zero(n_);
+    for (Index j = 0; j < n_; ++j) {
+      double largest = 0;
+      for (Index l = 0; l < m_; ++l) largest = std::max(largest, gain(0, j + n_ * l));
+      for (Index i = 0; i < n_; ++i)
+        if (i != j) through(j, i) = -largest * K(F_[j], F_[i]).abs().maxCoeff();
+      for (Index s = 0; s < m_; ++s) {
+        direct(j) = std::max(direct(j), K(S_[s], F_[j]).abs().maxCoeff());
+        damped(j) = std::max(damped(j), std::abs(G_(S_[s], F_[j])));
+      }
+    }
+    VectorXd l = Eigen::PartialPivLU<MatrixXd>(through.transpose()).solve(direct);
+    if (!(l.minCoeff() >= 0 && l.allFinite())) l.setConstant(direct.maxCoeff());
+    l = l.cwiseMax(direct);
+    effect_.resize(2, n_ * m_);
+    for (Index q = 0; q < n_ * m_; ++q)
+      effect_.col(q) = (l(q % n_) * gain.col(q) + damped(q % n_) * rate.col(q)) * double(m_);
+  }
+
+  // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
+  double alpha_change() const { return effect_.cwiseProduct(residual_).sum(); }
 
   // Starts from what fewer samples gave.
   void start_from(const Iteration& coarse) {
@@ -125,7 +171,7 @@ class Iteration {
   bool solved_by_start(double tolerance) {
     VectorXd f(x_.size());
     correction(x_, f);
-    const double change = kappa_ * norm(f), scale = alpha_.cwiseAbs().maxCoeff() + 1;
+    const double change = alpha_change(), scale = alpha_.cwiseAbs().maxCoeff() + 1;
     const bool solved = change <= std::max(std::max(1e-13, tolerance) * scale, 4 * change_);
     change_ = change;
     return solved;
@@ -146,7 +192,7 @@ class Iteration {
       ++iterations;
       correction(x, f);
       if (!f.allFinite()) return false;
-      const double change = kappa_ * norm(f);
+      const double change = alpha_change();
       const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
       const double goal = std::max(2 * eps, tolerance) * scale;
       const double rho = change / previous;
@@ -359,11 +405,14 @@ class Iteration {
     for (Index l = 0; l < m_; ++l)
       for (Index j = 0; j < n_; ++j) {
         const Index q = j + n_ * l;
+        residual_.col(q).setZero();
         for (Index k = 0; k <= H_; ++k) {
           const double n = double(k);
           const cplx p = spectrum(k, q), r = spectrum(k, nm + q);
           const cplx r1 = spectrum(k, 2 * nm + q) + cplx(-n * p.imag(), n * p.real());
           const cplx r2 = spectrum(k, 3 * nm + q) + cplx(-n * r.imag(), n * r.real());
+          residual_(0, q) += (k > 0 ? 2 : 1) * std::abs(r1);
+          residual_(1, q) += (k > 0 ? 2 : 1) * std::abs(r2);
           const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
           data[q * 2 * (H_ + 1) + k] = M(0, 0) * r1 + M(0, 1) * r2;
           data[(q * 2 + 1) * (H_ + 1) + k] = weight_[std::size_t(l)] * (M(1, 0) * r1 + M(1, 1) * r2);
@@ -383,6 +432,7 @@ class Iteration {
   VectorXd x_;  // see A_of, C_of
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
+  MatrixXd residual_, effect_;  // 2 x n*m: sum_k |r_k| of both invariance equations, and what each does to alpha
   double kappa_ = 0, change_ = 0, amplification_ = 1;
 };
 

@@ -1,0 +1,95 @@
+// Reductions to a few modes: what they leave is an exact system of fewer modes, and their errors hold.
+#include "hb/engine/exponents/slaving.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <complex>
+
+#include "hb/engine/exponents/stability.hpp"
+#include "tests/support/long_double_floquet.hpp"
+
+namespace hb {
+namespace {
+
+using cplx = std::complex<double>;
+
+// Two modes, mass 1, symmetric stiffness mean + first cos tau.
+HillSystem two_modes(double damping, const Eigen::Matrix2d& mean, const Eigen::Matrix2d& first) {
+  HillSystem system;
+  system.mass = Eigen::Matrix2d::Identity();
+  system.damping = damping * Eigen::Matrix2d::Identity();
+  system.stiffness[0] = FourierSeries(4, 1);
+  system.stiffness[0].c.col(0) = mean.reshaped().cast<cplx>();
+  system.stiffness[0].c.col(1) = 0.5 * first.reshaped().cast<cplx>();
+  return system;
+}
+
+void expect_covered(const HillSystem& system, StabilityMethod method) {
+  const auto exact = reference::floquet_exponents(system, 1);
+  const Stability result = analyse_stability(system, 1, {.method = method});
+  ASSERT_EQ(result.exponents.size(), exact.size());
+  for (const Exponent& e : result.exponents) {
+    double nearest = HUGE_VAL;
+    for (const auto& x : exact) {
+      const double turn = std::remainder(e.value.imag() - double(x.value.imag()), 1.0);
+      nearest = std::min(nearest, std::hypot(e.value.real() - double(x.value.real()), turn) - double(x.error));
+    }
+    EXPECT_LE(nearest, e.error) << to_string(method) << ": " << e.value << "; " << result.evidence;
+    EXPECT_LE(e.error, 1e-11);
+  }
+}
+
+// Equal modes coupled by a ten-millionth: the residual of the reduction was weighed by the coupling alone, though it
+// moves the fast mode by its size over the distance of the two frequencies.
+TEST(Slaving, WeaklyCoupledEqualModesHaveErrorsThatHold) {
+  const HillSystem system = two_modes(0.001, (Eigen::Matrix2d() << 0.7, 7e-8, 7e-8, 0.70000014).finished(),
+                                      (Eigen::Matrix2d() << 0.21, 2.1e-8, 2.1e-8, 0.209999987).finished());
+  for (const StabilityMethod method :
+       {StabilityMethod::automatic, StabilityMethod::slaving, StabilityMethod::propagation})
+    expect_covered(system, method);
+}
+
+TEST(Slaving, ConstantCoefficientsReduceToOneModesCharacteristicEquation) {
+  // Two coupled modes without modulation: the slow one alone has the roots of the whole that belong to it.
+  const HillSystem system = two_modes(0.1, (Eigen::Matrix2d() << 1, 0.3, 0.3, 9).finished(), Eigen::Matrix2d::Zero());
+  ScaledSystem scaled = scale_system(system, 1);
+  // In the given coordinates, where the modes are coupled.
+  scaled.K = system.stiffness[0];
+  scaled.G = system.damping;
+  const ReducedSystem reduced = slave_to(scaled, std::array<Eigen::Index, 1>{0});
+  ASSERT_TRUE(reduced.converged);
+  const double slow = 5 - std::sqrt(16 + 0.09);  // eigenvalue of the mean stiffness
+  EXPECT_NEAR(reduced.alpha.c(0, 0).real(), slow, 1e-14);
+  EXPECT_NEAR(reduced.beta.c(0, 0).real(), 0.1, 1e-14);
+  EXPECT_LE(reduced.alpha_error, 1e-13);
+}
+
+TEST(Slaving, StatesOfTheReductionAreMappedOntoThemselvesByATurn) {
+  const HillSystem system = two_modes(0.05, (Eigen::Matrix2d() << 1.3, 0.2, 0.2, 20).finished(),
+                                      (Eigen::Matrix2d() << 0.3, 0.4, 0.4, 2).finished());
+  const ScaledSystem scaled = scale_system(system, 1);
+  const ReducedSystem reduced = slave_to(scaled, std::array<Eigen::Index, 1>{0});
+  ASSERT_TRUE(reduced.converged);
+  // Sum of the two exponents of the reduced equation: minus the mean of beta; of the whole: minus the trace of G.
+  const Stability whole = analyse_stability(scaled, {.method = StabilityMethod::propagation});
+  double sum = 0;
+  for (const Exponent& e : whole.exponents)
+    if (e.mode == 0) sum += e.value.real();
+  EXPECT_NEAR(sum, -reduced.beta.c(0, 0).real(), 1e-11);
+}
+
+TEST(Slaving, AModeInResonanceWithTheKeptOneIsRefused) {
+  // Principal combination resonance of 1 and 2 at the speed 3.
+  HillSystem system = two_modes(0.0, Eigen::Vector2d(1, 4).asDiagonal().toDenseMatrix(),
+                                (Eigen::Matrix2d() << 0, 1.5, 1.5, 0).finished());
+  const ScaledSystem scaled = scale_system(system, 3);
+  EXPECT_FALSE(slave_to(scaled, std::array<Eigen::Index, 1>{0}).converged);
+  Eigen::Index strongest = -1;
+  EXPECT_GT(resonance_strength(scaled, std::array<Eigen::Index, 1>{0}).maxCoeff(&strongest), 1e-3);
+  EXPECT_EQ(strongest, 1);
+}
+
+}  // namespace
+}  // namespace hb
