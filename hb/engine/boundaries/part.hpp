@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "hb/engine/boundaries/sweep.hpp"
@@ -12,9 +13,17 @@ namespace hb {
 
 using Part = std::vector<double>;
 
-// part(0) .. part(count - 1), in this order. They may be computed in any order and by several threads, or be known from
-// elsewhere: each must depend on its index alone.
-using PartsOf = std::function<std::vector<Part>(std::size_t count, const std::function<Part(std::size_t)>& part)>;
+// The parts of one step. They may be computed in any order and by several threads, each once, or be taken from
+// elsewhere: each depends on its index alone.
+struct Parts {
+  std::size_t count = 0;
+  std::function<void(std::size_t)> compute;
+  std::function<Part(std::size_t)> numbers;  // of a part that is there
+  std::function<void(std::size_t, const Part&)> take;  // instead of computing it; throws std::out_of_range
+};
+
+// Has all parts computed or taken.
+using PartsOf = std::function<void(const Parts&)>;
 
 // Writes numbers one after the other, reads them in the same order. One function for both directions keeps them alike.
 class PartWriter {
@@ -72,7 +81,7 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
   Stability& stability = sample.stability;
   visit(sample.x);
   visit(sample.speed);
-  visit_elements(visit, stability.exponents, [&](Exponent& exponent) {
+  const auto visit_exponent = [&](Exponent& exponent) {
     double re = exponent.value.real(), im = exponent.value.imag();
     visit(re);
     visit(im);
@@ -80,7 +89,9 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
     visit(exponent.error);
     visit_as_number(visit, exponent.mode);
     visit(exponent.frequency);
-  });
+  };
+  visit_elements(visit, stability.exponents, visit_exponent);
+  visit_elements(visit, stability.uncertain, visit_exponent);
   visit(stability.growth_rate);
   visit(stability.growth_error);
   visit(stability.growth_low);
@@ -98,29 +109,30 @@ void visit_boundary(Visit& visit, StabilityBoundary& boundary) {
   visit_as_number(visit, boundary.converged);
 }
 
-// part(0) .. part(count - 1) by `parts` (empty: one after the other) of results that visit(visitor, result) writes and
-// reads as numbers.
+// compute(0) .. compute(count - 1) by `parts` (empty: one after the other), results that visit(visitor, result) writes
+// and reads as numbers where they have to leave the process.
 template <class Result, class Visit>
 std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
                                    const std::function<Result(std::size_t)>& compute, const Visit& visit) {
-  const auto part = [&](std::size_t k) {
-    Result result = compute(k);
-    PartWriter writer;
-    visit(writer, result);
-    return std::move(writer.numbers);
-  };
-  std::vector<Result> found;
-  found.reserve(count);
+  static_assert(!std::is_same_v<Result, bool>, "elements of a vector of bool share bytes");
+  std::vector<Result> found(count);
+  const auto result = [&](std::size_t k) { found[k] = compute(k); };
   if (!parts) {
-    for (std::size_t k = 0; k < count; ++k) found.push_back(compute(k));
+    for (std::size_t k = 0; k < count; ++k) result(k);
     return found;
   }
-  for (const Part& numbers : parts(count, part)) {
-    PartReader reader(numbers);
-    Result result{};
-    visit(reader, result);
-    found.push_back(std::move(result));
-  }
+  const auto numbers = [&](std::size_t k) {
+    PartWriter writer;
+    visit(writer, found[k]);
+    return std::move(writer.numbers);
+  };
+  const auto take = [&](std::size_t k, const Part& known) {
+    PartReader reader(known);
+    Result read{};
+    visit(reader, read);
+    found[k] = std::move(read);
+  };
+  parts({count, result, numbers, take});
   return found;
 }
 
