@@ -9,11 +9,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "lib/rod/rod.hpp"
-#include "tools/command/command.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
+#include "lib/rod/rod.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 using Eigen::Index;
@@ -218,11 +217,7 @@ struct ScenePlane::Implementation {
   }
 
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
-    if (options.parallel_for) {
-      options.parallel_for(count, work);
-    } else {
-      for (std::size_t k = 0; k < count; ++k) work(k);
-    }
+    options.work->for_each(count, work);
   }
 
   using Samples = std::vector<std::optional<std::vector<HillSystem>>>;
@@ -369,10 +364,10 @@ ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, Plan
   if (const auto* linkage = std::get_if<Linkage>(&s.corner->model)) {
     std::vector<std::string> all;
     for (const int link : elastic_links(*linkage)) all.push_back(body_name(*linkage, link));
-    if (all.empty()) throw UsageError("the scene has no elastic links: nothing can become unstable");
+    if (all.empty()) throw RequestError("", "no elastic links", "a scene with some", "the scene has no elastic links: nothing can become unstable");
     for (const std::string& name : s.options.rods) {
       if (std::find(all.begin(), all.end(), name) == all.end()) {
-        throw UsageError(fmt::format("--rods: found \"{}\", allowed: {}", name, fmt::join(all, ", ")));
+        throw RequestError("rods", fmt::format("\"{}\"", name), fmt::format("{}", fmt::join(all, ", ")));
       }
     }
     for (const std::string& name : all) {
@@ -381,7 +376,7 @@ ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, Plan
   } else {
     s.names.push_back("system");
     for (const std::string& name : s.options.rods) {
-      if (name != "system") throw UsageError(fmt::format("--rods: found \"{}\", allowed: system", name));
+      if (name != "system") throw RequestError("rods", fmt::format("\"{}\"", name), "system");
     }
     s.options.rods.clear();
   }
@@ -438,4 +433,4 @@ std::string ScenePlane::evidence() const {
   return fmt::format("{} geometries computed, {} interpolating patches", self_->computed.load(), self_->patches);
 }
 
-}  // namespace hb::tools
+}  // namespace hb

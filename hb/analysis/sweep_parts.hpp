@@ -1,0 +1,53 @@
+// Points of a sweep as lists of numbers (hb/engine/boundaries/part.hpp).
+#pragma once
+
+#include "hb/engine/boundaries/part.hpp"
+#include "hb/analysis/sweep_analysis.hpp"
+
+namespace hb {
+
+template <class Visit>
+void visit_range(Visit& visit, TurnRange& range) {
+  visit(range.min);
+  visit(range.max);
+}
+
+template <class Visit>
+void visit_point(Visit& visit, SweepPoint& point) {
+  visit(point.x);
+  visit(point.speed);
+  visit_elements(visit, point.problem, [&](char& c) { visit_as_number(visit, c); });
+  visit_elements(visit, point.rods, [&](RodPoint& rod) {
+    visit_if_there(visit, rod.steady, [&](SteadyStatus& status) { visit_as_number(visit, status); });
+    visit_as_number(visit, rod.num_harmonics);
+    visit(rod.error_bound);
+    visit(rod.resonance_distance);
+    visit_elements(visit, rod.max_abs, visit);
+    visit_if_there(visit, rod.deflection, visit);
+    visit_if_there(visit, rod.bending_moment, visit);
+    visit_if_there(visit, rod.theory_error, visit);
+    visit_if_there(visit, rod.stability, [&](StabilitySample& sample) { visit_sample(visit, sample); });
+  });
+  visit_elements(visit, point.joints, [&](TurnRange& range) { visit_range(visit, range); });
+  visit_elements(visit, point.joints_rigid, [&](TurnRange& range) { visit_range(visit, range); });
+  visit_if_there(visit, point.torque, [&](TurnRange& range) { visit_range(visit, range); });
+  visit_if_there(visit, point.torque_rigid, [&](TurnRange& range) { visit_range(visit, range); });
+}
+
+template <class Visit>
+void visit_critical(Visit& visit, CriticalPoint& point) {
+  visit_as_number(visit, point.rod);
+  visit_as_number(visit, point.component);
+  visit_as_number(visit, point.mode);
+  visit_as_number(visit, point.order);
+  visit(point.frequency);
+  visit(point.damping);
+  visit(point.speed);
+  visit(point.prominence);
+  visit(point.peak.x);
+  visit(point.peak.value);
+  visit(point.peak.error);
+  visit_as_number(visit, point.peak.converged);
+}
+
+}  // namespace hb
