@@ -17,8 +17,9 @@ SceneFamily four_bar_by_function() {
   return {{{"J", 0}},
           [linkage](const std::vector<double>& values) {
             Linkage changed = linkage;
-            for (Dyad& dyad : changed.dyads)
-              if (dyad.coupler.elastic) dyad.coupler.elastic->second_moment = values[0];
+            Body& rod = changed.dyads[0].coupler;
+            rod.elastic->second_moment = values[0];
+            rod.inertia = rod.mass * rod.length * rod.length / 12 + rod.elastic->density * values[0] * rod.length;
             return changed;
           },
           read_scene(scenes + "four_bar.toml").units};
@@ -69,13 +70,13 @@ TEST(FromCpp, AFunctionGivesTheSameMapAsTheText) {
   const auto [name, J] = coupler_of_four_bar();
   MapRequest request;
   request.modes = 2;
-  request.x = along("rpm", 300, 2400, 4);
-  request.y = along(name + ".J", J / 2, 2 * J, 3);
+  request.x = along("rpm", 300, 500, 3);
+  request.y = along(name + ".J", J, 2 * J, 2);
   const Map by_text = map(SceneSource(scenes + "four_bar.toml"), request);
   request.y.path = "J";
   const Map by_function = map(four_bar_by_function(), request);
-  ASSERT_EQ(by_text.worst.size(), 12u);
-  for (std::size_t p = 0; p < 12; ++p) {
+  ASSERT_EQ(by_text.worst.size(), 6u);
+  for (std::size_t p = 0; p < 6; ++p) {
     EXPECT_EQ(by_text.worst[p].verdict, by_function.worst[p].verdict);
     EXPECT_EQ(by_text.worst[p].growth_rate, by_function.worst[p].growth_rate);
   }
