@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "hb/analysis/accuracy.hpp"
+
 namespace hb {
 namespace {
 
@@ -100,11 +102,7 @@ Map map(const SceneFamily& family, const MapRequest& request, Work& work) {
   require_values("x", request.x, scene.units);
   require_values("y", request.y, scene.units);
   const Settings settings = settings_of(request, scene);
-  if (!std::holds_alternative<int>(settings.modes))
-    throw RequestError("modes", "auto", fmt::format("an integer 1 to {} in a map", max_modes));
-
   PlaneOptions options;
-  options.num_modes = std::get<int>(settings.modes);
   options.rods = settings.rods;
   options.work = &work;
   if (!is_speed(request.x) && !is_speed(request.y)) options.speed = speed_of(request, scene).omega;
@@ -114,10 +112,9 @@ Map map(const SceneFamily& family, const MapRequest& request, Work& work) {
                                                          : PlaneAxis::Role::scene_number;
     return PlaneAxis{role, along.path, along.values.front(), along.values.back()};
   };
+  options.num_modes = plane_modes(family, axis(request.x), axis(request.y), options.speed, settings);
   MapOptions search;
-  search.search.stability.method = settings.stability_method;
-  search.search.stability.tolerance = std::clamp(settings.tolerance, 1e-13, 1e-9);
-  search.search.tolerance = std::clamp(0.1 * settings.tolerance, 1e-14, 1e-6);
+  search.search = boundary_options(settings);
   search.parts = work.of("stability map, this step");
   const ScenePlane plane(family, axis(request.x), axis(request.y), options);
   Map result{compute_map(plane, axis(request.x), request.x.values, axis(request.y), request.y.values, search),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/analysis/accuracy.hpp"
 #include "lib/rod/time_domain_rod.hpp"
 
 namespace hb {
@@ -230,7 +231,6 @@ std::optional<WorstComparison> worst_comparison(const std::vector<SpeedCheck>& c
   return worst;
 }
 
-double shooting_tolerance(const Settings& settings) { return std::max(settings.tolerance, 1e-9); }
 
 SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& settings, const CheckOptions& options) {
   SpeedCheck check;
@@ -259,7 +259,7 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
                                         ? time_domain_rod(*model.linkage(), result.link, result.num_modes, speed)
                                         : time_domain_system(model.rods[r].system, speed);
     ShootingOptions shooting;
-    shooting.tolerance = shooting_tolerance(settings);
+    shooting.tolerance = integration_tolerance(settings);
     shooting.integrator = options.integrator;
     shooting.time_limit = options.time_limit;
     if (options.begin)

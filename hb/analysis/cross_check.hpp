@@ -68,9 +68,6 @@ struct WorstComparison {
 };
 [[nodiscard]] std::optional<WorstComparison> worst_comparison(const std::vector<SpeedCheck>& checks);
 
-// What time integration is asked for: 1e-9, or what the scene asks for if that is less accurate.
-[[nodiscard]] double shooting_tolerance(const Settings& settings);
-
 // Forces and torque of the Fourier path against one global system per crank angle fed with the shooting path's states;
 // links[r] is the body number of rods[r].
 [[nodiscard]] JointCheck compare_joints(const Linkage& linkage, const JointForces& series,

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <numbers>
 
+#include "hb/analysis/accuracy.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 
 namespace hb {
@@ -47,25 +48,6 @@ const RodCoefficients& coefficients_of(const SceneModel& model, const RodModel& 
   return model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
 }
 
-SteadyOptions steady_options(const Settings& settings) {
-  SteadyOptions options;
-  options.tolerance = settings.tolerance;
-  options.method = settings.steady_method;
-  options.bound = settings.bound;
-  // The difference between two numbers of modes must not drown in the error of either.
-  if (is_auto(settings)) options.tolerance = std::max(0.05 * settings.tolerance, 1e-14);
-  return options;
-}
-
-// Exponents need fewer digits than q: the asked tolerance loosens them, it does not tighten them.
-StabilityOptions stability_options(const Settings& settings) {
-  StabilityOptions options;
-  options.method = settings.stability_method;
-  options.tolerance = std::max(options.tolerance, 10 * settings.tolerance);
-  options.verdict_only = settings.only.verdict;
-  return options;
-}
-
 std::string steady_note(const SteadyState& state, Eigen::Index num_modes) {
   return fmt::format("{} modes, {} harmonics, {}, {} iterations", num_modes, state.num_harmonics,
                      method_text(state.method), state.iterations);
@@ -83,8 +65,7 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
                               RodResult& result, std::vector<Stage>& stages) {
   // As for the deflection; usually the growth rate settles like I^-4 or faster.
   constexpr double safety = 2;
-  StabilityOptions options = stability_options(settings);
-  options.tolerance = std::clamp(0.01 * settings.tolerance, 1e-12, options.tolerance);
+  StabilityOptions options = growth_comparison_options(settings);
   options.leading_only = true;
   Stopwatch watch;
   const auto growth = [&](Eigen::Index modes) {
@@ -118,7 +99,7 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
 // error is within the tolerance or `max_auto_modes` is reached.
 void solve_steady(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings, bool with_cut,
                   Eigen::Index I, RodResult& result, std::vector<Stage>& stages) {
-  const SteadyOptions options = steady_options(settings);
+  const SteadyOptions options = response_options(settings);
   const bool grows = is_auto(settings) && rod.link >= 0;
   Stopwatch watch;
   SteadyState state = solve_steady_state(system_with(model, rod, I), speed, options);
@@ -148,7 +129,7 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
 // The steady state of a rod once more, with half as many harmonics again.
 FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
                                   const RodResult& result) {
-  SteadyOptions options = steady_options(settings);
+  SteadyOptions options = response_options(settings);
   options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
   const SteadyState state = solve_steady_state(system_with(model, rod, result.num_modes), speed, options);
   return state.status == SteadyStatus::singular ? result.steady->q : state.q;
@@ -202,7 +183,7 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
                     rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
   }
   if (computed.stability && rod.stability && !rod.stability->converged) {
-    const double relative = stability_options(settings).tolerance;
+    const double relative = exponent_options(settings).tolerance;
     sentences.push_back(
         fmt::format("{}: the growth rate's error {:.1e} exceeds {:.0e} of the larger of itself and the "
                     "speed, which was asked",
@@ -415,7 +396,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     if (!only.stability) {
       stages.push_back({"stability of " + rod.name, 0, "not asked for", true});
     } else {
-      const StabilityOptions options = stability_options(settings);
+      const StabilityOptions options = exponent_options(settings);
       Stopwatch watch;
       entry.stability = analyse_stability(system_with(model, rod, entry.num_modes), speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});

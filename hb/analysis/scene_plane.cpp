@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/request.hpp"
 #include "lib/rod/rod.hpp"
 
 namespace hb {
@@ -383,6 +384,34 @@ ScenePlane::ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOption
   } else {
     s.interpolate(s.root, 0);
   }
+}
+
+int plane_modes(const SceneFamily& family, const PlaneAxis& x, const PlaneAxis& y, double speed,
+                const Settings& settings) {
+  if (const int* asked = std::get_if<int>(&settings.modes)) return *asked;
+  Settings growth = settings;
+  growth.only = {.steady = false, .stability = true, .reactions = false, .shape = false};
+  int modes = 1;
+  for (const auto& [s, t] : {std::pair(0.0, 0.0), {0.0, 1.0}, {1.0, 0.0}, {1.0, 1.0}, {0.5, 0.5}}) {
+    Numbers numbers;
+    std::optional<double> rpm, omega;
+    for (const auto& [axis, at] : {std::pair(&x, s), {&y, t}}) {
+      const double value = axis->from + at * (axis->to - axis->from);
+      if (axis->role == PlaneAxis::Role::rpm) rpm = value;
+      if (axis->role == PlaneAxis::Role::omega) omega = value;
+      if (axis->role == PlaneAxis::Role::scene_number) numbers.push_back({axis->path, value});
+    }
+    FamilyMember member = family.at(numbers);
+    if (!member.scene) continue;
+    const double here = rpm ? speed_from_rpm(*rpm, member.scene->units) : omega.value_or(speed);
+    try {
+      const SceneModel model = make_model(std::move(*member.scene), growth, false);
+      for (const RodResult& rod : analyse(model, here, growth).rods)
+        modes = std::max(modes, static_cast<int>(rod.num_modes));
+    } catch (const ObstructedLinkage&) {  // a corner that the map leaves out too
+    }
+  }
+  return modes;
 }
 
 ScenePlane::~ScenePlane() = default;

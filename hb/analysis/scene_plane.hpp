@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/request.hpp"
 #include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/work.hpp"
 #include "hb/engine/boundaries/stability_map.hpp"
@@ -30,6 +31,11 @@ struct PlaneOptions {
   std::vector<std::string> rods;  // names asked for; empty: all
   const Work* work = nullptr;  // has to be given; outlives the plane
 };
+
+// Ritz terms for a map: those asked for; "auto": as many as the growth rate needs at the corners and in the middle.
+// `speed` in rad per unit time, where no axis is the speed.
+[[nodiscard]] int plane_modes(const SceneFamily& family, const PlaneAxis& x, const PlaneAxis& y, double speed,
+                              const Settings& settings);
 
 class ScenePlane {
  public:

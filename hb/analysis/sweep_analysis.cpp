@@ -7,15 +7,13 @@
 #include <chrono>
 #include <cmath>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/sweep_parts.hpp"
 
 namespace hb {
 namespace {
 
 // Peaks and boundaries are looked for on values more accurate than the points themselves need.
-constexpr double refined_steady_tolerance = 1e-12, rough_steady_tolerance = 1e-5;
-constexpr double refined_stability_tolerance = 1e-10;
-constexpr double peak_tolerance = 5e-11;  // relative
 // A peak this far from n = omega/Omega, in orders, is not named after that mode.
 constexpr double most_detuning = 0.3;
 // A maximum lower than this above its valleys, relative, is not told from rounding.
@@ -46,10 +44,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
                      const Only& only, FourierSeries& q) {
   RodPoint point;
   if (wants_steady(only)) {
-    SteadyOptions options;
-    options.tolerance = settings.tolerance;
-    options.method = settings.steady_method;
-    SteadyState state = solve_steady_state(rod.system, speed, options);
+    SteadyState state = solve_steady_state(rod.system, speed, response_options(settings));
     point.steady = state.status;
     point.num_harmonics = state.num_harmonics;
     point.error_bound = state.error_bound;
@@ -68,9 +63,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     }
   }
   if (only.stability) {  // of every rod: the mechanism is stable where all are
-    StabilityOptions options;
-    options.method = settings.stability_method;
-    point.stability = StabilitySample{x, speed, analyse_stability(rod.system, speed, options)};
+    point.stability = StabilitySample{x, speed, analyse_stability(rod.system, speed, exponent_options(settings))};
   }
   return point;
 }
@@ -115,6 +108,8 @@ class RodAlong {
  public:
   RodAlong(const SweepScene& scene, std::size_t rod, std::atomic<std::size_t>& evaluations)
       : scene_(scene), rod_(rod), evaluations_(evaluations) {}
+
+  const Settings& settings() const { return scene_.settings(); }
 
   std::optional<ScaledSystem> system(double x) const {
     ++evaluations_;
@@ -181,7 +176,7 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const SweepP
       const double flank = std::min({3 * half_width / (high - low) * (b.x - a.x), 0.5 * (x - a.x), 0.5 * (b.x - x)});
       std::vector<ResponseSample> here;
       for (const double place : {x - flank, x, x + flank}) {
-        const std::optional<FourierSeries> q = rod.response(place, rough_steady_tolerance);
+        const std::optional<FourierSeries> q = rod.response(place, peak_accuracy(rod.settings()).rough);
         if (!q) break;
         ResponseSample sample{place, {}};
         for (Eigen::Index i = 0; i < q->num_components(); ++i) sample.max_abs.push_back(fourier::max_abs(*q, i).value);
@@ -310,9 +305,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   result.computed = available(model, settings.only);
   const Only& only = result.computed;
   result.stages = model.stages;
-  SweepOptions sweep_options;
-  sweep_options.stability.method = settings.stability_method;
-  sweep_options.stability.tolerance = refined_stability_tolerance;
+  const SweepOptions sweep_options = boundary_options(settings);
+  const PeakAccuracy peaks = peak_accuracy(settings);
 
   // The points asked for.
   Stopwatch watch;
@@ -448,9 +442,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
       [&](std::size_t k) -> MaybeCritical {
         const PeakTask& task = tasks[k];
         const RodAlong& rod = along[task.rod];
-        const std::optional<ResponsePeak> peak = locate_peak(rod.largest(task.component, rough_steady_tolerance),
-                                                             rod.largest(task.component, refined_steady_tolerance),
-                                                             task.low, task.inside, task.high, peak_tolerance);
+        const std::optional<ResponsePeak> peak = locate_peak(rod.largest(task.component, peaks.rough), rod.largest(task.component, peaks.fine),
+                                                             task.low, task.inside, task.high, peaks.height);
         if (!peak) return std::nullopt;
         CriticalPoint point;
         point.rod = task.rod;

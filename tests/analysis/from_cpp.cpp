@@ -52,6 +52,46 @@ TEST(FromCpp, ASweepHasTheNumbersOfEachSpeedAlone) {
   }
 }
 
+// Sweeps computed exponents to 1e-9 whatever was asked.
+TEST(FromCpp, OneToleranceMeansTheSameForASweepAsForOneSpeed) {
+  const Scene scene = read_scene(scenes + "four_bar.toml");
+  for (const double tolerance : {1e-4, 1e-12}) {
+    SweepRequest request;
+    request.modes = 3;
+    request.tolerance = tolerance;
+    request.x = along("rpm", 1200, 2400, 2);
+    request.only = {.steady = false, .stability = true, .reactions = false, .shape = false};
+    for (const SweepPoint& point : sweep(scene, request).points) {
+      Request one;
+      one.modes = 3;
+      one.tolerance = tolerance;
+      one.rpm = point.x;
+      one.only = request.only;
+      const SteadyResult alone = steady(scene, one);
+      EXPECT_EQ(point.rods[0].stability->stability.growth_rate, alone.rods[0].stability->growth_rate) << tolerance;
+      EXPECT_EQ(point.rods[0].stability->stability.growth_error, alone.rods[0].stability->growth_error) << tolerance;
+    }
+  }
+}
+
+// Maps took five modes where "auto" was asked.
+TEST(FromCpp, AMapWithAutomaticModesTakesAsManyAsTheGrowthRateNeeds) {
+  const Scene scene = read_scene(scenes + "four_bar.toml");
+  MapRequest request;
+  request.modes = AutoModes{};
+  request.x = along("rpm", 300, 600, 2);
+  const auto [name, J] = coupler_of_four_bar();
+  request.y = along(name + ".J", J, 1.1 * J, 2);
+  request.tolerance = 0.05;
+  const Map found = map(SceneSource(scenes + "four_bar.toml"), request);
+  Request one;
+  one.modes = AutoModes{};
+  one.tolerance = 0.05;
+  one.rpm = 450;
+  one.only = {.steady = false, .stability = true, .reactions = false, .shape = false};
+  EXPECT_EQ(found.num_modes, steady(scene, one).rods[0].num_modes);
+}
+
 TEST(FromCpp, AFunctionGivesTheSameSweepAsTheText) {
   const auto [name, J] = coupler_of_four_bar();
   SweepRequest request;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hb/analysis/accuracy.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/parameter_range.hpp"
 #include "tools/work/checkpoint.hpp"
@@ -14,7 +15,6 @@ namespace hb::tools {
 namespace {
 
 constexpr std::size_t max_points = 4000000;
-constexpr Eigen::Index default_modes = 5;
 
 AxisRange axis_range(const std::string& flag, const std::string& text) {
   if (text.empty())
@@ -180,14 +180,12 @@ AskedMap::AskedMap(const CommonFlags& flags, const std::string& x, const std::st
   scene_ = readable_scene(input.source, set_, x_, y_);
   settings_ = settings(flags, scene_);
   if (!settings_.only.stability) throw UsageError(fmt::format("--only: found \"{}\", allowed: stability", flags.only));
-  plane_options_.num_modes =
-      std::holds_alternative<int>(settings_.modes) ? std::get<int>(settings_.modes) : default_modes;
   if (!is_speed(x_) && !is_speed(y_)) plane_options_.speed = single_speed(flags, scene_);
+  plane_options_.num_modes =
+      plane_modes(SceneFamily(input.source, set_), x_.axis, y_.axis, plane_options_.speed, settings_);
   plane_options_.rods = settings_.rods;
   plane_options_.work = &work;
-  search_.search.stability.method = settings_.stability_method;
-  search_.search.stability.tolerance = std::clamp(settings_.tolerance, 1e-13, 1e-9);
-  search_.search.tolerance = std::clamp(0.1 * settings_.tolerance, 1e-14, 1e-6);
+  search_.search = boundary_options(settings_);
   plane_.emplace(plane_with({}));
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hb/analysis/accuracy.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
 
@@ -45,7 +46,7 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, bool sta
     add(text, "  shooting                 {}: {}\n", to_string(shooting.status), shooting.message);
   else
     add(text, "  shooting                 asked {:.1e}, reached {:.1e}; {}, {} steps, {} segment{} a turn, {:.3g} s\n",
-        shooting_tolerance(settings), shooting.q_error, to_string(shooting.integrator), shooting.steps,
+        integration_tolerance(settings), shooting.q_error, to_string(shooting.integrator), shooting.steps,
         shooting.num_segments, shooting.num_segments == 1 ? "" : "s", shooting.seconds);
   if (stats)
     add(text, "  work                     {} evaluations, predicted {:.3g} s; {} {:.1e}\n", shooting.evaluations,

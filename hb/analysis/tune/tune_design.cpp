@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 #include "hb/engine/design/worst_case.hpp"
 
@@ -143,8 +144,7 @@ void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
   place_nodes();
   const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
-  StabilityOptions all_exponents;
-  all_exponents.method = settings_.stability_method;
+  const StabilityOptions all_exponents = exponent_options(settings_);
   std::vector<std::vector<Stability>> known(num_nodes);  // by node and rod
   work_.for_each(num_nodes, [&](std::size_t k) {
     for (const RodModel& rod : model_.rods) {
@@ -155,7 +155,7 @@ void DesignAnalysis::find_instabilities() {
   // Narrow bands that lie between two nodes.
   std::vector<std::vector<double>> found(num_nodes);
   SweepOptions options;
-  options.stability.method = settings_.stability_method;
+  options.stability = exponent_options(settings_);
   options.stability.leading_only = true;
   for (const RequiredDecay& required : required_) {
     for (std::size_t r = 0; r < num_rods; ++r) {

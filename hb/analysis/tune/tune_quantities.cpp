@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "lib/rod/rod_functional.hpp"
@@ -17,10 +18,7 @@
 namespace hb {
 
 std::optional<FourierSeries> rod_response(const RodModel& rod, double speed, const Settings& settings) {
-  SteadyOptions options;
-  options.tolerance = settings.tolerance;
-  options.method = settings.steady_method;
-  SteadyState state = solve_steady_state(rod.system, speed, options);
+  SteadyState state = solve_steady_state(rod.system, speed, response_options(settings));
   if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
   return std::move(state.q);
 }
@@ -137,8 +135,7 @@ std::vector<ModeState> mean_modes(const ScaledSystem& system) {
 }
 
 Stability leading_stability(const ScaledSystem& system, const Settings& settings) {
-  StabilityOptions options;
-  options.method = settings.stability_method;
+  StabilityOptions options = exponent_options(settings);
   options.leading_only = true;
   Stability stability = analyse_stability(system, options);
   if (std::isfinite(stability.growth_rate + stability.growth_error)) return stability;

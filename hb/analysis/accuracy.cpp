@@ -1,0 +1,58 @@
+#include "hb/analysis/accuracy.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <variant>
+
+namespace hb {
+
+SteadyOptions response_options(const Settings& settings) {
+  SteadyOptions options;
+  options.tolerance = settings.tolerance;
+  options.method = settings.steady_method;
+  options.bound = settings.bound;
+  // The difference between two numbers of modes must not drown in the error of either.
+  if (std::holds_alternative<AutoModes>(settings.modes)) options.tolerance = std::max(0.05 * settings.tolerance, 1e-14);
+  return options;
+}
+
+StabilityOptions exponent_options(const Settings& settings) {
+  StabilityOptions options;
+  options.method = settings.stability_method;
+  options.tolerance = std::clamp(10 * settings.tolerance, 1e-12, 0.1);
+  options.verdict_only = settings.only.verdict;
+  return options;
+}
+
+StabilityOptions growth_comparison_options(const Settings& settings) {
+  StabilityOptions options = exponent_options(settings);
+  options.tolerance = std::clamp(0.01 * settings.tolerance, 1e-12, options.tolerance);
+  return options;
+}
+
+SweepOptions boundary_options(const Settings& settings) {
+  SweepOptions options;
+  options.stability.method = settings.stability_method;
+  options.stability.tolerance = std::clamp(settings.tolerance, 1e-13, 1e-9);
+  options.tolerance = std::clamp(0.1 * settings.tolerance, 1e-14, 1e-6);
+  return options;
+}
+
+PeakAccuracy peak_accuracy(const Settings& settings) {
+  return {1e-5, std::clamp(0.01 * settings.tolerance, 1e-14, 1e-9), std::clamp(0.5 * settings.tolerance, 5e-14, 1e-6)};
+}
+
+double integration_tolerance(const Settings& settings) { return std::max(settings.tolerance, 1e-9); }
+
+std::string accuracy_text(const Settings& settings) {
+  const SweepOptions boundary = boundary_options(settings);
+  const PeakAccuracy peak = peak_accuracy(settings);
+  return fmt::format(
+      "tolerance {:.1e}: response {:.1e}, exponents {:.1e}, boundaries {:.1e} by exponents {:.1e}, peaks {:.1e} by "
+      "responses {:.1e}, time integration {:.1e}",
+      settings.tolerance, response_options(settings).tolerance, exponent_options(settings).tolerance,
+      boundary.tolerance, boundary.stability.tolerance, peak.height, peak.fine, integration_tolerance(settings));
+}
+
+}  // namespace hb
