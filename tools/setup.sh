@@ -13,7 +13,8 @@ packages=(
 )
 case $purpose in
   command) ;;
-  tests) packages+=(libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin chromium chromium-driver python3-selenium) ;;
+  tests) packages+=(libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin chromium chromium-driver python3-selenium
+    scdoc pkg-config file) ;;
   *)
     echo "tools/setup.sh: found $purpose, allowed: command, tests" >&2
     exit 2

@@ -13,3 +13,11 @@ run(${CMAKE_COMMAND} -S ${consumer} -B ${work}/build -G ${generator} -D CMAKE_CX
 run(${CMAKE_COMMAND} --build ${work}/build --config ${config})
 run(${work}/build/consumer)
 run(${work}/prefix/bin/hb --help)
+
+# The same program by pkg-config.
+find_program(pkg_config pkg-config)
+if(pkg_config)
+  run(${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${work}/prefix/${libdir}/pkgconfig sh -c
+    "'${compiler}' -std=c++20 '${consumer}/main.cpp' -o '${work}/by_pkg_config' $('${pkg_config}' --cflags --libs hb)")
+  run(${work}/by_pkg_config)
+endif()

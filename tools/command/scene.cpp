@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "hb/analysis/scene_family.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
@@ -21,8 +22,20 @@
 namespace hb::tools {
 namespace {
 
-int run_scene(const CommonFlags& flags) {
+// What --set, --x, --y and --vary may name, with its value in the scene's units: one number a line.
+std::string numbers_text(const SceneFamily& family) {
+  std::string text;
+  for (const std::string& path : family.paths()) text += fmt::format("{} {}\n", path, family.value(path));
+  return text;
+}
+
+int run_scene(const CommonFlags& flags, bool paths) {
   const SceneInput input = scene_input(flags.scene_file);
+  if (paths) {
+    Delivery numbers;
+    numbers.printed = printable(numbers_text(SceneFamily(input.source, overrides(flags))));
+    return deliver(nullptr, false, exit_ok, numbers);
+  }
   const Scene scene = input.source.with(overrides(flags));
   (void)settings(flags, scene);
   const Output out = output(flags);
@@ -49,8 +62,10 @@ int run_scene(const CommonFlags& flags) {
 void add_scene_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("scene", "reads and checks a scene, says what it understood, draws it");
   const auto flags = std::make_shared<CommonFlags>();
+  const auto paths = std::make_shared<bool>(false);
   add_scene_flags(*command, *flags);
-  command->callback([flags, &status] { status = run_scene(*flags); });
+  command->add_flag("--paths", *paths, "only the scene's numbers, PATH VALUE a line: what --set, --x and --vary take");
+  command->callback([flags, paths, &status] { status = run_scene(*flags, *paths); });
 }
 
 }  // namespace hb::tools

@@ -1,0 +1,17 @@
+# cpack -G DEB: the command, the library with its headers, completion and manual pages. Packages that others install come
+# from the preset "portable"; those of a build for this machine's instructions say so in their version.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME hb)
+set(CPACK_PACKAGE_VENDOR "hb")
+set(CPACK_PACKAGE_CONTACT "The authors of hb")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS gnuplot-nox)
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "libeigen3-dev, libfftw3-dev, libfmt-dev, libnlopt-dev, libsundials-dev, libtomlplusplus-dev")
+if(HB_NATIVE)
+  set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION}+native)
+endif()
+include(CPack)
