@@ -7,6 +7,8 @@
 
 namespace hb {
 
+double default_boundary_tolerance(double tolerance) { return std::clamp(0.1 * tolerance, 1e-14, 1e-6); }
+
 SteadyOptions response_options(const Settings& settings) {
   SteadyOptions options;
   options.tolerance = settings.tolerance;
@@ -22,6 +24,7 @@ StabilityOptions exponent_options(const Settings& settings) {
   options.method = settings.stability_method;
   options.tolerance = std::clamp(10 * settings.tolerance, 1e-12, 0.1);
   options.verdict_only = settings.only.verdict;
+  options.leading_only = settings.only.verdict || settings.only.growth;
   return options;
 }
 
@@ -35,7 +38,7 @@ SweepOptions boundary_options(const Settings& settings) {
   SweepOptions options;
   options.stability.method = settings.stability_method;
   options.stability.tolerance = std::clamp(settings.tolerance, 1e-13, 1e-9);
-  options.tolerance = std::clamp(0.1 * settings.tolerance, 1e-14, 1e-6);
+  options.tolerance = default_boundary_tolerance(settings.tolerance);
   return options;
 }
 

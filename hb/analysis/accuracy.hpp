@@ -23,7 +23,9 @@ namespace hb {
 [[nodiscard]] StabilityOptions exponent_options(const Settings& settings);
 // To compare growth rates of different numbers of modes.
 [[nodiscard]] StabilityOptions growth_comparison_options(const Settings& settings);
+// Of sweeps; maps may be asked for another bracket (Settings::boundary_tolerance).
 [[nodiscard]] SweepOptions boundary_options(const Settings& settings);
+[[nodiscard]] double default_boundary_tolerance(double tolerance);
 
 struct PeakAccuracy {
   double rough = 0, fine = 0;  // of q

@@ -113,8 +113,7 @@ Map map(const SceneFamily& family, const MapRequest& request, Work& work) {
     return PlaneAxis{role, along.path, along.values.front(), along.values.back()};
   };
   options.num_modes = plane_modes(family, axis(request.x), axis(request.y), options.speed, settings);
-  MapOptions search;
-  search.search = boundary_options(settings);
+  MapOptions search = map_options(settings);
   search.parts = work.of("stability map, this step");
   const ScenePlane plane(family, axis(request.x), axis(request.y), options);
   Map result{compute_map(plane, axis(request.x), request.x.values, axis(request.y), request.y.values, search),

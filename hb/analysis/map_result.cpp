@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "hb/analysis/accuracy.hpp"
+
 namespace hb {
 namespace {
 
@@ -50,6 +52,16 @@ std::vector<MissingPoints> missing_points(const ScenePlane& plane, const Stabili
 }
 
 }  // namespace
+
+MapOptions map_options(const Settings& settings) {
+  MapOptions options;
+  options.search = boundary_options(settings);
+  // Where no curves are asked for boundaries only tell which cells of a large grid have one verdict.
+  options.search.tolerance = settings.boundaries ? settings.boundary_tolerance : 1e-3;
+  options.boundaries = settings.boundaries;
+  options.verdict_only = settings.only.verdict;
+  return options;
+}
 
 std::size_t boundary_points_not_reached(const MapResult& result) {
   std::size_t count = 0;
@@ -126,7 +138,7 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
       result.worst[p] = worse(result.worst[p], result.maps[r].points[p]);
     }
   }
-  result.boundaries = worst_boundaries(plane, result.maps, search);
+  if (search.boundaries) result.boundaries = worst_boundaries(plane, result.maps, search);
   result.lines =
       resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
                       {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()}, max_lines);

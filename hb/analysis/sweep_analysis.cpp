@@ -307,6 +307,9 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   result.stages = model.stages;
   const SweepOptions sweep_options = boundary_options(settings);
   const PeakAccuracy peaks = peak_accuracy(settings);
+  result.searched_bands = only.all_exponents() && settings.search;
+  result.searched_peaks = only.steady && settings.search;
+  const std::string why_not = settings.search ? "all exponents are needed, which were not asked for" : "not asked for";
 
   // The points asked for.
   Stopwatch watch;
@@ -343,7 +346,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
     std::vector<ResponseSample> peaks;
   };
   std::vector<Between> between(num_tasks);
-  if (only.stability) {
+  if (result.searched_bands) {
     between = work.results<Between>(
         "narrow bands and peaks", num_tasks,
         [&](std::size_t task) {
@@ -365,7 +368,10 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
           });
         });
   }
-  result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
+  if (only.stability && !result.searched_bands)
+    result.stages.push_back({"narrow bands and peaks", 0, why_not, true});
+  else
+    result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
 
   // Boundaries.
   Stopwatch boundary_watch;
@@ -375,7 +381,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   };
   std::vector<BoundaryTask> boundary_tasks;
   std::vector<std::vector<const StabilitySample*>> samples(result.rods.size());
-  if (only.stability) {
+  if (result.searched_bands) {
     for (std::size_t i = 0; i < reported.size(); ++i) {
       const std::size_t r = reported[i];
       for (std::size_t k = 0; k < values.size(); ++k) {
@@ -412,7 +418,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   // Resonance peaks: of the largest component, and of each component where its own mode resonates.
   Stopwatch peak_watch;
   std::vector<PeakTask> tasks;
-  if (only.steady) {
+  if (result.searched_peaks) {
     for (std::size_t i = 0; i < reported.size(); ++i) {
       const std::size_t r = reported[i];
       std::vector<ResponseSample> run;
@@ -451,7 +457,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
         point.peak = *peak;
         point.prominence = task.prominence;
         point.speed = scene.at(peak->x).speed;
-        if (only.stability) {
+        if (only.all_exponents()) {
           const SystemAt system = [&](double x) { return rod.system(x); };
           if (const std::optional<StabilitySample> sample =
                   stability_sample(system, peak->x, sweep_options.stability)) {
@@ -489,7 +495,10 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   std::stable_sort(result.critical.begin(), result.critical.end(), [](const CriticalPoint& a, const CriticalPoint& b) {
     return a.rod != b.rod ? a.rod < b.rod : a.peak.x < b.peak.x;
   });
-  result.stages.push_back(
+  if (only.steady && !result.searched_peaks)
+    result.stages.push_back({"resonance peaks", 0, "not asked for", true});
+  else
+    result.stages.push_back(
       {"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
 
   // Everything at what was found.

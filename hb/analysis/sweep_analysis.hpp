@@ -111,6 +111,7 @@ struct SweepResult {
   std::vector<std::string> joint_components;  // "AB.0 x"
   std::vector<std::string> shortfalls;
   std::vector<Stage> stages;
+  bool searched_bands = true, searched_peaks = true;  // between the points
 };
 
 [[nodiscard]] SweepResult run_sweep(const SweepScene& scene, Work& work);

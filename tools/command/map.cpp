@@ -22,6 +22,7 @@ namespace hb::tools {
 namespace {
 
 struct MapFlags : CommonFlags {
+  BoundaryFlags boundaries;
   std::string x, y, damping_range, colour = "growth";
   bool resume = false, restart = false;
 };
@@ -47,7 +48,7 @@ int run_map(const MapFlags& flags) {
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   const SharedWork geometry(out.threads);
-  AskedMap map(flags, flags.x, flags.y, flags.damping_range, input, geometry);
+  AskedMap map(flags, flags.x, flags.y, flags.damping_range, flags.boundaries, input, geometry);
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "map", origin);
 
@@ -72,7 +73,8 @@ int run_map(const MapFlags& flags) {
   if (out.stats && !out.json) {
     std::size_t samples = 0;
     for (const StabilityMap& of_rod : map.result().maps) samples += of_rod.samples;
-    fmt::print(stderr, "\n  {}; exponents at {} places\n", map.evidence(), samples);
+    fmt::print(stderr, "\n  {}; exponents at {} places{}\n", map.evidence(), samples,
+               flags.boundaries.none ? "; boundaries skipped: not asked for" : "");
   }
   return status;
 }
@@ -85,6 +87,12 @@ void add_map_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<MapFlags>();
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
+  allow_growth_alone(*command, *flags);
+  command->add_flag("--no-boundaries", flags->boundaries.none, "the grid alone: no curves where the verdict changes");
+  command
+      ->add_option("--boundary-tol", flags->boundaries.tolerance,
+                   "relative error of boundary points, 1e-14 to 0.01; default a tenth of --tol")
+      ->type_name("T");
   add_html_flag(*command, *flags);
   command->add_option("--x", flags->x, "first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

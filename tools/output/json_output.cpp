@@ -32,6 +32,7 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
 
 void add_stability(Json& json, const RodResult& rod) {
   json.update(stability_json(*rod.stability, 2 * rod.num_modes));
+  json["exponents_unresolved"] = unresolved_exponents(rod);
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 

@@ -225,7 +225,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   Json& rods = json["rods"] = Json::object();
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(scene, result, r, points);
-  if (result.computed.steady) {
+  if (result.searched_peaks) {
     std::vector<double> critical, critical_x;
     for (const CriticalPoint& point : result.critical) critical_x.push_back(point.peak.x);
     std::sort(critical_x.begin(), critical_x.end());
@@ -241,7 +241,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
     Json& list = json["critical"] = Json::array();
     for (const CriticalPoint& point : result.critical) list.push_back(critical_json(result, point, scene));
   }
-  if (result.computed.stability) {
+  if (result.searched_bands) {
     Json& bands = json["unstable_bands"] = Json::object();
     Json& details = json["band_details"] = Json::object();
     for (const SweepRod& rod : result.rods) {
@@ -322,7 +322,9 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
       add(text, "\n");
     }
     if (every > 1) add(text, "  (every {}th point; --json and --out have all)\n", every);
-    if (result.computed.stability) {
+    if (result.computed.stability && !result.searched_bands)
+      add(text, "  unstable bands between the points were not looked for\n");
+    if (result.searched_bands) {
       add(text, "  {}\n", rod.bands.empty() ? "no unstable band" : "unstable bands");
       for (const UnstableBand& band : rod.bands) {
         add(text, "    {}{} .. {}{}  fastest growth of its points {:.4g} {} at {:.6g}; begins {}, ends {}\n",
@@ -332,7 +334,9 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
             band.open_to ? "beyond the sweep" : kind_words(band.kind_to));
       }
     }
-    if (result.computed.steady) {
+    if (result.computed.steady && !result.searched_peaks)
+      add(text, "  resonance peaks between the points were not looked for\n");
+    if (result.searched_peaks) {
       std::size_t found = 0;
       for (const CriticalPoint& point : result.critical) found += point.rod == r;
       add(text, "  {}\n", found == 0 ? "no resonance peak" : "resonance peaks");
