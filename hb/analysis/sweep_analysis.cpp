@@ -267,15 +267,32 @@ SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Sett
   }
 }
 
-ScenePlace SweepScene::at(double x) const {
+double SweepScene::speed_at(double x) const {
   switch (axis_.kind) {
     case Axis::Kind::rpm:
-      return {first_, speed_from_rpm(x, units_), ""};
+      return speed_from_rpm(x, units_);
     case Axis::Kind::omega:
-      return {first_, x, ""};
+      return x;
     case Axis::Kind::parameter:
       break;
   }
+  return fixed_speed_;
+}
+
+LinkagePlace SweepScene::linkage_at(double x) const {
+  if (axis_.kind != Axis::Kind::parameter) return {*first_->linkage(), ""};
+  std::vector<Override> all = overrides_;
+  all.push_back(number_override(axis_.path, x));
+  try {
+    Scene scene = source_.with(all);
+    return {std::get<Linkage>(std::move(scene.model)), ""};
+  } catch (const SceneError& error) {
+    return {std::nullopt, error.what()};
+  }
+}
+
+ScenePlace SweepScene::at(double x) const {
+  if (axis_.kind != Axis::Kind::parameter) return {first_, speed_at(x), ""};
   // Several questions are asked at one place in a row.
   struct Last {
     const SweepScene* owner = nullptr;

@@ -1,0 +1,34 @@
+#include "tools/command/theory_flags.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+
+#include "tools/command/command.hpp"
+#include "tools/command/common_flags.hpp"
+
+namespace hb::tools {
+
+void add_theory_flags(CLI::App& app, TheoryFlags& flags) {
+  app.add_option("--theory", flags.theory, "linear, or nonlinear: the motion without linearisation, all rods together")
+      ->type_name("linear|nonlinear");
+  app.add_option("--period", flags.period,
+                 "with --theory nonlinear: motions of N turns, which leave the others by period doubling")
+      ->type_name("N");
+}
+
+bool is_nonlinear(const TheoryFlags& flags) {
+  if (flags.theory != "linear" && flags.theory != "nonlinear")
+    throw UsageError(fmt::format("--theory: found \"{}\", allowed: linear, nonlinear", flags.theory));
+  if (flags.theory == "linear" && !flags.period.empty())
+    throw UsageError(
+        fmt::format("--period: found {} with the linear theory, allowed: with --theory nonlinear", flags.period));
+  return flags.theory == "nonlinear";
+}
+
+int turns_of(const TheoryFlags& flags) {
+  if (flags.period.empty()) return 1;
+  return integer_flag("--period", flags.period, 1, 64, "a whole number of turns from 1 to 64");
+}
+
+}  // namespace hb::tools
