@@ -153,8 +153,7 @@ struct Patch {
 }  // namespace
 
 struct ScenePlane::Implementation {
-  SceneSource source;
-  std::vector<Override> overrides;
+  SceneFamily family;
   std::array<PlaneAxis, 2> axes;
   PlaneOptions options;
   std::optional<Scene> corner;
@@ -165,11 +164,11 @@ struct ScenePlane::Implementation {
   std::atomic<std::size_t> computed = 0;
   std::size_t patches = 0;
 
-  std::vector<Override> overrides_at(double u, double v) const {
-    std::vector<Override> all = overrides;
-    if (varies[0]) all.push_back(number_override(axes[0].path, u));
-    if (varies[1]) all.push_back(number_override(axes[1].path, v));
-    return all;
+  Numbers numbers_at(double u, double v) const {
+    Numbers numbers;
+    if (varies[0]) numbers.push_back({axes[0].path, u});
+    if (varies[1]) numbers.push_back({axes[1].path, v});
+    return numbers;
   }
 
   bool asked(const std::string& name) const {
@@ -179,7 +178,7 @@ struct ScenePlane::Implementation {
   // Systems of the rods, those of links multiplied by EJ (stability does not see it).
   std::vector<HillSystem> systems_from_scene(double u, double v) {
     ++computed;
-    const Scene scene = source.with(overrides_at(u, v));
+    const Scene scene = family.scene(numbers_at(u, v));
     if (const auto* hill = std::get_if<HillSystem>(&scene.model)) return {*hill};
     const Linkage& linkage = std::get<Linkage>(scene.model);
     const LinkageCoefficients coefficients = linkage_coefficients(linkage);
@@ -326,10 +325,9 @@ struct ScenePlane::Implementation {
   }
 };
 
-ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y,
-                       PlaneOptions options)
+ScenePlane::ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOptions options)
     : self_(new Implementation{
-          std::move(source), std::move(overrides), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
+          std::move(family), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
   static std::atomic<std::size_t> next_id = 1;
   Implementation& s = *self_;
   s.id = next_id++;
@@ -344,7 +342,7 @@ ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, Plan
   std::optional<ObstructedLinkage> obstructed;
   const auto look_at = [&](double u, double v) {
     try {
-      Scene scene = s.source.with(s.overrides_at(u, v));
+      Scene scene = s.family.scene(s.numbers_at(u, v));
       if (!s.corner) s.corner = std::move(scene);
     } catch (const ObstructedLinkage& error) {
       if (!obstructed) obstructed = error;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/work.hpp"
 #include "hb/engine/boundaries/stability_map.hpp"
 #include "hb/engine/system/scaled_system.hpp"
@@ -34,7 +35,10 @@ class ScenePlane {
  public:
   // Throws SceneError where the scene is wrong at a corner of the plane, RequestError for a name in options.rods that is
   // not an elastic link.
-  ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y, PlaneOptions options);
+  ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOptions options);
+  ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y, PlaneOptions options)
+      : ScenePlane(SceneFamily(std::move(source), std::move(overrides)), std::move(x), std::move(y),
+                   std::move(options)) {}
   ~ScenePlane();
   ScenePlane(ScenePlane&&) noexcept;
 

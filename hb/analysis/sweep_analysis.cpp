@@ -220,28 +220,35 @@ void add_maxima(const std::vector<ResponseSample>& samples, std::size_t rod, int
 
 }  // namespace
 
-SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis,
-                       double fixed_speed, double fixed_rpm)
-    : source_(std::move(source)),
-      overrides_(std::move(overrides)),
+namespace {
+
+// Addresses come back, these do not.
+std::size_t next_id() {
+  static std::atomic<std::size_t> next = 1;
+  return next++;
+}
+
+}  // namespace
+
+SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double fixed_speed, double fixed_rpm)
+    : family_(std::move(family)),
       settings_(std::move(settings)),
       axis_(std::move(axis)),
       fixed_speed_(fixed_speed),
-      fixed_rpm_(fixed_rpm) {
+      fixed_rpm_(fixed_rpm),
+      id_(next_id()) {
   // The error of the cut is no part of a sweep: no finer Ritz matrices.
   Settings model_settings = settings_;
   constexpr bool compares_modes = false;
   const bool auto_modes = std::holds_alternative<AutoModes>(settings_.modes);
   if (axis_.kind != Axis::Kind::parameter) {
-    Scene scene = source_.with(overrides_);
+    Scene scene = family_.scene();
     units_ = scene.units;
     first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings, compares_modes));
   } else {
     for (std::size_t k = 0; k < axis_.values.size() && !first_; ++k) {
-      std::vector<Override> all = overrides_;
-      all.push_back(number_override(axis_.path, axis_.values[k]));
       try {
-        Scene scene = source_.with(all);
+        Scene scene = family_.scene({{axis_.path, axis_.values[k]}});
         units_ = scene.units;
         first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings, compares_modes));
       } catch (const ObstructedLinkage&) {
@@ -263,6 +270,7 @@ SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Sett
     }
     settings_.modes = modes;
     model_settings.modes = modes;
+    id_ = next_id();  // places looked at so far have other models
     first_ = std::make_shared<SceneModel>(make_model(first_->scene, model_settings, compares_modes));
   }
 }
@@ -295,21 +303,19 @@ ScenePlace SweepScene::at(double x) const {
   if (axis_.kind != Axis::Kind::parameter) return {first_, speed_at(x), ""};
   // Several questions are asked at one place in a row.
   struct Last {
-    const SweepScene* owner = nullptr;
+    std::size_t owner = 0;
     double x = 0;
     ScenePlace place;
   };
   static thread_local Last last;
-  if (last.owner == this && last.x == x) return last.place;
+  if (last.owner == id_ && last.x == x) return last.place;
   ScenePlace place{nullptr, fixed_speed_, ""};
-  std::vector<Override> all = overrides_;
-  all.push_back(number_override(axis_.path, x));
   try {
-    place.model = std::make_shared<SceneModel>(make_model(source_.with(all), settings_, false));
+    place.model = std::make_shared<SceneModel>(make_model(family_.scene({{axis_.path, x}}), settings_, false));
   } catch (const ObstructedLinkage& obstruction) {
     place.problem = obstruction.what();
   }
-  last = {this, x, place};
+  last = {id_, x, place};
   return place;
 }
 

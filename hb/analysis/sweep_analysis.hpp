@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/work.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 #include "hb/engine/steady/response_peak.hpp"
@@ -40,8 +41,11 @@ class SweepScene {
  public:
   // `fixed_speed` (rad per unit time; `fixed_rpm` as given) is used where the axis is not the speed. Throws SceneError
   // or RequestError for what cannot be at any value; a linkage that does not close is a place's problem instead.
+  SweepScene(SceneFamily family, Settings settings, Axis axis, double fixed_speed, double fixed_rpm);
   SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis, double fixed_speed,
-             double fixed_rpm);
+             double fixed_rpm)
+      : SweepScene(SceneFamily(std::move(source), std::move(overrides)), std::move(settings), std::move(axis),
+                   fixed_speed, fixed_rpm) {}
 
   [[nodiscard]] ScenePlace at(double x) const;
   [[nodiscard]] double speed_at(double x) const;  // rad per unit time
@@ -54,13 +58,13 @@ class SweepScene {
   const SceneModel& first() const { return *first_; }
 
  private:
-  SceneSource source_;
-  std::vector<Override> overrides_;
+  SceneFamily family_;
   Settings settings_;
   Axis axis_;
   double fixed_speed_, fixed_rpm_;
   Units units_;
   std::shared_ptr<const SceneModel> first_;
+  std::size_t id_;  // of this object and its copies alone
 };
 
 // Smallest and largest over the turn.
