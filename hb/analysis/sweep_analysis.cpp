@@ -289,14 +289,9 @@ double SweepScene::speed_at(double x) const {
 
 LinkagePlace SweepScene::linkage_at(double x) const {
   if (axis_.kind != Axis::Kind::parameter) return {*first_->linkage(), ""};
-  std::vector<Override> all = overrides_;
-  all.push_back(number_override(axis_.path, x));
-  try {
-    Scene scene = source_.with(all);
-    return {std::get<Linkage>(std::move(scene.model)), ""};
-  } catch (const SceneError& error) {
-    return {std::nullopt, error.what()};
-  }
+  FamilyMember member = family_.at({{axis_.path, x}});
+  if (!member.scene) return {std::nullopt, std::move(member.why_not)};
+  return {std::get<Linkage>(std::move(member.scene->model)), ""};
 }
 
 ScenePlace SweepScene::at(double x) const {

@@ -111,6 +111,7 @@ int run_nonlinear_check(const CheckFlags& flags) {
     throw UsageError("--integrator: found \"collocation\" with --theory nonlinear, allowed: automatic, adams, bdf");
   NonlinearOptions asked;
   asked.turns = turns_of(flags.theory);
+  asked.stop = stop_of(flags.theory);
   const std::vector<double> speeds = speeds_of(speed_range(flags.common, scene), scene.units);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "check", provenance(flags.common.line, input));
@@ -122,6 +123,7 @@ int run_nonlinear_check(const CheckFlags& flags) {
   std::vector<NonlinearCheck> checks(speeds.size());
   parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
     checks[k] = nonlinear_check(model, speeds[k], options, check_with, asked);
+    if (!checks[k].not_compared.empty()) say_time_limit(flags.theory, asked.stop, checks[k].shortfalls);
   });
 
   const nlohmann::ordered_json document = nonlinear_check_json(model, checks, options);

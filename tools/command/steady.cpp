@@ -75,6 +75,7 @@ int run_nonlinear(const SteadyFlags& flags) {
   const double speed = single_speed(flags, scene);
   NonlinearOptions asked;
   asked.turns = turns_of(flags.theory);
+  asked.stop = stop_of(flags.theory);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
 
@@ -82,7 +83,8 @@ int run_nonlinear(const SteadyFlags& flags) {
   Settings all = options;
   all.only.steady = true;
   const SceneModel model = make_model(std::move(scene), all, false);
-  const NonlinearResult result = nonlinear_steady(model, speed, options, asked);
+  NonlinearResult result = nonlinear_steady(model, speed, options, asked);
+  say_time_limit(flags.theory, asked.stop, result.shortfalls);
   const nlohmann::ordered_json document =
       out.json || folder ? nonlinear_json(model, result, options, out.stats) : nlohmann::ordered_json();
   Delivery delivery;

@@ -43,6 +43,7 @@ int run_sweep_command(const SweepFlags& flags) {
   const bool nonlinear = is_nonlinear(flags.theory);
   NonlinearSweepOptions branches_asked;
   branches_asked.turns = turns_of(flags.theory);
+  branches_asked.stop = stop_of(flags.theory);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -53,7 +54,10 @@ int run_sweep_command(const SweepFlags& flags) {
   KeptRun run("sweep", out.folder, earlier, sweep_key(sweep_scene), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return exit_interrupted;
   std::optional<NonlinearSweep> branches;
-  if (nonlinear) branches = nonlinear_sweep(sweep_scene, branches_asked);
+  if (nonlinear) {
+    branches = nonlinear_sweep(sweep_scene, branches_asked);
+    if (branches->stopped) say_time_limit(flags.theory, branches_asked.stop, branches->shortfalls);
+  }
   nlohmann::ordered_json document =
       out.json || folder ? sweep_json(sweep_scene, result, out.stats) : nlohmann::ordered_json();
   if (branches && !document.is_null()) add_branches(document, sweep_scene, *branches);

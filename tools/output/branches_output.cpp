@@ -99,6 +99,56 @@ Json event_json(const SweepScene& scene, const NonlinearEvent& event) {
   return json;
 }
 
+Json peaks_json(const NonlinearSweep& sweep, const RodPeaks& peaks) {
+  Json rods = Json::object();
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+    if (sweep.reported[r]) rods[sweep.rods[r]] = {{"max_abs", peaks[r]}};
+  return rods;
+}
+
+Json jump_json(const SweepScene& scene, const NonlinearSweep& sweep, const Jump& jump) {
+  Json json;
+  if (is_speed(scene)) json["rpm"] = rpm_at(scene, jump.x, jump.speed);
+  json["x"] = jump.x;
+  json["omega"] = jump.speed;
+  json["direction"] = jump.upward ? "upward" : "downward";
+  json["error"] = number(jump.error);
+  json["from"] = peaks_json(sweep, jump.from);
+  json["to"] = Json::array();
+  for (const RodPeaks& peaks : jump.to) json["to"].push_back(peaks_json(sweep, peaks));
+  return json;
+}
+
+// The motion followed from the first value, at each value of the axis: where its branch passes first.
+void add_followed(Json& json, const SweepScene& scene, const NonlinearSweep& sweep) {
+  const bool stability = scene.settings().only.stability;
+  if (json.contains("verdict")) {
+    json["linear_verdict"] = std::move(json["verdict"]);
+    json.erase("verdict");
+  }
+  Json& system = json["system"] = Json::object();
+  for (const auto& place : sweep.followed) {
+    const NonlinearPoint* point = place ? &sweep.branches[place->branch].points[place->point] : nullptr;
+    system["branch"].push_back(place ? Json(place->branch) : Json());
+    system["point"].push_back(place ? Json(place->point) : Json());
+    system["error_bound"].push_back(point ? number(point->error_bound) : Json());
+    if (!stability) continue;
+    const bool known = point && point->stability;
+    system["growth_rate"].push_back(known ? number(point->stability->growth_rate) : Json());
+    system["growth_error"].push_back(known ? number(point->stability->growth_error) : Json());
+    system["verdict"].push_back(known ? Json(to_string(point->stability->verdict)) : Json());
+  }
+  if (stability) json["verdict"] = system["verdict"];
+}
+
+std::string peaks_text(const NonlinearSweep& sweep, const RodPeaks& peaks, const OutputUnits& units) {
+  std::string text;
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+    if (sweep.reported[r])
+      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", sweep.rods[r], peaks[r].front());
+  return text + " " + units.length;
+}
+
 std::string located(double x, double error) {
   const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : 12;
   return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, 3, 12));
@@ -122,14 +172,9 @@ void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& swe
   Json& bifurcations = json["bifurcations"] = Json::array();
   for (const NonlinearEvent& event : sweep.bifurcations) bifurcations.push_back(event_json(scene, event));
   Json& jumps = json["jumps"] = Json::array();
-  for (const Jump& jump : sweep.jumps) {
-    Json entry;
-    if (is_speed(scene)) entry["rpm"] = rpm_at(scene, jump.x, jump.speed);
-    entry["x"] = jump.x;
-    entry["direction"] = jump.upward ? "up" : "down";
-    entry["error"] = number(jump.error);
-    jumps.push_back(std::move(entry));
-  }
+  for (const Jump& jump : sweep.jumps) jumps.push_back(jump_json(scene, sweep, jump));
+  json["stopped"] = sweep.stopped;
+  add_followed(json, scene, sweep);
 }
 
 std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep) {
@@ -162,9 +207,15 @@ std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep)
   add(text, "\n{}\n", sweep.folds.empty() ? "no fold" : "folds: the branch turns back");
   for (const NonlinearEvent& fold : sweep.folds)
     add(text, "  branch {}  {} = {}\n", fold.branch + 1, path, located(fold.x, fold.error));
-  if (!sweep.jumps.empty()) add(text, "jumps: a stable motion ends when {} is changed slowly\n", path);
-  for (const Jump& jump : sweep.jumps)
-    add(text, "  {}  {} = {}\n", jump.upward ? "upward  " : "downward", path, located(jump.x, jump.error));
+  if (!sweep.jumps.empty())
+    add(text, "jumps: a stable motion ends when {} is changed slowly\n  {:<9}  {:>16}  {:<32}  {}\n", path, "direction",
+        path, "from max |q_1|", "to a stable motion with about");
+  for (const Jump& jump : sweep.jumps) {
+    std::string to;
+    for (const RodPeaks& peaks : jump.to) to += (to.empty() ? "" : "; or ") + peaks_text(sweep, peaks, units);
+    add(text, "  {:<9}  {:>16}  {:<32}  {}\n", jump.upward ? "upward" : "downward", located(jump.x, jump.error),
+        peaks_text(sweep, jump.from, units), to.empty() ? "none found" : to);
+  }
   add(text, "{}\n", sweep.bifurcations.empty() ? "no other bifurcation" : "other bifurcations");
   for (const NonlinearEvent& event : sweep.bifurcations)
     add(text, "  branch {}  {} = {}  {} ({})\n", event.branch + 1, path, located(event.x, event.error),

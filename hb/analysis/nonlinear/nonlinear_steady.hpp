@@ -38,7 +38,7 @@ struct OtherMotion {
 
 enum class MotionSearch {
   found,
-  none,  // no motion; see `why`, and `last` if the branch was followed
+  none,  // no motion; see `why`, and last_speed if the branch was followed
   stopped,
 };
 
@@ -48,7 +48,9 @@ struct NonlinearResult {
   Only computed;
   MotionSearch search = MotionSearch::none;
   std::string why;  // no motion: in words
-  std::optional<double> last_speed;  // of the last motion on the way
+  // No motion: the last one on the way, its speed and largest |q_i| by rod and mode.
+  std::optional<double> last_speed;
+  std::vector<std::vector<double>> last_max_abs;
   // By continuation from this speed, weakly bent; empty: the linear theory holds at all lower speeds that were looked
   // at, and Newton's method started from its answer.
   std::optional<double> followed_from;

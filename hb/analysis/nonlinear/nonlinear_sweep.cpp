@@ -103,7 +103,7 @@ class Sweeper {
     options_.low = x.front();
     options_.high = x.back();
     options_.stops = x;
-    options_.stability = true;
+    options_.stability = scene.settings().only.stability;
   }
 
   NonlinearSweep run() {
@@ -111,6 +111,11 @@ class Sweeper {
     start_from_above();
     follow_what_leaves();
     find_jumps();
+    find_passages();
+    if (stopped()) {
+      result_.stopped = true;
+      result_.shortfalls.push_back("stopped before all branches were followed to their ends");
+    }
     return std::move(result_);
   }
 
@@ -152,6 +157,7 @@ class Sweeper {
     PeriodicMotion motion = start.motion;
     motion.parameter = options_.low;
     add_branch(follow(motion, 1), nullptr);
+    from_below_ = !result_.branches.empty();
   }
 
   // Where the branch from below does not lead to it.
@@ -262,17 +268,56 @@ class Sweeper {
     return false;
   }
 
+  // The verdict on one side of a fold, past the points too near to it to tell.
+  static Verdict beside(const std::vector<NonlinearPoint>& points, std::size_t from, int step) {
+    constexpr std::size_t most = 8;
+    std::size_t at = from;
+    for (std::size_t k = 0; k < most && at < points.size(); ++k, at += static_cast<std::size_t>(step)) {
+      if (!points[at].stability) break;
+      if (points[at].stability->verdict != Verdict::undecided) return points[at].stability->verdict;
+    }
+    return Verdict::undecided;
+  }
+
   void find_jumps() {
     for (const NonlinearEvent& fold : result_.folds) {
       const std::vector<NonlinearPoint>& points = result_.branches[fold.branch].points;
-      const NonlinearPoint &before = points[fold.after], &after = points[std::min(fold.after + 1, points.size() - 1)];
-      const auto stable = [](const NonlinearPoint& p) {
-        return p.stability && p.stability->verdict == Verdict::stable;
-      };
-      if (!stable(before) && !stable(after)) continue;
-      result_.jumps.push_back({fold.x, fold.speed, fold.error, before.x < fold.x, fold.max_abs});
+      const bool stable = beside(points, fold.after, -1) == Verdict::stable ||
+                          beside(points, fold.after + 1, 1) == Verdict::stable;
+      if (!stable) continue;
+      Jump jump{fold.x, fold.speed, fold.error, points[fold.after].x < fold.x, fold.max_abs, {}};
+      for (std::size_t b = 0; b < result_.branches.size(); ++b) add_stable_at(jump, b);
+      result_.jumps.push_back(std::move(jump));
     }
     std::ranges::stable_sort(result_.jumps, {}, &Jump::x);
+  }
+
+  // Where branch b passes the jump's x in a stable motion.
+  void add_stable_at(Jump& jump, std::size_t b) const {
+    const auto stable = [](const NonlinearPoint& p) { return p.stability && p.stability->verdict == Verdict::stable; };
+    const std::vector<NonlinearPoint>& points = result_.branches[b].points;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const NonlinearPoint &from = points[i - 1], &to = points[i];
+      if ((from.x < jump.x) == (to.x < jump.x) || !stable(from) || !stable(to)) continue;
+      const double share = (jump.x - from.x) / (to.x - from.x);
+      RodPeaks peaks = from.max_abs;
+      for (std::size_t r = 0; r < peaks.size(); ++r)
+        for (std::size_t k = 0; k < peaks[r].size(); ++k)
+          peaks[r][k] += share * (to.max_abs[r][k] - from.max_abs[r][k]);
+      jump.to.push_back(std::move(peaks));
+    }
+  }
+
+  void find_passages() {
+    const std::vector<double>& values = scene_.axis().values;
+    result_.followed.resize(values.size());
+    if (!from_below_) return;
+    const std::vector<NonlinearPoint>& points = result_.branches.front().points;
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const auto place = std::ranges::find_if(
+          points, [&](const NonlinearPoint& p) { return p.asked && std::abs(p.x - values[k]) <= 1e-12 * std::abs(values[k]); });
+      if (place != points.end()) result_.followed[k] = {0, static_cast<std::size_t>(place - points.begin())};
+    }
   }
 
   const SweepScene& scene_;
@@ -283,6 +328,7 @@ class Sweeper {
   NonlinearSweep result_;
   std::vector<Bifurcation> leaving_;
   std::vector<std::pair<int, double>> joined_;
+  bool from_below_ = false;  // the first branch is the one from the axis' first value
 };
 
 void check_request(const SweepScene& scene, const NonlinearSweepOptions& options) {

@@ -44,6 +44,12 @@ struct Jump {
   double x = 0, speed = 0, error = 0;
   bool upward = true;  // x rises
   RodPeaks from;
+  std::vector<RodPeaks> to;  // stable motions of other parts of the branches there, interpolated between their points
+};
+
+// A point of a branch.
+struct BranchPlace {
+  std::size_t branch = 0, point = 0;
 };
 
 struct NonlinearSweep {
@@ -52,6 +58,10 @@ struct NonlinearSweep {
   std::vector<NonlinearBranch> branches;
   std::vector<NonlinearEvent> folds, bifurcations;
   std::vector<Jump> jumps;
+  // At each value of the axis the first passage of the branch followed from its first value; empty: it does not come
+  // there.
+  std::vector<std::optional<BranchPlace>> followed;
+  bool stopped = false;
   std::vector<std::string> shortfalls;
   std::vector<Stage> stages;
 };
@@ -63,6 +73,7 @@ struct NonlinearSweepOptions {
 
 // From the motion at the axis' first value (nonlinear_steady) upward, and from its last value downward where the motion
 // there is another one; with every branch that leaves these at a bifurcation of as many turns, or of twice as many.
+// Without settings().only.stability only folds are found.
 // Throws RequestError for a [hill] scene, one without elastic links, and turns that are no power of two.
 [[nodiscard]] NonlinearSweep nonlinear_sweep(const SweepScene& scene, const NonlinearSweepOptions& options = {});
 

@@ -54,6 +54,7 @@ class Follower {
     Trace first = hold_parameter ? tracer_.trace_at_parameter(start, direction, options_.stability)
                                  : tracer_.trace(start, direction, false, options_.stability);
     if (first.status != CorrectionStatus::converged) return ended(end_of(first));
+    first.point.stop = hold_parameter && std::ranges::count(options_.stops, start.p) > 0;
     branch_.points.push_back(std::move(first.point));
     double step = options_.first_step;
     while (true) {
