@@ -188,6 +188,18 @@ TEST_F(Nonlinear, WhatTheTheoryCannotDoIsRefusedInWords) {
                  "allowed: linear");
   expect_refused("sweep " + scene("mathieu") + " --omega 1:2:0.5 --theory nonlinear", "the system is linear");
   expect_refused("check " + scene("mathieu") + " --omega 1 --theory nonlinear", "the system is linear");
+  std::ofstream(folder_ / "thick.toml") << R"(
+[crank]
+pivot = [0, 0]
+length = 0.1
+[[dyad]]
+on = "crank"
+coupler = { name = "rod", length = 0.5, mass = 1, elastic = { E = 2e11, area = 1e-3, J = 1e-8, shear = { G = 8e10, k = 0.83 } } }
+slider = { name = "piston", mass = 0.5, guide = [0, 0], direction = 0 }
+branch = 1
+)";
+  expect_refused("steady thick.toml --rpm 300 --theory nonlinear", "shear of rod");
+  expect_refused("sweep thick.toml --rpm 300:400:50 --theory nonlinear", "shear of rod");
   expect_refused("steady " + scene("six_link") + " --rpm 300 --theory quadratic", "allowed: linear, nonlinear");
   expect_refused("sweep " + scene("six_link") + " --rpm 300:400:50 --period 2", "allowed: with --theory nonlinear");
   expect_refused("sweep " + scene("six_link") + " --rpm 300:400:50 --theory nonlinear --period 3", "1, 2, 4, 8");

@@ -158,6 +158,7 @@ std::string located(double x, double error) {
 
 void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& sweep) {
   json["theory"] = "nonlinear";
+  json["motion_tolerance"] = sweep.tolerance;
   if (!sweep.shortfalls.empty()) {
     json["status"] = "tolerance not reached";
     for (const std::string& sentence : sweep.shortfalls) json["notes"].push_back(sentence);

@@ -132,6 +132,7 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
   json["tolerance"] = settings.tolerance;
+  json["motion_tolerance"] = result.tolerance;
   if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
   json["units"] = units_json(units);
   json["found"] = result.search == MotionSearch::found;

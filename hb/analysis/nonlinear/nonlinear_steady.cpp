@@ -34,6 +34,8 @@ constexpr double weakly_bent = 0.01;
 constexpr double way_tolerance = 1e-5;
 // A resonance curve with its folds takes some hundred.
 constexpr int most_points = 600;
+// Exponents depend on accelerations: what the smallest tolerance of the motion allows, of the larger of growth and speed.
+constexpr double least_tolerance = 1e-9, exponent_tolerance = 1e-7;
 // Two motions are the same if their largest |q_i| agree to this.
 constexpr double same_motion = 1e-4;
 
@@ -58,7 +60,7 @@ class Search {
     for (const RodModel& rod : model.rods) modes_.push_back(rod.system.num_modes());
     exact_ = with_modes(modes_);
     system_ = exact_system(exact_);
-    motion_options_.tolerance = std::max(settings.tolerance, 1e-9);
+    motion_options_.tolerance = std::max(settings.tolerance, least_tolerance);
     motion_options_.stop = options.stop;
   }
 
@@ -418,25 +420,30 @@ ForceErrors errors_of(const ExactModel& exact, const NonlinearResult& result) {
           safety * change.row(last).cwiseAbs().maxCoeff() / torque, 0, 0};
 }
 
-void check_request(const SceneModel& model, const Settings& settings, int turns) {
+}  // namespace
+
+void require_nonlinear(const SceneModel& model, int turns) {
   if (!model.linkage())
     throw RequestError("theory", "\"nonlinear\" for a [hill] scene", "linear: the system is linear as it is given");
   if (model.rods.empty()) throw RequestError("theory", "\"nonlinear\" for a linkage without elastic links", "linear");
-  if (std::holds_alternative<AutoModes>(settings.modes))
-    throw RequestError("modes", "\"auto\"", "a number of modes with the nonlinear theory");
+  for (const RodModel& rod : model.rods)
+    if (body_at(*model.linkage(), rod.link)->elastic->shear)
+      throw RequestError("theory", fmt::format("\"nonlinear\" with shear of {}", rod.name),
+                         "linear, or the scene without shear");
   if (turns < 1 || (turns & (turns - 1)) != 0)
     throw RequestError("period", fmt::format("{}", turns), "1, 2, 4, 8, ...: motions that double their period");
 }
 
-}  // namespace
-
 NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                  const NonlinearOptions& options) {
-  check_request(model, settings, options.turns);
+  require_nonlinear(model, options.turns);
+  if (std::holds_alternative<AutoModes>(settings.modes))
+    throw RequestError("modes", "\"auto\"", "a number of modes with the nonlinear theory");
   NonlinearResult result;
   result.speed = speed;
   result.turns = options.turns;
   result.computed = settings.only;
+  result.tolerance = std::max(settings.tolerance, least_tolerance);
   Search search(model, speed, settings, options, result);
   Stopwatch watch;
   search.run();
@@ -461,11 +468,14 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
   add_rods(model, search.exact(), search, result);
   if (settings.only.stability) {
     Stopwatch stability_watch;
-    result.stability = motion_stability(search.system(), result.motion);
-    // Exponents depend on accelerations, whose errors are those of q times the square of the harmonic.
+    const StabilityOptions exponents{.tolerance = std::max(exponent_tolerance, settings.tolerance)};
+    result.stability = motion_stability(search.system(), result.motion, exponents);
     if (!result.stability->converged)
       if (const std::optional<PeriodicMotion> finer = search.with_more_harmonics())
-        result.stability = motion_stability(search.system(), *finer);
+        result.stability = motion_stability(search.system(), *finer, exponents);
+    if (!result.stability->converged)
+      result.shortfalls.push_back(fmt::format("the growth rate's error {:.1e} exceeds {:.1e} of the larger of growth and speed",
+                                              result.stability->growth_error, exponents.tolerance));
     result.stages.push_back({"stability of the motion", stability_watch.seconds(), result.stability->evidence});
   }
   if (settings.only.reactions) {

@@ -45,6 +45,7 @@ enum class MotionSearch {
 struct NonlinearResult {
   double speed = 0;  // rad per unit time
   int turns = 1;
+  double tolerance = 0;  // that the motion was solved to: the one asked for, at least 1e-9
   Only computed;
   MotionSearch search = MotionSearch::none;
   std::string why;  // no motion: in words
@@ -65,9 +66,13 @@ struct NonlinearResult {
   std::vector<Stage> stages;
 };
 
+// Throws RequestError for what the theory does not know: a [hill] scene, one without elastic links or with shear, and a
+// number of turns that is no power of two.
+void require_nonlinear(const SceneModel& model, int turns);
+
 // The branch followed in speed from the weakly bent motion at low speed, at its first passage of this speed; of T > 1
 // turns the first motion found on a branch that leaves it by period doubling. `model` with a fixed number of modes.
-// Throws RequestError for a [hill] scene, one without elastic links, and modes = "auto".
+// Throws RequestError as require_nonlinear does, and for modes = "auto".
 [[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                                const NonlinearOptions& options = {});
 

@@ -20,6 +20,8 @@ constexpr double same_motion = 1e-4;
 // Bifurcations of two branches are the same one if they lie within this of the range.
 constexpr double same_place = 1e-4;
 constexpr std::size_t most_branches = 16;
+// Of the motion; and of exponents, which depend on accelerations, relative to the larger of growth and speed.
+constexpr double least_tolerance = 1e-8, exponent_tolerance = 1e-6;
 
 class Stopwatch {
  public:
@@ -98,7 +100,8 @@ class Sweeper {
       modes_.push_back(rod.system.num_modes());
     }
     const std::vector<double>& x = scene.axis().values;
-    options_.motion.tolerance = std::max(scene.settings().tolerance, 1e-8);
+    result_.tolerance = options_.motion.tolerance = std::max(scene.settings().tolerance, least_tolerance);
+    options_.exponents.tolerance = std::max(scene.settings().tolerance, exponent_tolerance);
     options_.motion.stop = options_.stop = options.stop;
     options_.low = x.front();
     options_.high = x.back();
@@ -332,12 +335,7 @@ class Sweeper {
 };
 
 void check_request(const SweepScene& scene, const NonlinearSweepOptions& options) {
-  const SceneModel& model = scene.first();
-  if (!model.linkage())
-    throw RequestError("theory", "\"nonlinear\" for a [hill] scene", "linear: the system is linear as it is given");
-  if (model.rods.empty()) throw RequestError("theory", "\"nonlinear\" for a linkage without elastic links", "linear");
-  if (options.turns < 1 || (options.turns & (options.turns - 1)) != 0)
-    throw RequestError("period", fmt::format("{}", options.turns), "1, 2, 4, 8, ...: motions that double their period");
+  require_nonlinear(scene.first(), options.turns);
   if (scene.axis().values.size() < 2) throw RequestError("rpm", "one speed", "a range");
 }
 

@@ -53,6 +53,7 @@ struct BranchPlace {
 };
 
 struct NonlinearSweep {
+  double tolerance = 0;  // that motions were solved to: the one asked for, at least 1e-8
   std::vector<std::string> rods;
   std::vector<bool> reported;
   std::vector<NonlinearBranch> branches;
