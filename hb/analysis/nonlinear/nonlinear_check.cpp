@@ -1,3 +1,4 @@
+#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/nonlinear/nonlinear_check.hpp"
 
 #include <algorithm>
@@ -109,7 +110,7 @@ NonlinearCheck nonlinear_check(const SceneModel& model, double speed, const Sett
   const StartingOrbit start{samples(motion.q, start_samples),
                             samples(fourier::derivative(motion.q), start_samples) / double(motion.turns)};
   MotionShootingOptions shooting;
-  shooting.tolerance = std::max(shooting_tolerance(settings), 1e-8);
+  shooting.tolerance = std::max(integration_tolerance(settings), 1e-8);
   shooting.turns = motion.turns;
   shooting.integrator = asked.integrator;
   const auto began = std::chrono::steady_clock::now();
