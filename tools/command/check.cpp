@@ -23,6 +23,7 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/work/parallel_for.hpp"
+#include "tools/work/shared_work.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -97,6 +98,15 @@ class CheckProgress {
   std::mutex mutex_;
 };
 
+// Drops what was not computed; gives how many.
+std::size_t keep_done(std::vector<SpeedCheck>& checks, const std::vector<char>& done) {
+  std::vector<SpeedCheck> kept;
+  for (std::size_t k = 0; k < done.size(); ++k)
+    if (done[k]) kept.push_back(std::move(checks[k]));
+  checks = std::move(kept);
+  return done.size() - checks.size();
+}
+
 int run_check(const CheckFlags& flags) {
   const SceneInput input = scene_input(flags.common.scene_file);
   Scene scene = input.source.with(overrides(flags.common));
@@ -109,16 +119,25 @@ int run_check(const CheckFlags& flags) {
 
   const SceneModel model = make_model(std::move(scene), options);
   std::vector<SpeedCheck> checks(speeds.size());
+  std::vector<char> done(speeds.size(), 0);
   {
+    const InterruptGuard guard(!out.folder);
     CheckProgress progress(speeds.size());
-    parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
+    const auto check_one = [&](std::size_t k) {
       CheckOptions here = check_with;
       here.begin = [&](const std::string& rod, Integrator integrator, double seconds) {
         progress.begin(rod, speed_text(speeds[k], model.scene), integrator, seconds);
       };
       checks[k] = cross_check(model, speeds[k], options, here);
+      done[k] = 1;
       progress.end();
-    });
+    };
+    if (!parallel_for(speeds.size(), out.threads, check_one, early_end(out.folder.has_value()))) {
+      const std::size_t missing = keep_done(checks, done);
+      if (checks.empty()) return stopped_status();
+      checks.front().shortfalls.push_back(
+          fmt::format("ended before the answer was complete: {} of {} speeds were not computed", missing, done.size()));
+    }
   }
 
   const nlohmann::ordered_json document = check_json(model, checks, options);
@@ -132,9 +151,9 @@ int run_check(const CheckFlags& flags) {
     return write_check_tables(model, checks, place);
   };
   return deliver(folder ? &*folder : nullptr, out.plots,
-                 !agree    ? exit_failed
-                 : reached ? exit_ok
-                           : exit_not_reached,
+                 ended_status(!agree    ? exit_failed
+                              : reached ? exit_ok
+                                        : exit_not_reached),
                  delivery);
 }
 

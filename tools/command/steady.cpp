@@ -62,6 +62,7 @@ std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& res
 }
 
 struct SteadyFlags : CommonFlags {
+  bool multipliers = false;
   std::string theory = "linear", period;
 };
 
@@ -119,7 +120,7 @@ int run_steady(const SteadyFlags& flags) {
   const nlohmann::ordered_json document =
       out.json || folder ? steady_json(model, result, options, out.stats) : nlohmann::ordered_json();
   Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : steady_table(model, result, options);
+  delivery.printed = out.json ? json_text(document) : steady_table(model, result, options, flags.multipliers);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
     return write_tables(model, result, place);
@@ -155,6 +156,7 @@ void add_steady_command(CLI::App& app, int& status) {
       ->add_option("--period", flags->period,
                    "with --theory nonlinear: motions of N turns, which leave the others by period doubling")
       ->type_name("N");
+  command->add_flag("--multipliers", flags->multipliers, "print Floquet multipliers too (JSON always has them)");
   add_html_flag(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }

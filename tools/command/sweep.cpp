@@ -45,7 +45,7 @@ int run_sweep_command(const SweepFlags& flags) {
   const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
   SweepResult result;
   KeptRun run("sweep", out.folder, earlier, sweep_key(sweep_scene), out.threads);
-  if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return exit_interrupted;
+  if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return stopped_status();
   const nlohmann::ordered_json document =
       out.json || folder ? sweep_json(sweep_scene, result, out.stats) : nlohmann::ordered_json();
   Delivery delivery;
@@ -62,7 +62,7 @@ int run_sweep_command(const SweepFlags& flags) {
       return data.page(page_text(origin, std::move(pictures)));
     };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+                             ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
   return status;
 }
