@@ -8,4 +8,5 @@
 #include "hb/analysis/steady.hpp"             // IWYU pragma: export
 #include "hb/analysis/tune/tune_problem.hpp"  // IWYU pragma: export
 #include "hb/analysis/work.hpp"               // IWYU pragma: export
+#include "lib/rod/section.hpp"                // IWYU pragma: export
 #include "lib/scene/scene.hpp"                // IWYU pragma: export

@@ -161,7 +161,7 @@ std::string unresolved_text(const Scene& scene, const LinkageCoefficients& coeff
   throw UnresolvedLinkage(unresolved_text(scene, coefficients, worst, dyad), static_cast<int>(dyad), worst.crank_angle);
 }
 
-std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& computed, const Settings& settings) {
+std::vector<std::string> shortfalls_of(const RodResult& rod, const Settings& settings) {
   std::vector<std::string> sentences;
   if (rod.steady) {
     if (rod.steady->status == SteadyStatus::singular) {
@@ -182,14 +182,13 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
                     "itself and the speed, above the tolerance {:.1e}",
                     rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
   }
-  if (computed.stability && rod.stability && !rod.stability->converged) {
-    const double relative = exponent_options(settings).tolerance;
-    sentences.push_back(
-        fmt::format("{}: the growth rate's error {:.1e} exceeds {:.0e} of the larger of itself and the "
-                    "speed, which was asked",
-                    rod.name, rod.stability->growth_error, relative));
-  }
   return sentences;
+}
+
+// The tolerance is that of q: what is less known of the growth rate stands in its error and decides its verdict.
+std::vector<std::string> notes_of(const RodResult& rod) {
+  if (!rod.stability || rod.stability->converged || rod.stability->method == StabilityMethod::bound) return {};
+  return {fmt::format("{}: the growth rate is known to {:.1e} only", rod.name, rod.stability->growth_error)};
 }
 
 // Joint forces with their errors, where they are asked for and every rod has a periodic solution.
@@ -391,6 +390,8 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     } else if (solved) {
       Stopwatch watch;
       entry.shape = rod_shape(link_of(model, rod), coefficients_of(model, rod), speed, entry.steady->q);
+      entry.stress =
+          rod_stress(link_of(model, rod), coefficients_of(model, rod), speed, entry.shape->bending_moment.max_abs);
       stages.push_back({"shape of " + rod.name, watch.seconds(), ""});
     }
 
@@ -404,7 +405,8 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       if (!only.all_exponents())
         stages.push_back({"further exponents of " + rod.name, 0, "not asked for", true});
     }
-    for (std::string& sentence : shortfalls_of(entry, only, settings)) result.shortfalls.push_back(std::move(sentence));
+    for (std::string& sentence : shortfalls_of(entry, settings)) result.shortfalls.push_back(std::move(sentence));
+    for (std::string& sentence : notes_of(entry)) result.notes.push_back(std::move(sentence));
     result.rods.push_back(std::move(entry));
   }
 

@@ -14,6 +14,7 @@
 #include "lib/scene/scene.hpp"
 #include "hb/analysis/force_error.hpp"
 #include "hb/analysis/request.hpp"
+#include "hb/analysis/rod_stress.hpp"
 #include "hb/analysis/theory_error.hpp"
 
 namespace hb {
@@ -59,6 +60,7 @@ struct RodResult {
   // itself and the speed.
   std::optional<double> growth_modes_error;
   std::optional<RodShape> shape;
+  std::optional<RodStress> stress;  // beside the shape
   std::optional<Stability> stability;
   bool growth_alone = false;  // exponents other than the leading ones were not asked for
   FourierSeries more_modes;  // the steady state with more modes, where the error of the cut was looked at
@@ -73,6 +75,7 @@ struct SpeedResult {
   // Of the rods in their order; empty: q was not computed ("not judged"), or the scene has no elastic links.
   std::optional<TheoryErrors> theory;
   std::vector<std::string> shortfalls;  // one sentence for each thing that missed its tolerance; empty: all reached
+  std::vector<std::string> notes;  // what is known less well than usual, though no tolerance was asked for it
   std::vector<Stage> stages;
 };
 

@@ -423,6 +423,7 @@ double ScenePlane::speed(double x, double y) const { return self_->speed_at(x, y
 
 std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double y) const {
   Implementation& s = *self_;
+  if (s.options.work->ends_early()) return std::nullopt;
   const double u = s.varies[0] ? x : 0, v = s.varies[1] ? y : 0;
   const Patch* patch = &s.root;
   while (!patch->parts.empty()) {
@@ -445,6 +446,7 @@ std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double
 }
 
 std::optional<ScenePlane::Absence> ScenePlane::absence(double x, double y) const {
+  if (self_->options.work->ends_early()) return Absence{"not computed before the end", -1};
   const double u = self_->varies[0] ? x : 0, v = self_->varies[1] ? y : 0;
   try {
     (void)self_->systems_from_scene(u, v);

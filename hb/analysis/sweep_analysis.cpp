@@ -53,11 +53,14 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
       for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
         point.max_abs.push_back(fourier::max_abs(state.q, i).value);
       if (only.shape && rod.reported) {
-        const RodShape shape =
-            rod_shape(*body_at(*model.linkage(), rod.link),
-                      model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], speed, state.q);
+        const Body& link = *body_at(*model.linkage(), rod.link);
+        const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+        const RodShape shape = rod_shape(link, coefficients, speed, state.q);
         point.deflection = shape.deflection.max_abs;
         point.bending_moment = shape.bending_moment.max_abs;
+        const RodStress stress = rod_stress(link, coefficients, speed, *point.bending_moment);
+        point.buckling_share = stress.buckling_share();
+        point.strain = stress.strain;
       }
       q = std::move(state.q);
     }
@@ -327,7 +330,19 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   Stopwatch watch;
   const auto visit_whole_point = [](auto& visit, SweepPoint& point) { visit_point(visit, point); };
   result.points = work.results<SweepPoint>(
-      "sweep", values.size(), [&](std::size_t k) { return analyse_point(scene, values[k], only); }, visit_whole_point);
+      "sweep", values.size(),
+      [&](std::size_t k) {
+        if (!work.ends_early()) return analyse_point(scene, values[k], only);
+        SweepPoint left_out;
+        left_out.x = values[k];
+        const bool in_rpm = scene.axis().kind == Axis::Kind::rpm;
+        left_out.speed = scene.axis().kind == Axis::Kind::omega
+                             ? values[k]
+                             : speed_from_rpm(in_rpm ? values[k] : scene.fixed_rpm(), scene.scene().units);
+        left_out.problem = "not computed before the end";
+        return left_out;
+      },
+      visit_whole_point);
   result.stages.push_back({"points", watch.seconds(), fmt::format("{} points", values.size())});
 
   std::vector<std::size_t> reported;
@@ -365,7 +380,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
           Between found;
           const std::size_t r = reported[task / intervals], k = task % intervals;
           const SweepPoint &a = result.points[k], &b = result.points[k + 1];
-          if (!a.problem.empty() || !b.problem.empty()) return found;
+          if (!a.problem.empty() || !b.problem.empty() || work.ends_early()) return found;
           found.bands = look_between([&](double x) { return along[r].system(x); }, *a.rods[r].stability,
                                      *b.rods[r].stability, modes[r][k], modes[r][k + 1], sweep_options);
           if (only.steady)
@@ -458,6 +473,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   const std::vector<MaybeCritical> critical = work.results<MaybeCritical>(
       "resonance peaks", tasks.size(),
       [&](std::size_t k) -> MaybeCritical {
+        if (work.ends_early()) return std::nullopt;
         const PeakTask& task = tasks[k];
         const RodAlong& rod = along[task.rod];
         const std::optional<ResponsePeak> peak = locate_peak(rod.largest(task.component, peaks.rough), rod.largest(task.component, peaks.fine),
@@ -498,7 +514,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   for (const MaybeCritical& point : critical) {
     if (!point) continue;
     if (!point->peak.converged) {
-      result.shortfalls.push_back(fmt::format("{}: the peak of q_{} at {} = {:.10g} is known to {:.1e} only",
+      result.notes.push_back(fmt::format("{}: the peak of q_{} at {} = {:.10g} is known to {:.1e} only",
                                               result.rods[point->rod].name, point->component + 1, scene.axis().path,
                                               point->peak.x, point->peak.error));
     }
@@ -529,6 +545,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   }
   for (const Between& found : between)
     for (const StabilitySample& sample : found.bands) places.push_back(sample.x);
+  if (work.ends_early()) places.clear();
   std::sort(places.begin(), places.end());
   std::erase_if(places, [&](double x) {
     return !(x > values.front() && x < values.back()) || std::binary_search(values.begin(), values.end(), x);
@@ -537,6 +554,14 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   result.refined = work.results<SweepPoint>(
       "refined points", places.size(), [&](std::size_t k) { return analyse_point(scene, places[k], only); },
       visit_whole_point);
+  if (work.ends_early()) {
+    const auto without = std::count_if(result.points.begin(), result.points.end(),
+                                       [](const SweepPoint& point) { return point.rods.empty(); });
+    result.shortfalls.push_back(fmt::format(
+        "ended before the answer was complete: {} of {} points have no answer, and bands and peaks between points may "
+        "be missing",
+        without, values.size()));
+  }
   result.stages.push_back({"refined points", refined_watch.seconds(), fmt::format("{} points", places.size())});
 
   // What missed its tolerance.
@@ -560,8 +585,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
                       settings.tolerance, steady));
     }
     if (stability > 0) {
-      result.shortfalls.push_back(
-          fmt::format("{}: the growth rate's error exceeds what was asked at {} points", name, stability));
+      result.notes.push_back(fmt::format("{}: the growth rate is known less well than usual at {} of {} points", name,
+                                         stability, result.points.size()));
     }
   }
   if (only.reactions) {

@@ -78,6 +78,7 @@ struct RodPoint {
   double error_bound = 0, resonance_distance = 0;
   std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
   std::optional<double> deflection, bending_moment;  // largest over rod and turn
+  std::optional<double> buckling_share, strain;  // RodStress, beside them
   std::optional<double> theory_error;  // TheoryErrors::Rod::q; empty: beyond the linear theory, or q not asked for
   std::optional<StabilitySample> stability;
 };
@@ -118,7 +119,8 @@ struct SweepResult {
   std::vector<SweepPoint> refined;  // between them: at peaks with their flanks, and at boundaries; ascending
   std::vector<CriticalPoint> critical;  // by rod, then ascending x
   std::vector<std::string> joint_components;  // "AB.0 x"
-  std::vector<std::string> shortfalls;
+  std::vector<std::string> shortfalls;  // tolerances asked for that were not reached
+  std::vector<std::string> notes;  // what is known less well than usual, though no tolerance was asked for it
   std::vector<Stage> stages;
   bool searched_bands = true, searched_peaks = true;  // between the points
 };

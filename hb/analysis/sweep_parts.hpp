@@ -25,6 +25,8 @@ void visit_point(Visit& visit, SweepPoint& point) {
     visit_elements(visit, rod.max_abs, visit);
     visit_if_there(visit, rod.deflection, visit);
     visit_if_there(visit, rod.bending_moment, visit);
+    visit_if_there(visit, rod.buckling_share, visit);
+    visit_if_there(visit, rod.strain, visit);
     visit_if_there(visit, rod.theory_error, visit);
     visit_if_there(visit, rod.stability, [&](StabilitySample& sample) { visit_sample(visit, sample); });
   });

@@ -24,6 +24,9 @@ class Work {
     for (std::size_t k = 0; k < count; ++k) task(k);
   }
 
+  // Whoever does the work has to end soon: what is not computed yet stays so, and the answer says that.
+  [[nodiscard]] virtual bool ends_early() const { return false; }
+
   // A long step, `what` in words: all parts are there when it returns, computed or known from elsewhere.
   virtual void step(const std::string& what, const Parts& parts) {
     (void)what;

@@ -60,7 +60,7 @@ void remark_on_density(const TableView& link, const TableView& elastic, const Bo
   const double density = in_si(body.elastic->density, dimension::density, context.units);
   if (elastic.has("density") && !link.has("mass") && !solid.holds(density)) {
     remark(elastic, "density", Concern::material,
-           fmt::format("found {:.4g} kg/m^3{} (solids have 100 to 25000), allowed", density,
+           fmt::format("found {:.4g} kg/m^3{} (solids have 100 to 25000); taken as given", density,
                        likely_slip(elastic, "density", {500, 23000},
                                    {"kg/m^3", "g/cm^3", "t/mm^3", "kg/mm^3", "lb/in^3"}, {"kg/m^3"})),
            context);
@@ -68,7 +68,7 @@ void remark_on_density(const TableView& link, const TableView& elastic, const Bo
   if (link.has("mass") && !elastic.has("density") && !elastic.has("material") && !with_mass.holds(density)) {
     remark(link, "mass", Concern::material,
            fmt::format("found {:.4g} kg, which over length and area is a density of {:.4g} kg/m^3 (solids have 100 to "
-                       "25000), allowed",
+                       "25000); taken as given",
                        in_si(body.mass, dimension::mass, context.units), density),
            context);
   }
@@ -83,7 +83,7 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
   if (elastic.has("E") && !stiff.holds(E)) {
     const std::initializer_list<const char*> shown = {"GPa", "MPa", "kPa", "Pa"};
     remark(elastic, "E", Concern::material,
-           fmt::format("found {}{} (solids have 1 GPa to 1.5 TPa), allowed", in_best_unit(E, shown),
+           fmt::format("found {}{} (solids have 1 GPa to 1.5 TPa); taken as given", in_best_unit(E, shown),
                        likely_slip(elastic, "E", likely, {"MPa", "GPa", "psi", "ksi", "kPa", "Pa"}, shown)),
            context);
   }
@@ -98,7 +98,7 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
   const double F = rod.area, J = rod.second_moment;
   if (!elastic.has("section") && !solid.holds(J / (F * F))) {
     remark(elastic, "J", Concern::section,
-           fmt::format("found J/area^2 = {:.4g} (sections have 1/240 to 4, a square 1/12), allowed; are J and area in "
+           fmt::format("found J/area^2 = {:.4g} (sections have 1/240 to 4, a square 1/12); are J and area in "
                        "the scene's unit of length?",
                        J / (F * F)),
            context);
@@ -106,7 +106,7 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
   const double slenderness = body.length / std::sqrt(J / F);
   if (!(slenderness >= 20) && (elastic.has("section") || solid.holds(J / (F * F)))) {
     remark(elastic, elastic.has("J") ? "J" : "section", Concern::slenderness,
-           fmt::format("found length/sqrt(J/area) = {:.3g} (slender rods have more than 20), allowed; so thick a rod "
+           fmt::format("found length/sqrt(J/area) = {:.3g} (slender rods have more than 20); so thick a rod "
                        "bends by shear too, which the elastic data take as shear = {{ G, k }}",
                        slenderness),
            context);
@@ -118,7 +118,7 @@ void remark_on_linkage(const TableView& scene, const Linkage& linkage, const Sce
   if (scene.has("gravity") && g > 0 && !Window{1, 30}.holds(g)) {
     remark(scene, "gravity", Concern::gravity,
            fmt::format(
-               "found {:.4g} m/s^2{}, allowed", g,
+               "found {:.4g} m/s^2{}; taken as given", g,
                likely_slip(scene, "gravity", {9, 10.5}, {"m/s^2", "mm/s^2", "in/s^2", "ft/s^2", "cm/s^2"}, {"m/s^2"})),
            context);
   }
@@ -137,7 +137,7 @@ void remark_on_linkage(const TableView& scene, const Linkage& linkage, const Sce
   }
   remark(
       scene, "crank", Concern::size,
-      fmt::format("found {} with a length of {}{}, allowed", name, in_best_unit(metres, {"km", "m", "mm", "um"}), slip),
+      fmt::format("found {} with a length of {}{}; taken as given", name, in_best_unit(metres, {"km", "m", "mm", "um"}), slip),
       context);
 }
 
@@ -150,7 +150,7 @@ void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults
   if (!(tip > 300)) return;
   remark(
       analysis, defaults.rpm ? "rpm" : "omega", Concern::speed,
-      fmt::format("found a crank whose tip moves at {:.4g} m/s, allowed; are speed and lengths in their units?", tip),
+      fmt::format("found a crank whose tip moves at {:.4g} m/s; are speed and lengths in their units?", tip),
       context);
 }
 

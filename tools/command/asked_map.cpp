@@ -208,6 +208,11 @@ ScenePlane AskedMap::plane_with(const std::vector<Override>& further) const {
 std::uint64_t AskedMap::key() const { return map_key(*plane_, x_, y_, settings_, factors_); }
 
 void AskedMap::compute(Work& work) {
+  compute_all(work);
+  complete_ = !work.ends_early();
+}
+
+void AskedMap::compute_all(Work& work) {
   search_.parts = work.of("stability map, this step");
   result_ = compute_map(*plane_, x_.axis, x_.values, y_.axis, y_.values, search_);
   if (!factors_) return;
@@ -224,7 +229,7 @@ void AskedMap::compute(Work& work) {
 }
 
 MapDocument AskedMap::document() const {
-  return {result_, plane_->scene(), plane_options_.num_modes, search_.search.tolerance, search_.boundaries};
+  return {result_, plane_->scene(), plane_options_.num_modes, search_.search.tolerance, search_.boundaries, complete_};
 }
 
 std::string AskedMap::evidence() const { return plane_->evidence(); }

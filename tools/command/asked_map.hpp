@@ -45,6 +45,7 @@ class AskedMap {
   [[nodiscard]] std::string evidence() const;  // one sentence, for --stats
 
  private:
+  void compute_all(Work& work);
   [[nodiscard]] ScenePlane plane_with(const std::vector<Override>& further) const;
 
   const SceneInput& input_;
@@ -57,6 +58,7 @@ class AskedMap {
   MapOptions search_;
   std::optional<ScenePlane> plane_;
   MapResult result_;
+  bool complete_ = true;
 };
 
 }  // namespace hb::tools

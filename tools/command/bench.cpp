@@ -25,6 +25,8 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/work/progress.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/work/interrupts.hpp"
+#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -176,7 +178,7 @@ int run_bench(const BenchFlags& flags) {
   const bool nonlinear = is_nonlinear(flags.theory);
   NonlinearOptions motion;
   motion.turns = turns_of(flags.theory);
-  motion.stop = stop_of(flags.theory);
+  motion.stop = early_end(out.folder.has_value());
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "bench", provenance(flags.common.line, input));
 

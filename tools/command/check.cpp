@@ -25,7 +25,9 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/work/parallel_for.hpp"
+#include "tools/work/shared_work.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -111,7 +113,7 @@ int run_nonlinear_check(const CheckFlags& flags) {
     throw UsageError("--integrator: found \"collocation\" with --theory nonlinear, allowed: automatic, adams, bdf");
   NonlinearOptions asked;
   asked.turns = turns_of(flags.theory);
-  asked.stop = stop_of(flags.theory);
+  asked.stop = early_end(out.folder.has_value());
   const std::vector<double> speeds = speeds_of(speed_range(flags.common, scene), scene.units);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "check", provenance(flags.common.line, input));
@@ -121,10 +123,13 @@ int run_nonlinear_check(const CheckFlags& flags) {
   all.only.steady = true;
   const SceneModel model = make_model(std::move(scene), all, false);
   std::vector<NonlinearCheck> checks(speeds.size());
-  parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
-    checks[k] = nonlinear_check(model, speeds[k], options, check_with, asked);
-    if (!checks[k].not_compared.empty()) say_time_limit(flags.theory, asked.stop, checks[k].shortfalls);
-  });
+  {
+    const InterruptGuard guard(!out.folder);
+    parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
+      checks[k] = nonlinear_check(model, speeds[k], options, check_with, asked);
+      if (!checks[k].not_compared.empty()) say_ended_early(checks[k].shortfalls);
+    });
+  }
 
   const nlohmann::ordered_json document = nonlinear_check_json(model, checks, options);
   const bool agree = std::ranges::all_of(checks, &NonlinearCheck::agrees);
@@ -136,10 +141,19 @@ int run_nonlinear_check(const CheckFlags& flags) {
     return std::vector<Figure>();
   };
   return deliver(folder ? &*folder : nullptr, out.plots,
-                 !agree    ? exit_failed
-                 : reached ? exit_ok
-                           : exit_not_reached,
+                 ended_status(!agree    ? exit_failed
+                              : reached ? exit_ok
+                                        : exit_not_reached),
                  delivery);
+}
+
+// Drops what was not computed; gives how many.
+std::size_t keep_done(std::vector<SpeedCheck>& checks, const std::vector<char>& done) {
+  std::vector<SpeedCheck> kept;
+  for (std::size_t k = 0; k < done.size(); ++k)
+    if (done[k]) kept.push_back(std::move(checks[k]));
+  checks = std::move(kept);
+  return done.size() - checks.size();
 }
 
 int run_check(const CheckFlags& flags) {
@@ -155,16 +169,25 @@ int run_check(const CheckFlags& flags) {
 
   const SceneModel model = make_model(std::move(scene), options);
   std::vector<SpeedCheck> checks(speeds.size());
+  std::vector<char> done(speeds.size(), 0);
   {
+    const InterruptGuard guard(!out.folder);
     CheckProgress progress(speeds.size());
-    parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
+    const auto check_one = [&](std::size_t k) {
       CheckOptions here = check_with;
       here.begin = [&](const std::string& rod, Integrator integrator, double seconds) {
         progress.begin(rod, speed_text(speeds[k], model.scene), integrator, seconds);
       };
       checks[k] = cross_check(model, speeds[k], options, here);
+      done[k] = 1;
       progress.end();
-    });
+    };
+    if (!parallel_for(speeds.size(), out.threads, check_one, early_end(out.folder.has_value()))) {
+      const std::size_t missing = keep_done(checks, done);
+      if (checks.empty()) return stopped_status();
+      checks.front().shortfalls.push_back(
+          fmt::format("ended before the answer was complete: {} of {} speeds were not computed", missing, done.size()));
+    }
   }
 
   const nlohmann::ordered_json document = check_json(model, checks, options);
@@ -178,9 +201,9 @@ int run_check(const CheckFlags& flags) {
     return write_check_tables(model, checks, place);
   };
   return deliver(folder ? &*folder : nullptr, out.plots,
-                 !agree    ? exit_failed
-                 : reached ? exit_ok
-                           : exit_not_reached,
+                 ended_status(!agree    ? exit_failed
+                              : reached ? exit_ok
+                                        : exit_not_reached),
                  delivery);
 }
 

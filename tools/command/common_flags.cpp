@@ -5,15 +5,18 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <thread>
 
+#include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
 #include "tools/report/report_page.hpp"
 #include "tools/command/parameter_range.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -34,6 +37,25 @@ std::optional<Number> parse(const std::string& text) {
   return value;
 }
 
+// " (verdict meant?)", or nothing.
+std::string meant(const std::string& found, const std::vector<std::string>& names) {
+  const std::string near = nearest_name(found, names);
+  return near.empty() ? "" : fmt::format(" ({} meant?)", near);
+}
+
+// What is likely wrong with a text that is no number.
+std::string number_hint(const std::string& text) {
+  const auto digits = [](const std::string& part) {
+    return !part.empty() && std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+  };
+  if (const std::size_t comma = text.find(','); comma != std::string::npos && digits(text.substr(comma + 1)))
+    return "; the decimal point is a point: " + text.substr(0, comma) + "." + text.substr(comma + 1);
+  const std::size_t unit = text.find_first_not_of("0123456789.+eE");
+  if (unit != std::string::npos && unit > 0 && parse<double>(text.substr(0, unit)) && std::isalpha(text[unit]))
+    return fmt::format("; without a unit: {}", text.substr(0, unit));
+  return "";
+}
+
 template <class Enum>
 Enum choice_flag(const std::string& flag, const std::string& text,
                  const std::vector<std::pair<const char*, Enum>>& choices) {
@@ -42,7 +64,7 @@ Enum choice_flag(const std::string& flag, const std::string& text,
     if (text == name) return value;
     names.push_back(name);
   }
-  refuse(flag, text, fmt::format("{}", fmt::join(names, ", ")));
+  refuse(flag, text, fmt::format("{}{}", fmt::join(names, ", "), meant(text, names)));
 }
 
 std::variant<int, AutoModes> modes_flag(const std::string& text) {
@@ -67,8 +89,9 @@ Only only_flag(const std::string& text, bool growth_alone) {
       only.growth = true;
     } else {
       refuse("--only", part,
-             fmt::format("steady, stability, {}reactions, shape, several joined by commas",
-                         growth_alone ? "growth, verdict, " : ""));
+             fmt::format("steady, stability, {}reactions, shape, several joined by commas{}",
+                         growth_alone ? "growth, verdict, " : "",
+                         meant(part, {"steady", "stability", "growth", "verdict", "reactions", "shape"})));
     }
   }
   // What is asked for beside it contains the smaller answer.
@@ -96,6 +119,11 @@ Speeds speeds_flag(const std::string& flag, const std::string& text, bool single
     }
   }
   if (parts.size() == 3 && single) refuse(flag, text, "one speed, " + allowed);
+  if (!single && parts.size() == 2) allowed += "; a step is missing: " + text + ":10 or " + text + ":x50";
+  if (const std::size_t dash = text.find('-', 1); !single && parts.size() == 1 && dash != std::string::npos &&
+                                                  parse<double>(text.substr(0, dash)) && parse<double>(text.substr(dash + 1)))
+    allowed += fmt::format("; a range is {}:{}:10", text.substr(0, dash), text.substr(dash + 1));
+  if (parts.size() == 1) allowed += number_hint(text);
   if (parts.size() != 1 && parts.size() != 3) refuse(flag, text, allowed);
   const std::optional<std::size_t> count = parts.size() == 3 ? point_count(flag, text, parts[2]) : std::nullopt;
   if (count) parts.pop_back();
@@ -133,12 +161,20 @@ void add_value(CLI::App& app, const char* name, std::string& text, const char* m
   });
 }
 
+void start_time_limit(const CommonFlags& flags) {
+  if (flags.time_limit.empty()) return;
+  const double seconds = number_flag("--time-limit", flags.time_limit, 1e-3, 1e8, "seconds from 0.001 to 1e8");
+  const std::string note = fmt::format("the time limit of {:g} s was reached before there was an answer", seconds);
+  end_after(seconds, exit_not_reached, fmt::format("hb: {}\n", note),
+            flags.json ? fmt::format("{{\"status\":\"tolerance not reached\",\"notes\":[\"{}\"]}}\n", note) : "");
+}
+
 }  // namespace
 
 double number_flag(const std::string& flag, const std::string& text, double lowest, double highest,
                    const std::string& allowed) {
   const std::optional<double> value = parse<double>(text);
-  if (!value || !(*value >= lowest && *value <= highest)) refuse(flag, text, allowed);
+  if (!value || !(*value >= lowest && *value <= highest)) refuse(flag, text, allowed + number_hint(text));
   return *value;
 }
 
@@ -166,7 +202,10 @@ std::vector<std::string> list_flag(const std::string& flag, const std::string& t
 
 void add_scene_flags(CLI::App& app, CommonFlags& flags) {
   app.add_option("SCENE", flags.scene_file, "scene file (TOML), - for standard input")->required();
-  app.parse_complete_callback([&app, &flags] { flags.line = command_line(app); });
+  app.parse_complete_callback([&app, &flags] {
+    flags.line = command_line(app);
+    start_time_limit(flags);
+  });
   app.add_option("--set", flags.set, "replace a scene number for this run, as in AB.J=60 or *.J=60; repeatable")
       ->type_name("PATH=VALUE")
       ->expected(1)
@@ -175,6 +214,8 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
   app.add_flag("--json", flags.json, "one JSON document on standard output, nothing else there");
   app.add_flag("--no-plots", flags.no_plots, "no pictures in the folder of --out");
   app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
+  add_value(app, "--time-limit", flags.time_limit,
+            "end after S seconds with what is there, and with exit status 3 where that is not all", "S");
 }
 
 void add_html_flag(CLI::App& app, CommonFlags& flags) {

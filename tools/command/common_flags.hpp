@@ -20,6 +20,7 @@ namespace hb::tools {
 struct CommonFlags {
   std::string scene_file;
   std::string line;  // the whole command, see command_line
+  std::string time_limit;
   std::string modes, tolerance, rods, only, rpm, omega, threads, steady_method, stability_method, bound;
   std::optional<std::string> out;
   std::vector<std::string> set;

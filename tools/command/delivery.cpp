@@ -8,6 +8,7 @@
 #include "tools/output/printable.hpp"
 #include "tools/output/standard_output.hpp"
 #include "tools/report/page_pictures.hpp"
+#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -31,6 +32,7 @@ std::vector<Figure> write_stage(OutputFolder& folder, bool pictures, std::vector
 int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& delivery) {
   std::vector<Figure> figures;
   bool written = false;
+  begin_delivery();
   if (folder != nullptr) {
     try {
       figures = write_stage(*folder, pictures, {}, delivery.write_data);
@@ -45,6 +47,9 @@ int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& del
   }
   print_out(delivery.printed);
   if (!written) return status;
+  if (asked_to_end()) return status == exit_ok && !figures.empty() ? exit_no_pictures : status;
+  std::fflush(stdout);
+  begin_pictures(status == exit_ok ? int{exit_no_pictures} : status);
   bool drawn = true;
   try {
     if (pictures && delivery.write_more)

@@ -69,6 +69,20 @@ std::string unknown_command(const CLI::App& app, const std::string& found) {
                      fmt::join(names, ", "));
 }
 
+// "--rmp 300": names each flag that is none, with the nearest one.
+std::string unknown_flags(const CLI::App& command) {
+  std::vector<std::string> names, sentences;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& found : command.remaining()) {
+    if (!found.starts_with('-')) continue;
+    const std::string flag = found.substr(0, found.find('='));
+    const std::string near = hb::nearest_name(flag, names);
+    sentences.push_back(fmt::format("found the unknown flag {}{}", flag, near.empty() ? "" : " (" + near + " meant?)"));
+  }
+  return fmt::format("{}", fmt::join(sentences, ", "));
+}
+
 int run(int argc, char** argv) {
   using namespace hb::tools;
   CLI::App app{
@@ -98,7 +112,9 @@ int run(int argc, char** argv) {
     }
     const auto chosen = app.get_subcommands();
     const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
-    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(error.what()), command);
+    std::string what = error.get_name() == "ExtrasError" && !chosen.empty() ? unknown_flags(*chosen.front()) : "";
+    if (what.empty()) what = error.what();
+    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
     return exit_wrong_input;
   } catch (const hb::UnresolvedLinkage& error) {
     return say(exit_not_reached, error.what());

@@ -50,13 +50,13 @@ int run_map(const MapFlags& flags) {
   const Output out = output(flags);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
-  const SharedWork geometry(out.threads);
+  const SharedWork geometry(out.threads, nullptr, {}, early_end(out.folder.has_value()));
   AskedMap map(flags, flags.x, flags.y, flags.damping_range, flags.boundaries, input, geometry);
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "map", origin);
 
   KeptRun run("map", out.folder, earlier, map.key(), out.threads);
-  if (!run.run([&](SharedWork& work) { map.compute(work); })) return exit_interrupted;
+  if (!run.run([&](SharedWork& work) { map.compute(work); })) return stopped_status();
 
   const MapDocument document = map.document();
   const nlohmann::ordered_json json = out.json || folder ? map_json(document) : nlohmann::ordered_json();
@@ -72,7 +72,7 @@ int run_map(const MapFlags& flags) {
       return page_of(map, json, input, origin, std::move(pictures));
     };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             boundary_points_not_reached(map.result()) == 0 ? exit_ok : exit_not_reached, delivery);
+                             ended_status(document.complete ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) {
     std::size_t samples = 0;
     for (const StabilityMap& of_rod : map.result().maps) samples += of_rod.samples;

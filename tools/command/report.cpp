@@ -59,21 +59,25 @@ int run_report(const ReportFlags& flags) {
   const Output out = output(flags);
   if (!out.folder) throw UsageError("--out: not given, allowed: the page's file, as in --out report.html");
   AxisAndSpeed asked = axis_of(flags, "", scene);
-  const SharedWork geometry(out.threads);
+  const SharedWork geometry(out.threads, nullptr, {}, time_is_up);
   std::optional<AskedMap> map = asked_map(flags, input, geometry);
   OutputFile file(*out.folder);
 
   const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
-  SharedWork work(out.threads);
+  // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
+  std::optional<InterruptGuard> guard(std::in_place, false);
+  SharedWork work(out.threads, nullptr, {}, time_is_up);
   const SweepResult result = run_sweep(sweep_scene, work);
   ReportData data(scene);
   data.add_sweep(sweep_scene, result, places_along(sweep_scene, work));
   bool reached = result.shortfalls.empty();
   if (map) {
     map->compute(work);
+    reached = reached && map->document().complete;
     data.add_map(map_json(map->document()), input.source);
-    reached = reached && boundary_points_not_reached(map->result()) == 0;
   }
+  guard.reset();
+  begin_delivery();
   std::vector<PageText::Picture> still;
   if (out.plots) still = pictures(sweep_scene, result, map ? &*map : nullptr);
   file.commit(data.page(page_text(provenance(flags.line, input), std::move(still))));

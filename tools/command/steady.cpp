@@ -20,6 +20,8 @@
 #include "tools/pictures/figures.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/work/interrupts.hpp"
+#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -64,6 +66,7 @@ std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& res
 
 struct SteadyFlags : CommonFlags {
   TheoryFlags theory;
+  bool multipliers = false;
 };
 
 // Motions of one turn have tables and pictures, longer ones the document alone.
@@ -75,7 +78,7 @@ int run_nonlinear(const SteadyFlags& flags) {
   const double speed = single_speed(flags, scene);
   NonlinearOptions asked;
   asked.turns = turns_of(flags.theory);
-  asked.stop = stop_of(flags.theory);
+  asked.stop = early_end(out.folder.has_value());
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
 
@@ -83,8 +86,11 @@ int run_nonlinear(const SteadyFlags& flags) {
   Settings all = options;
   all.only.steady = true;
   const SceneModel model = make_model(std::move(scene), all, false);
-  NonlinearResult result = nonlinear_steady(model, speed, options, asked);
-  say_time_limit(flags.theory, asked.stop, result.shortfalls);
+  NonlinearResult result = [&] {
+    const InterruptGuard guard(!out.folder);
+    return nonlinear_steady(model, speed, options, asked);
+  }();
+  say_ended_early(result.shortfalls);
   const nlohmann::ordered_json document =
       out.json || folder ? nonlinear_json(model, result, options, out.stats) : nlohmann::ordered_json();
   Delivery delivery;
@@ -94,7 +100,8 @@ int run_nonlinear(const SteadyFlags& flags) {
     return result.turns == 1 ? write_tables(model, as_speed_result(result), place) : std::vector<Figure>();
   };
   const int status =
-      deliver(folder ? &*folder : nullptr, out.plots, result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+      deliver(folder ? &*folder : nullptr, out.plots,
+              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
   return status;
 }
@@ -116,7 +123,7 @@ int run_steady(const SteadyFlags& flags) {
   const nlohmann::ordered_json document =
       out.json || folder ? steady_json(model, result, options, out.stats) : nlohmann::ordered_json();
   Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : steady_table(model, result, options);
+  delivery.printed = out.json ? json_text(document) : steady_table(model, result, options, flags.multipliers);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
     return write_tables(model, result, place);
@@ -146,6 +153,7 @@ void add_steady_command(CLI::App& app, int& status) {
   add_single_speed_flags(*command, *flags);
   allow_growth_alone(*command, *flags);
   add_theory_flags(*command, flags->theory);
+  command->add_flag("--multipliers", flags->multipliers, "print Floquet multipliers too (JSON always has them)");
   add_html_flag(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }

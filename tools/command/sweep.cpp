@@ -23,6 +23,7 @@
 #include "tools/output/sweep_output.hpp"
 #include "tools/work/sweep_key.hpp"
 #include "tools/output/table_output.hpp"
+#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -44,7 +45,7 @@ int run_sweep_command(const SweepFlags& flags) {
   const bool nonlinear = is_nonlinear(flags.theory);
   NonlinearSweepOptions branches_asked;
   branches_asked.turns = turns_of(flags.theory);
-  branches_asked.stop = stop_of(flags.theory);
+  branches_asked.stop = early_end(out.folder.has_value());
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -53,11 +54,12 @@ int run_sweep_command(const SweepFlags& flags) {
   const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
   SweepResult result;
   KeptRun run("sweep", out.folder, earlier, sweep_key(sweep_scene), out.threads);
-  if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return exit_interrupted;
+  if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return stopped_status();
   std::optional<NonlinearSweep> branches;
   if (nonlinear) {
+    const InterruptGuard guard;
     branches = nonlinear_sweep(sweep_scene, branches_asked);
-    if (branches->stopped) say_time_limit(flags.theory, branches_asked.stop, branches->shortfalls);
+    if (branches->stopped) say_ended_early(branches->shortfalls);
   }
   nlohmann::ordered_json document =
       out.json || folder ? sweep_json(sweep_scene, result, out.stats) : nlohmann::ordered_json();
@@ -81,7 +83,7 @@ int run_sweep_command(const SweepFlags& flags) {
     };
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             reached ? exit_ok : exit_not_reached, delivery);
+                             ended_status(reached ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
   if (out.stats && !out.json && branches) fmt::print(stderr, "{}", stages_table(branches->stages));
   return status;

@@ -404,7 +404,11 @@ int run_tune(const TuneFlags& flags) {
     }
     folder.emplace(*out.folder, "tune", origin);
   }
-  const TuneResult result = tune(task, SharedWork(out.threads));
+  task.options.stop = early_end(out.folder.has_value());
+  const TuneResult result = [&] {
+    const InterruptGuard guard(!out.folder);
+    return tune(task, SharedWork(out.threads));
+  }();
   if (task.options.progress) fmt::print(stderr, "\r\033[K");
   task.settings.modes = result.num_modes;
 
@@ -427,7 +431,7 @@ int run_tune(const TuneFlags& flags) {
       return design_page(task, result, scene, document, out.threads, page_text(origin, std::move(pictures)));
     };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             shortfall(result).empty() ? exit_ok : exit_not_reached, delivery);
+                             ended_status(shortfall(result).empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
   return status;
 }

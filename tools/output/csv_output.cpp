@@ -10,6 +10,7 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/printable.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -44,7 +45,7 @@ std::string about(const SceneModel& model, const SpeedResult& result, const std:
 std::vector<std::string> comments(const SceneModel& model, const SpeedResult& result, const RodResult& rod,
                                   const std::string& what) {
   std::vector<std::string> lines = {about(model, result, rod.name + ", " + what)};
-  if (rod.stability) lines.push_back(verdict_sentence(*rod.stability, result.speed, model.scene.units));
+  if (rod.stability) lines.push_back(verdict_sentence(*rod.stability, result.speed, model.scene));
   return lines;
 }
 

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/printable.hpp"
@@ -30,9 +32,35 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
   json["steady_method"] = method_text(state.method);
 }
 
-void add_stability(Json& json, const RodResult& rod) {
+void add_resonance(Json& json, const HillSystem& system, const RodResult& rod, double speed, const Units& units) {
+  if (const std::optional<NearestResonance> nearest = nearest_resonance(system, speed))
+    json["nearest_resonance"] = {{"order", nearest->order},
+                                 {"rpm", rpm_from_speed(nearest->speed, units)},
+                                 {"omega", nearest->speed},
+                                 {"frequency", nearest->frequency}};
+  const std::optional<double> slow = quasi_static_response(system, speed);
+  double largest = 0;
+  for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
+  if (slow && !rod.max_abs.empty()) json["amplification"] = largest / *slow;
+}
+
+void add_stress(Json& json, const RodStress& stress) {
+  json["axial_force"] = {{"tension", stress.tension},
+                         {"compression", stress.compression},
+                         {"buckling_load", stress.buckling_load},
+                         {"buckling_share", stress.buckling_share()}};
+  json["stress"] = {{"axial", stress.axial}, {"bending", stress.bending}, {"height_known", stress.height_known}};
+  json["strain"] = stress.strain;
+}
+
+void add_stability(Json& json, const RodResult& rod, double speed) {
   json.update(stability_json(*rod.stability, 2 * rod.num_modes));
   json["exponents_unresolved"] = unresolved_exponents(rod);
+  Json &frequencies = json["frequencies"] = Json::array(), &multipliers = json["multipliers"] = Json::array();
+  for (const Exponent& exponent : rod.stability->exponents) {
+    frequencies.push_back(exponent.frequency);
+    multipliers.push_back(pair(exponent.multiplier(speed)));
+  }
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 
@@ -80,7 +108,9 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   json["rpm"] = rpm_of(result.speed, units);
   json["omega"] = result.speed;
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
-  if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
+  std::vector<std::string> notes = result.shortfalls;
+  notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+  if (!notes.empty()) json["notes"] = std::move(notes);
   json["tolerance"] = settings.tolerance;
   if (result.computed.stability && !result.rods.empty()) {
     Verdict verdict = Verdict::stable;
@@ -90,6 +120,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   }
   std::vector<std::string> warnings = model.scene.warnings;
   for (std::string& sentence : theory_warnings(model, result)) warnings.push_back(std::move(sentence));
+  for (std::string& sentence : limit_warnings(model, result)) warnings.push_back(std::move(sentence));
   if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["units"] = units_json(units);
   Json& rods = json["rods"] = Json::object();
@@ -99,6 +130,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     Json& entry = rods[rod.name];
     entry["modes"] = rod.num_modes;
     if (result.computed.steady) add_steady(entry, rod, units);
+    if (result.computed.steady) add_resonance(entry, model.rods[r].system, rod, result.speed, units);
     if (model.linkage()) add_theory(entry, result.theory, r);
     if (rod.modes_error) {
       entry["modes_error"] = *rod.modes_error;
@@ -107,8 +139,9 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     if (rod.shape) {
       entry["deflection"] = peak_json(rod.shape->deflection, units);
       entry["bending_moment"] = peak_json(rod.shape->bending_moment, units);
+      add_stress(entry, *rod.stress);
     }
-    if (rod.stability) add_stability(entry, rod);
+    if (rod.stability) add_stability(entry, rod, result.speed);
   }
   if (result.forces) {
     json["joints"] = joints_json(*result.forces);

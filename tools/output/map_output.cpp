@@ -11,6 +11,7 @@
 
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/path_unit.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -108,6 +109,25 @@ Counts counts(const std::vector<MapPoint>& points) {
   return n;
 }
 
+// What is not all that a map can be.
+std::vector<std::string> map_notes(const MapDocument& document) {
+  std::vector<std::string> notes;
+  if (!document.complete)
+    notes.push_back("ended before the answer was complete: points without an answer were not computed, and boundaries may "
+                    "be missing");
+  const std::size_t missed = boundary_points_not_reached(document.result);
+  if (missed == 0) return notes;
+  double worst = 0;
+  for (const StabilityMap& map : document.result.maps)
+    for (const BoundaryCurve& curve : map.boundaries)
+      for (const BoundaryPoint& p : curve.points)
+        worst = std::max(worst, p.error / std::max(std::abs(p.along_x ? p.x : p.y), 1e-300));
+  notes.push_back(fmt::format(
+      "{} boundary {} known less well than {:.0e}, where the growth rate's error moves {}: to {:.1e} at worst", missed,
+      missed == 1 ? "point is" : "points are", std::max(1e-10, 10 * document.tolerance), missed == 1 ? "it" : "them", worst));
+  return notes;
+}
+
 }  // namespace
 
 double growth_per_turn(const MapPoint& point) { return point.growth_rate * 2 * std::numbers::pi / point.speed; }
@@ -122,6 +142,8 @@ Json map_json(const MapDocument& document) {
   const Counts n = counts(r.worst);
   Json json;
   json["title"] = document.scene.title;
+  json["status"] = document.complete ? "reached" : "tolerance not reached";
+  if (const std::vector<std::string> notes = map_notes(document); !notes.empty()) json["notes"] = notes;
   json["x"] = axis_json(r.x_axis, r.x());
   json["y"] = axis_json(r.y_axis, r.y());
   json["modes"] = document.num_modes;
@@ -237,14 +259,42 @@ CsvFile map_resonance_csv(const MapDocument& document) {
   return file;
 }
 
+std::string map_verdict(const MapDocument& document) {
+  const MapResult& r = document.result;
+  const Counts n = counts(r.worst);
+  const double all = static_cast<double>(r.worst.size() - n.missing);
+  if (all == 0) return "no system at any point";
+  std::vector<std::string> because;
+  for (std::size_t k = 0; k < r.rods.size(); ++k) {
+    const std::vector<MapPoint>& points = r.maps[k].points;
+    if (std::any_of(points.begin(), points.end(),
+                    [](const MapPoint& p) { return !missing(p) && p.verdict == Verdict::unstable; }))
+      because.push_back(r.rods[k]);
+  }
+  if (n.unstable > 0)
+    return fmt::format("UNSTABLE at {:.3g} % of the points because of {}", 100 * static_cast<double>(n.unstable) / all,
+                       fmt::join(because, ", "));
+  if (n.undecided > 0) return fmt::format("undecided at {:.3g} % of the points", 100 * static_cast<double>(n.undecided) / all);
+  return n.bounded == 0 ? "stable at all points" : n.stable == 0 ? "bounded at all points" : "stable or bounded at all points";
+}
+
 std::string map_summary(const MapDocument& document) {
   const MapResult& r = document.result;
   const Counts n = counts(r.worst);
+  const Units& units = document.scene.units;
   const double all = static_cast<double>(r.worst.size());
-  std::string text = fmt::format("{}\n", scene_name(document.scene));
-  text += fmt::format("  x  {} = {} ... {}, {} values\n  y  {} = {} ... {}, {} values\n", r.x_axis.path, r.x().front(),
-                      r.x().back(), r.x().size(), r.y_axis.path, r.y().front(), r.y().back(), r.y().size());
-  text += fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes);
+  const bool linkage = std::holds_alternative<Linkage>(document.scene.model);
+  std::string text = fmt::format("{}: {}\n", scene_name(document.scene), map_verdict(document));
+  const auto axis = [&](const PlaneAxis& of, const std::vector<double>& values) {
+    const std::string unit = of.role == PlaneAxis::Role::rpm     ? ""
+                             : of.role == PlaneAxis::Role::omega ? " rad/" + units.time
+                                                                 : " " + path_unit(of.path, units);
+    return fmt::format("{} = {} ... {}{}, {} values", of.path, values.front(), values.back(), unit == " " ? "" : unit,
+                       values.size());
+  };
+  text += fmt::format("  x  {}\n  y  {}\n", axis(r.x_axis, r.x()), axis(r.y_axis, r.y()));
+  text += linkage ? fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes)
+                  : fmt::format("  {} unknowns\n\n", document.num_modes);
   text += fmt::format("  stable {:.4g} %, bounded {:.4g} %, unstable {:.4g} %, undecided {:.4g} %",
                       100 * static_cast<double>(n.stable) / all, 100 * static_cast<double>(n.bounded) / all,
                       100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
@@ -258,28 +308,17 @@ std::string map_summary(const MapDocument& document) {
   }
   if (fastest != nullptr) {
     const auto place = static_cast<std::size_t>(fastest - r.worst.data());
-    text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per turn) at {} = {:.6g}, {} = {:.6g}\n",
-                        fastest->growth_rate, document.scene.units.time, growth_per_turn(*fastest), r.x_axis.path,
+    text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {} = {:.6g}, {} = {:.6g}\n",
+                        fastest->growth_rate, document.scene.units.time, growth_per_turn(*fastest),
+                        linkage ? "turn" : "period", r.x_axis.path,
                         r.x()[place % r.x().size()], r.y_axis.path, r.y()[place / r.x().size()]);
   }
   for (const MissingPoints& m : r.missing) {
     text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,
                         m.x, r.y_axis.path, m.y, m.message);
   }
-  if (const std::size_t missed = boundary_points_not_reached(r); missed > 0) {
-    double worst = 0;
-    for (const StabilityMap& map : r.maps) {
-      for (const BoundaryCurve& curve : map.boundaries) {
-        for (const BoundaryPoint& p : curve.points) {
-          worst = std::max(worst, p.error / std::max(std::abs(p.along_x ? p.x : p.y), 1e-300));
-        }
-      }
-    }
-    text += fmt::format(
-        "  NOT REACHED: {} boundary {} known to less than {:.0e}, where the growth rate's error moves {}: to {:.1e} at "
-        "worst\n",
-        missed, missed == 1 ? "point is" : "points are", std::max(1e-10, 10 * document.tolerance), missed == 1 ? "it" : "them", worst);
-  }
+  for (const std::string& note : map_notes(document))
+    text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
   if (!document.boundaries) return text + "  boundaries were not asked for\n";
   if (r.boundaries.empty()) return text + "  no stability boundary\n";
   text += fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind",

@@ -16,8 +16,11 @@ struct MapDocument {
   Eigen::Index num_modes = 0;
   double tolerance = 0;  // of boundary points, relative
   bool boundaries = true;  // they were asked for
+  bool complete = true;  // false: ended early
 };
 
+// "UNSTABLE at 19 % of the points because of AB", "stable at all points".
+[[nodiscard]] std::string map_verdict(const MapDocument& document);
 [[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
 
 // x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1), then

@@ -9,6 +9,7 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -19,6 +20,11 @@ using Text = fmt::memory_buffer;
 template <class... Args>
 void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
   fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
+}
+
+// All rods have one verdict together.
+NamedVerdicts verdict_of(const NonlinearResult& result) {
+  return {{"all rods together", result.stability->verdict}};
 }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -80,7 +86,7 @@ void add_stability(Text& text, const NonlinearResult& result, const Scene& scene
   const Stability& stability = *result.stability;
   const OutputUnits units = output_units(scene);
   add(text, "All rods together\n  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate),
-      "real part", "imaginary part", "error");
+      "real part", "imaginary, folded", "error");
   for (std::size_t k = 0; k < std::min(most, stability.exponents.size()); ++k) {
     const Exponent& exponent = stability.exponents[k];
     const auto shown = [&](double value) {
@@ -93,7 +99,7 @@ void add_stability(Text& text, const NonlinearResult& result, const Scene& scene
     add(text, "    ... {} more (--json has all)\n", stability.exponents.size() - most);
   add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
       stability.converged ? "" : "  NOT REACHED");
-  add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene.units));
+  add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene, false));
 }
 
 void add_forces(Text& text, const NonlinearResult& result, const OutputUnits& units) {
@@ -177,9 +183,9 @@ std::string nonlinear_table(const SceneModel& model, const NonlinearResult& resu
   const Scene& scene = model.scene;
   const OutputUnits units = output_units(scene);
   Text text;
-  add(text, "{}: {} (omega = {:.10g} rad/{}), motion without linearisation{}\n", scene_name(scene),
-      speed_text(result.speed, scene), result.speed, units.time,
-      result.turns == 1 ? "" : fmt::format(", period of {} turns", result.turns));
+  add(text, "{}, {}{}\nomega = {:.10g} rad/{}, motion without linearisation{}\n", scene_name(scene),
+      speed_text(result.speed, scene), result.stability ? ": " + mechanism_verdict(verdict_of(result)) : "",
+      result.speed, units.time, result.turns == 1 ? "" : fmt::format(", period of {} turns", result.turns));
   if (result.search == MotionSearch::found) add(text, "  {}\n\n", way_text(result, scene));
   for (const NonlinearRod& rod : result.rods)
     if (rod.reported) add_rod(text, rod, units);

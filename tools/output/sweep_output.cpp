@@ -1,46 +1,28 @@
 #include "tools/output/sweep_output.hpp"
 
 #include <fmt/core.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <numbers>
+#include <optional>
 
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
+#include "tools/output/sweep_words.hpp"
 #include "tools/output/theory_words.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Text = fmt::memory_buffer;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
-
-bool is_speed(const SweepScene& scene) { return scene.axis().kind != Axis::Kind::parameter; }
-
-// Whole turns only: an axis that is not the speed has its own unit, unknown here.
-std::string axis_unit(const SweepScene& scene) {
-  switch (scene.axis().kind) {
-    case Axis::Kind::rpm: return "rpm";
-    case Axis::Kind::omega: return "rad/" + scene.scene().units.time;
-    case Axis::Kind::parameter: break;
-  }
-  return "";
-}
 
 // A number, or null where it is not finite.
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -79,11 +61,18 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
   if (result.computed.shape) {
     json["deflection"] = of_rod([](const RodPoint& rod) { return number(rod.deflection.value_or(nan)); });
     json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment.value_or(nan)); });
+    json["buckling_share"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share.value_or(nan)); });
+    json["strain"] = of_rod([](const RodPoint& rod) { return number(rod.strain.value_or(nan)); });
   }
   if (scene.first().linkage())
     json["theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.theory_error.value_or(nan)); });
   if (result.computed.stability) {
     json["growth_rate"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_rate); });
+    Json& distances = json["distance_to_boundary"] = Json::array();
+    for (const SweepPoint& point : points) {
+      const std::optional<double> distance = distance_to_boundary(result.rods[r], point.x);
+      distances.push_back(distance && !point.rods.empty() ? Json(*distance) : Json(nullptr));
+    }
     json["growth_error"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_error); });
     json["verdict"] = of_rod(verdict_json);
     json["exponents"] = of_rod([](const RodPoint& rod) { return exponents_json(rod.stability->stability); });
@@ -118,13 +107,6 @@ void add_forces(Json& json, const SweepResult& result) {
       ranges_json(result.points, [](const SweepPoint& p) { return p.torque_rigid ? &*p.torque_rigid : nullptr; });
 }
 
-// The refined point at a peak or boundary; nullptr where that is a point asked for or lies outside.
-const SweepPoint* refined_point(const SweepResult& result, double x) {
-  const auto found = std::find_if(result.refined.begin(), result.refined.end(),
-                                  [&](const SweepPoint& point) { return point.x == x; });
-  return found != result.refined.end() && !found->rods.empty() ? &*found : nullptr;
-}
-
 Json critical_json(const SweepResult& result, const CriticalPoint& point, const SweepScene& scene) {
   Json json = {{"rod", result.rods[point.rod].name}, {"x", point.peak.x}};
   if (is_speed(scene)) json["rpm"] = rpm_from_speed(point.speed, scene.scene().units);
@@ -145,13 +127,6 @@ Json critical_json(const SweepResult& result, const CriticalPoint& point, const 
   return json;
 }
 
-// No more digits than are known.
-std::string located(double x, double error) {
-  constexpr int most = 12, fewest = 3;
-  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
-  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
-}
-
 Json band_json(const UnstableBand& band) {
   return {{"from", band.from},
           {"to", band.to},
@@ -161,15 +136,6 @@ Json band_json(const UnstableBand& band) {
           {"to_error", band.error_to},
           {"fastest_growth", band.fastest},
           {"fastest_at", band.fastest_x}};
-}
-
-std::string kind_words(BoundaryKind kind) {
-  switch (kind) {
-    case BoundaryKind::plus_one: return "with the period of the crank (+1)";
-    case BoundaryKind::minus_one: return "period doubling (-1)";
-    case BoundaryKind::complex: break;
-  }
-  return "two frequencies (complex pair)";
 }
 
 std::string subject(const SweepScene& scene, const SweepResult& result, std::size_t rod) {
@@ -197,9 +163,13 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   Json json;
   json["title"] = scene.scene().title;
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
-  if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
-  if (std::vector<std::string> warnings = theory_warnings(scene, result); !warnings.empty())
-    json["warnings"] = std::move(warnings);
+  std::vector<std::string> notes = result.shortfalls;
+  notes.insert(notes.end(), result.notes.begin(), result.notes.end());
+  if (!notes.empty()) json["notes"] = std::move(notes);
+  std::vector<std::string> warnings = scene.scene().warnings;
+  for (std::string& sentence : theory_warnings(scene, result)) warnings.push_back(std::move(sentence));
+  for (std::string& sentence : limit_warnings(scene, result)) warnings.push_back(std::move(sentence));
+  if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["tolerance"] = scene.settings().tolerance;
   json["units"] = units_json(units);
   json["x"] = {{"path", scene.axis().path}, {"values", scene.axis().values}};
@@ -272,106 +242,6 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   return json;
 }
 
-std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
-  const OutputUnits units = output_units(scene.scene());
-  const std::vector<double>& values = scene.axis().values;
-  const std::string unit = axis_unit(scene), path = scene.axis().path;
-  Text text;
-  add(text, "{}: {} = {:.10g} to {:.10g}{}, {} points", scene_name(scene.scene()), path, values.front(), values.back(),
-      unit.empty() || unit == path ? "" : " " + unit, values.size());
-  if (!is_speed(scene)) add(text, " at {}", speed_text(result.points.front().speed, scene.scene()));
-  add(text, "\n");
-  for (std::size_t r = 0; r < result.rods.size(); ++r) {
-    const SweepRod& rod = result.rods[r];
-    if (!rod.reported) continue;
-    add(text, "\n{}: {} {}\n", rod.name, rod.num_modes,
-        scene.first().linkage() ? (rod.num_modes == 1 ? "mode" : "modes")
-                                : (rod.num_modes == 1 ? "unknown" : "unknowns"));
-    // A row for every so many points.
-    constexpr std::size_t rows = 16;
-    const std::size_t every = (values.size() + rows - 1) / rows;
-    add(text, "  {:>14}", path);
-    if (result.computed.steady) add(text, "  {:>14}", "max |q_1|" + bracketed(units.response));
-    if (result.computed.shape) {
-      add(text, "  {:>15}  {:>14}", "deflection" + bracketed(units.length), "moment [N m]");
-    }
-    if (has_theory(scene, result)) add(text, "  {:>12}", "theory error");
-    if (result.computed.stability) add(text, "  {:>16}  {}", "growth" + bracketed(units.rate), "verdict");
-    add(text, "\n");
-    for (std::size_t k = 0; k < values.size(); k += every) {
-      const SweepPoint& point = result.points[k];
-      add(text, "  {:>14.8g}", point.x);
-      if (!point.problem.empty()) {
-        add(text, "  does not close\n");
-        continue;
-      }
-      const RodPoint& here = point.rods[r];
-      if (result.computed.steady) add(text, "  {:>14.6g}", here.max_abs.empty() ? nan : here.max_abs.front());
-      if (result.computed.shape) {
-        add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan),
-            here.bending_moment.value_or(nan) * units.moment);
-      }
-      if (has_theory(scene, result))
-        add(text, "  {:>12}", (here.theory_error ? fmt::format("{:.1e}", *here.theory_error) : "no value") +
-                                  (beyond_theory(here.theory_error) ? " !" : "  "));
-      if (result.computed.stability) {
-        add(text, "  {:>16.6g}  {}", here.stability->stability.growth_rate,
-            here.stability->stability.verdict == Verdict::unstable ? "UNSTABLE"
-                                                                   : to_string(here.stability->stability.verdict));
-      }
-      add(text, "\n");
-    }
-    if (every > 1) add(text, "  (every {}th point; --json and --out have all)\n", every);
-    if (result.computed.stability && !result.searched_bands)
-      add(text, "  unstable bands between the points were not looked for\n");
-    if (result.searched_bands) {
-      add(text, "  {}\n", rod.bands.empty() ? "no unstable band" : "unstable bands");
-      for (const UnstableBand& band : rod.bands) {
-        add(text, "    {}{} .. {}{}  fastest growth of its points {:.4g} {} at {:.6g}; begins {}, ends {}\n",
-            band.open_from ? "(open) " : "", located(band.from, band.error_from), located(band.to, band.error_to),
-            band.open_to ? " (open)" : "", band.fastest, units.rate,
-            band.fastest_x, band.open_from ? "before the sweep" : kind_words(band.kind_from),
-            band.open_to ? "beyond the sweep" : kind_words(band.kind_to));
-      }
-    }
-    if (result.computed.steady && !result.searched_peaks)
-      add(text, "  resonance peaks between the points were not looked for\n");
-    if (result.searched_peaks) {
-      std::size_t found = 0;
-      for (const CriticalPoint& point : result.critical) found += point.rod == r;
-      add(text, "  {}\n", found == 0 ? "no resonance peak" : "resonance peaks");
-      for (const CriticalPoint& point : result.critical) {
-        if (point.rod != r) continue;
-        if (std::isinf(point.peak.value)) {
-          add(text, "    {:.12g}  |q_{}| unbounded: a multiplier passes +1{}", point.peak.x, point.component + 1,
-              has_theory(scene, result) ? "; beyond the linear theory" : "");
-        } else {
-          add(text, "    {:.12g}  max |q_{}| = {:.6g}", point.peak.x, point.component + 1, point.peak.value);
-        }
-        if (point.mode >= 0) {
-          add(text, ", mode {} at order {} ({:.5g} rad/{}, {:.3g} per turn of the crank)", point.mode + 1, point.order,
-              point.frequency, units.time, point.frequency / point.speed);
-        }
-        if (const SweepPoint* there = refined_point(result, point.peak.x);
-            there && has_theory(scene, result) && beyond_theory(there->rods[r].theory_error))
-          add(text, "; beyond the linear theory");
-        add(text, "\n");
-      }
-    }
-  }
-  const auto closed = static_cast<std::size_t>(std::count_if(
-      result.points.begin(), result.points.end(), [](const SweepPoint& point) { return point.problem.empty(); }));
-  if (closed < result.points.size()) {
-    const auto first = std::find_if(result.points.begin(), result.points.end(),
-                                    [](const SweepPoint& point) { return !point.problem.empty(); });
-    add(text, "\n{} of {} points have no answer; the first: {}\n", result.points.size() - closed, result.points.size(),
-        first->problem);
-  }
-  for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
-  for (const std::string& warning : theory_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
-  return fmt::to_string(text);
-}
-
 SweepColumns sweep_columns(const SweepScene& scene, const SweepResult& result, std::size_t rod) {
   SweepColumns columns;
   int next = 3;
@@ -399,6 +269,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   const Only& only = result.computed;
   const SweepRod& rod = result.rods[r];
   const int I = rod.num_modes;
+  const FrequencyUnit frequency = frequency_unit(scene.scene());
   const std::vector<const SweepPoint*> points = all_points(result);
   CsvFile file;
   file.name = file_name("sweep_" + rod.name) + ".csv";
@@ -416,7 +287,8 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   if (has_theory(scene, result)) {
     file.columns.push_back("theory error");
     file.columns.push_back("beyond the linear theory");
-    file.comment.push_back(fmt::format("theory error: first nonlinear correction of q, relative; beyond: above {} or none",
+    file.comment.push_back(fmt::format("theory error: first nonlinear correction of q, relative; beyond: above {} or none, "
+                                       "or beyond small deflections",
                                        theory_error_limit));
   }
   if (only.stability) {
@@ -424,14 +296,13 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
                                              "verdict"});
     file.comment.push_back(std::string(verdict_numbers) + "; per mode frequency (unfolded) and growth rate");
     for (int i = 1; i <= I; ++i) {
-      file.columns.push_back(fmt::format("frequency of mode {} [Hz]", i));
+      file.columns.push_back(fmt::format("frequency of mode {} [{}]", i, frequency.name));
       file.columns.push_back(fmt::format("growth of mode {}{}", i, bracketed(units.rate)));
     }
   }
   file.rows.setConstant(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(file.columns.size()), nan);
   std::vector<std::vector<ModeState>> modes;
   if (only.stability) modes = tracks(result, r, points);
-  const double hertz = 1 / (2 * std::numbers::pi * scene.scene().units.time_in_s);
   const auto in_grid = [&](const SweepPoint* p) {
     return p >= result.points.data() && p < result.points.data() + result.points.size();
   };
@@ -454,7 +325,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
     }
     if (has_theory(scene, result)) {
       row(column++) = here.theory_error.value_or(nan);
-      row(column++) = beyond_theory(here.theory_error) ? 1 : 0;
+      row(column++) = beyond_theory(here.theory_error) || beyond_limits(here) ? 1 : 0;
     }
     if (only.stability) {
       const Stability& stability = here.stability->stability;
@@ -462,7 +333,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
       row(column++) = stability.growth_error;
       row(column++) = verdict_number(stability.verdict);
       for (const ModeState& mode : modes[k]) {
-        row(column++) = mode.frequency * hertz;
+        row(column++) = mode.frequency * frequency.factor;
         row(column++) = mode.growth;
       }
     }
@@ -504,6 +375,7 @@ CsvFile sweep_forces_csv(const SweepScene& scene, const SweepResult& result) {
 
 CsvFile critical_csv(const SweepScene& scene, const SweepResult& result) {
   const OutputUnits units = output_units(scene.scene());
+  const FrequencyUnit frequency = frequency_unit(scene.scene());
   CsvFile file;
   file.name = "critical.csv";
   std::string rods;
@@ -512,13 +384,13 @@ CsvFile critical_csv(const SweepScene& scene, const SweepResult& result) {
   file.comment = {about(scene, "local maxima of the largest |q_i| along " + scene.axis().path),
                   "rods: " + rods + "; mode and order n = omega/Omega: 0 if not known"};
   file.columns = {"rod", axis_label(scene), "error", "i", "max |q_i|" + bracketed(units.response), "mode", "order",
-                  "frequency [Hz]", "damping" + bracketed(units.rate), "prominence"};
+                  "frequency [" + frequency.name + "]", "damping" + bracketed(units.rate), "prominence"};
   file.rows.resize(static_cast<Eigen::Index>(result.critical.size()), 10);
   for (std::size_t k = 0; k < result.critical.size(); ++k) {
     const CriticalPoint& p = result.critical[k];
     file.rows.row(static_cast<Eigen::Index>(k)) << static_cast<double>(p.rod + 1), p.peak.x, p.peak.error,
         p.component + 1, p.peak.value, p.mode + 1, p.order,
-        p.frequency / (2 * std::numbers::pi * scene.scene().units.time_in_s), p.damping, p.prominence;
+        p.frequency * frequency.factor, p.damping, p.prominence;
   }
   return file;
 }

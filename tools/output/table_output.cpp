@@ -4,18 +4,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <complex>
+#include <cmath>
 #include <iterator>
 #include <optional>
 
+#include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/theory_words.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
 
-constexpr std::size_t max_exponents_shown = 4;
 constexpr std::size_t max_modes_shown = 10;
 
 using Text = fmt::memory_buffer;
@@ -25,29 +26,50 @@ void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
   fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
 }
 
-void add_steady(Text& text, const RodResult& rod, const OutputUnits& units, bool is_rod, double tolerance) {
+// How far the speed is from where a natural frequency is met, and what that does to the response.
+void add_resonance(Text& text, const SceneModel& model, const RodModel& rod_model, const RodResult& rod, double speed) {
+  const std::optional<NearestResonance> nearest = nearest_resonance(rod_model.system, speed);
+  if (nearest)
+    add(text, "  resonance         nearest {}Omega = omega_1 at {}, {:.2g} % {}\n",
+        nearest->order == 1 ? "" : fmt::format("{} ", nearest->order), speed_text(nearest->speed, model.scene, 6),
+        100 * std::abs(nearest->speed / speed - 1), nearest->speed > speed ? "faster" : "slower");
+  if (const std::optional<double> slow = quasi_static_response(rod_model.system, speed)) {
+    double largest = 0;
+    for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
+    add(text, "  amplification     {:.4g}: largest |q| against that of the same load applied slowly\n", largest / *slow);
+  }
+}
+
+void add_steady(Text& text, const SceneModel& model, std::size_t r, const SpeedResult& result, double tolerance) {
+  const RodResult& rod = result.rods[r];
+  const OutputUnits units = output_units(model.scene);
+  const bool is_rod = model.linkage() != nullptr;
   const SteadyState& state = *rod.steady;
   if (state.status == SteadyStatus::singular) {
     add(text, "  no unique periodic solution at this speed: resonance without damping\n");
     return;
   }
   add(text, "  q_i: {}\n", is_rod ? "amplitude of sin(i pi x/l), largest over the turn" : "largest over the period");
-  add(text, "    {:>3}  {:>18}  {:>18}\n", "i", "max |q_i|" + bracketed(units.response), "crank angle [deg]");
+  add(text, "    {:>3}  {:>18}  {:>18}\n", "i", "max |q_i|" + bracketed(units.response),
+      is_rod ? "crank angle [deg]" : "phase [deg]");
   const std::size_t shown = std::min(rod.max_abs.size(), max_modes_shown);
+  double largest = 0;
+  for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
   for (std::size_t i = 0; i < shown; ++i) {
-    add(text, "    {:>3}  {:>18.10g}  {:>18.3f}\n", i + 1, rod.max_abs[i].value,
+    const double value = rod.max_abs[i].value;
+    add(text, "    {:>3}  {:>18.{}g}  {:>18.3f}\n", i + 1, value, trusted_digits(value, state.error_bound * largest),
         rod.max_abs[i].crank_angle * degrees_per_radian);
   }
   if (shown < rod.max_abs.size()) add(text, "    ... {} more (--json has all)\n", rod.max_abs.size() - shown);
   add(text, "  error bound       {:.1e} of the largest |q|{}{}\n", state.error_bound,
       state.bound == SteadyBound::proved ? ", proved" : "",
       state.error_bound <= tolerance ? "" : fmt::format("  NOT REACHED: asked {:.1e}", tolerance));
-  add(text, "  resonance         {:.3g} away (1: far, 0: at resonance)\n", state.resonance_distance);
+  add_resonance(text, model, model.rods[r], rod, result.speed);
 }
 
 void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size_t r) {
   if (!errors) {
-    add(text, "  theory error      not judged: q was not computed\n");
+    add(text, "  theory not judged: q was not computed\n");
     return;
   }
   const TheoryErrors::Rod& rod = errors->rods[r];
@@ -62,54 +84,38 @@ void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size
         *rod.axial_share);
 }
 
+// As many digits as the modes kept leave.
 void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, const std::string& unit,
-              const OutputUnits& units) {
-  add(text, "  {:<16}  {:.8g} {} at x = {:.5g} {}, crank angle {:.3f} deg\n", name, peak.max_abs * factor, unit, peak.x,
-      units.length, peak.crank_angle * degrees_per_radian);
+              const OutputUnits& units, double relative_error) {
+  const double value = peak.max_abs * factor;
+  add(text, "  {:<16}  {:.{}g} {} at x = {:.4g} {}, crank angle {:.2f} deg\n", name, value,
+      std::min(8, trusted_digits(value, relative_error * value)), unit, peak.x, units.length,
+      peak.crank_angle * degrees_per_radian);
 }
 
-// The first few; of a conjugate pair the first stands for both.
-void add_exponents(Text& text, const std::vector<Exponent>& exponents, const char* mark) {
-  std::vector<bool> done(exponents.size(), false);
-  std::size_t shown = 0, left = 0;
-  for (std::size_t k = 0; k < exponents.size(); ++k) {
-    if (done[k]) continue;
-    if (shown == max_exponents_shown) {
-      ++left;
-      continue;
-    }
-    ++shown;
-    const Exponent& exponent = exponents[k];
-    bool pair = false;
-    for (std::size_t other = k + 1; other < exponents.size() && exponent.value.imag() != 0 && !pair; ++other) {
-      pair = !done[other] && exponents[other].value == std::conj(exponent.value);
-      if (pair) done[other] = true;
-    }
-    const double re = exponent.value.real() + 0.0, im = exponent.value.imag() + 0.0;
-    const auto digits = [&](double value) { return trusted_digits(value, exponent.error); };
-    add(text, "  {:>16}  {:>18}  {:>18}  {:>8.1e}\n", mark, fmt::format("{:.{}g}", re, digits(re)),
-        fmt::format("{}{:.{}g}", pair ? "+-" : "", pair ? std::abs(im) : im, digits(im)), exponent.error);
-  }
-  if (left > 0) add(text, "    ... {} more (--json has all)\n", left);
-}
-
-void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene) {
+void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene, bool multipliers) {
   const Stability& stability = *rod.stability;
   const OutputUnits units = output_units(scene);
-  if (!stability.exponents.empty() || !stability.uncertain.empty())
-    add(text, "  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate), "real part",
-        "imaginary part", "error");
-  add_exponents(text, stability.exponents, "");
-  if (const Eigen::Index missing = unresolved_exponents(rod); missing > 0) {
-    add(text, "    {} of {} not resolved to a part in 10^6{}\n", missing, 2 * rod.num_modes,
-        stability.uncertain.empty() ? "" : ":");
-    add_exponents(text, stability.uncertain, "?");
-  }
-  add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
-      stability.converged ? "" : "  NOT REACHED");
+  add(text, "{}", exponents_rows(stability, unresolved_exponents(rod), speed, scene));
+  if (multipliers) add(text, "{}", multipliers_rows(stability, speed, scene));
+  add(text, "  growth rate       {} {}\n", growth_text(stability), units.rate);
   if (rod.growth_modes_error)
     add(text, "  its cut           {:.1e} of the larger of itself and the speed, estimated\n", *rod.growth_modes_error);
-  add(text, "  {}\n", verdict_sentence(stability, speed, scene.units));
+  add(text, "  {}\n", verdict_sentence(stability, speed, scene));
+}
+
+// Digits that an engineer uses: the model is not better than that.
+void add_stress(Text& text, const RodStress& stress, const RodResult& rod, const Linkage& linkage,
+                const OutputUnits& units) {
+  const Body& link = *body_at(linkage, rod.link);
+  add(text, "  axial force       {:.4g} N pull, {:.4g} N push = {:.3g} of its buckling load\n",
+      stress.tension * units.force, stress.compression * units.force, stress.buckling_share());
+  add(text, "  stress            axial {:.3g} MPa, bending {:.3g} MPa{}\n", stress.axial * units.megapascal,
+      stress.bending * units.megapascal,
+      stress.height_known ? ""
+                          : fmt::format(" (as of a rectangle {:.3g} {} high: the scene gives no section)",
+                                        2 * std::sqrt(3 * link.elastic->second_moment / link.elastic->area),
+                                        units.length));
 }
 
 std::string range_text(const FourierSeries& series, Eigen::Index component, double factor) {
@@ -140,34 +146,18 @@ void add_forces(Text& text, const Linkage& linkage, const JointForces& forces, c
   add(text, "\n");
 }
 
-// "unstable because of AB", "stable (AB, CD)": the worst of all rods, and which of them were not looked at.
-std::string verdict_of_all(const std::vector<RodResult>& rods) {
-  std::vector<Verdict> verdicts;
-  for (const RodResult& rod : rods) {
-    if (rod.stability) verdicts.push_back(rod.stability->verdict);
-  }
-  std::vector<std::string> names, others;
-  const Verdict verdict = worst(verdicts);
-  for (const RodResult& rod : rods) {
-    if (!rod.stability) others.push_back(rod.name);
-    if (rod.stability && rod.stability->verdict == verdict) names.push_back(rod.name);
-  }
-  const bool all = verdict == Verdict::stable || verdict == Verdict::bounded;
-  const std::string because = fmt::format(fmt::runtime(all ? "({})" : "because of {}"), fmt::join(names, ", "));
-  return fmt::format("{} {}{}", to_string(verdict), because,
-                     others.empty() ? "" : fmt::format("; not looked at: {}", fmt::join(others, ", ")));
-}
-
 }  // namespace
 
-std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings) {
+std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings,
+                         bool multipliers) {
   const Scene& scene = model.scene;
   const OutputUnits units = output_units(scene);
   const bool is_linkage = model.linkage() != nullptr;
   Text text;
-  add(text, "{}: {}", scene_name(scene), speed_text(result.speed, scene));
-  if (is_linkage) add(text, " (omega = {:.10g} rad/{})", result.speed, units.time);
-  add(text, "\n\n");
+  const std::string verdict = mechanism_verdict(named_verdicts(result.rods));
+  add(text, "{}, {}{}{}\n", scene_name(scene), speed_text(result.speed, scene), verdict.empty() ? "" : ": ", verdict);
+  if (is_linkage) add(text, "omega = {:.10g} rad/{}\n", result.speed, units.time);
+  add(text, "\n");
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     const RodResult& rod = result.rods[r];
     if (!rod.reported) continue;
@@ -175,17 +165,21 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
         is_linkage ? (rod.num_modes == 1 ? "mode" : "modes") : (rod.num_modes == 1 ? "unknown" : "unknowns"));
     if (rod.steady && result.computed.steady) add(text, ", {} harmonics", rod.steady->num_harmonics);
     add(text, "\n");
-    if (rod.steady && result.computed.steady) add_steady(text, rod, units, is_linkage, settings.tolerance);
+    if (rod.steady && result.computed.steady) add_steady(text, model, r, result, settings.tolerance);
     if (is_linkage) add_theory(text, result.theory, r);
     if (rod.modes_error) {
       add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
           !needs_more_modes(rod) ? "" : "; MORE MODES ARE NEEDED (--modes)");
     }
     if (rod.shape) {
-      add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units);
-      add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units);
+      const double error = rod.modes_error.value_or(0) + (rod.steady ? rod.steady->error_bound : 0);
+      add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units, error);
+      // The moment's series converges two powers of I more slowly.
+      add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units,
+               error * static_cast<double>(rod.num_modes * rod.num_modes));
     }
-    if (rod.stability) add_stability(text, rod, result.speed, scene);
+    if (rod.stress) add_stress(text, *rod.stress, rod, *model.linkage(), units);
+    if (rod.stability) add_stability(text, rod, result.speed, scene, multipliers);
     add(text, "\n");
   }
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");
@@ -197,12 +191,15 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     const bool unstable = std::any_of(result.rods.begin(), result.rods.end(), [](const RodResult& rod) {
       return rod.stability && rod.stability->verdict == Verdict::unstable;
     });
-    if (unstable) add(text, "  The elastic values belong to an unstable periodic state.\n");
+    if (unstable) add(text, "  The elastic values contain rods whose periodic state is unstable.\n");
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  for (const std::string& sentence : result.notes) add(text, "NOTE: {}\n", sentence);
   for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
-  for (const std::string& warning : theory_warnings(model, result)) add(text, "WARNING: {}\n", warning);
-  if (result.computed.stability && !result.rods.empty()) add(text, "\nVerdict: {}\n", verdict_of_all(result.rods));
+  if (result.theory)
+    for (const std::string& warning : theory_warnings(model, result)) add(text, "WARNING: {}\n", warning);
+  for (const std::string& warning : limit_warnings(model, result)) add(text, "WARNING: {}\n", warning);
+  if (!verdict.empty()) add(text, "\nVerdict: {}\n", verdict);
   return fmt::to_string(text);
 }
 

@@ -7,7 +7,9 @@
 
 namespace hb::tools {
 
-[[nodiscard]] std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings);
+// `multipliers`: beside the exponents.
+[[nodiscard]] std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings,
+                                       bool multipliers = false);
 [[nodiscard]] std::string stages_table(const std::vector<Stage>& stages);
 
 }  // namespace hb::tools

@@ -1,6 +1,7 @@
 #include "tools/output/theory_words.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +10,43 @@ namespace hb::tools {
 namespace {
 
 constexpr const char* beyond = "beyond the linear theory";
+constexpr const char* large = "beyond small deflections";
+
+// What is too large for the theory of small deflections, in words; empty: nothing. The theory error, where there is
+// one, says more than the deflection.
+std::string too_large(const RodResult& rod, const Body& link, const std::optional<double>& theory_error) {
+  std::vector<std::string> reasons;
+  if (rod.stress && rod.stress->buckling_share() > buckling_share_limit)
+    reasons.push_back(fmt::format("pushed with {:.3g} of its buckling load", rod.stress->buckling_share()));
+  if (rod.stress && rod.stress->strain > strain_limit)
+    reasons.push_back(fmt::format("strained by up to {:.2g} %", 100 * rod.stress->strain));
+  if (!theory_error && rod.shape && rod.shape->deflection.max_abs > deflection_share_limit * link.length)
+    reasons.push_back(fmt::format("bent by {:.2g} of its length", rod.shape->deflection.max_abs / link.length));
+  return fmt::format("{}", fmt::join(reasons, ", "));
+}
+
+// Ranges of neighbouring points where `is` holds: "1270 to 1370, 1440 to 6000".
+template <class Predicate>
+std::string runs(const std::vector<SweepPoint>& points, const Predicate& is) {
+  std::string text;
+  const SweepPoint *first = nullptr, *last = nullptr;
+  const auto close = [&] {
+    if (first)
+      text += fmt::format("{}{:.6g}{}", text.empty() ? "" : ", ", first->x,
+                          first == last ? "" : fmt::format(" to {:.6g}", last->x));
+    first = nullptr;
+  };
+  for (const SweepPoint& point : points) {
+    if (point.rods.empty() || !is(point)) {
+      close();
+      continue;
+    }
+    if (!first) first = &point;
+    last = &point;
+  }
+  close();
+  return text;
+}
 
 }  // namespace
 
@@ -46,57 +84,76 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
       sentences.push_back(name + ": theory not judged: q was not computed");
       continue;
     }
-    // Runs of neighbouring points beyond.
     std::size_t count = 0, points = 0, without = 0;
     double largest = 0;
-    std::string runs;
-    const SweepPoint *first = nullptr, *last = nullptr;
-    const auto close = [&] {
-      if (first)
-        runs += fmt::format("{}{:.6g}{}", runs.empty() ? "" : ", ", first->x,
-                            first == last ? "" : fmt::format(" to {:.6g}", last->x));
-      first = nullptr;
-    };
     for (const SweepPoint& point : result.points) {
-      if (point.rods.empty()) {
-        close();
-        continue;
-      }
+      if (point.rods.empty()) continue;
       ++points;
       const std::optional<double>& error = point.rods[r].theory_error;
-      if (!beyond_theory(error)) {
-        close();
-        continue;
-      }
+      if (!beyond_theory(error)) continue;
       ++count;
       if (error) largest = std::max(largest, *error);
       without += !error;
-      if (!first) first = &point;
-      last = &point;
     }
-    close();
     if (count == 0) continue;
     std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
     if (without > 0)
       size += fmt::format("{}no value at {} of them: a rod folded, the bent mechanism open, or no periodic solution",
                           size.empty() ? "" : ", ", without);
-    sentences.push_back(fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size,
-                                    scene.axis().path, runs));
+    sentences.push_back(
+        fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size, scene.axis().path,
+                    runs(result.points, [&](const SweepPoint& p) { return beyond_theory(p.rods[r].theory_error); })));
   }
   return sentences;
 }
 
-std::string beyond_text(const TheoryErrors& errors, std::size_t rod) {
-  const std::optional<double>& error = errors.rods[rod].q;
-  if (!beyond_theory(error)) return "";
-  return error ? fmt::format("{} ({:.2g})", beyond, *error) : beyond;
+std::vector<std::string> limit_warnings(const SceneModel& model, const SpeedResult& result) {
+  std::vector<std::string> sentences;
+  for (std::size_t r = 0; model.linkage() && r < result.rods.size(); ++r) {
+    const RodResult& rod = result.rods[r];
+    const std::string why = too_large(rod, *body_at(*model.linkage(), rod.link),
+                                      result.theory ? result.theory->rods[r].q : std::nullopt);
+    if (!why.empty()) sentences.push_back(fmt::format("{}: {}: {}", rod.name, large, why));
+  }
+  return sentences;
+}
+
+std::vector<std::string> limit_warnings(const SweepScene& scene, const SweepResult& result) {
+  std::vector<std::string> sentences;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const std::string where =
+        runs(result.points, [&](const SweepPoint& point) { return beyond_limits(point.rods[r]); });
+    if (where.empty()) continue;
+    double share = 0, strain = 0;
+    for (const SweepPoint& point : result.points) {
+      if (point.rods.empty()) continue;
+      share = std::max(share, point.rods[r].buckling_share.value_or(0));
+      strain = std::max(strain, point.rods[r].strain.value_or(0));
+    }
+    sentences.push_back(fmt::format("{}: {} (pushed with up to {:.3g} of its buckling load, strained by up to {:.2g} %): "
+                                    "{} = {}",
+                                    result.rods[r].name, large, share, 100 * strain, scene.axis().path, where));
+  }
+  return sentences;
+}
+
+std::string beyond_text(const SpeedResult& result, std::size_t r) {
+  const RodResult& rod = result.rods[r];
+  std::string text;
+  if (result.theory && beyond_theory(result.theory->rods[r].q)) {
+    const std::optional<double>& error = result.theory->rods[r].q;
+    text = error ? fmt::format("{} ({:.2g})", beyond, *error) : beyond;
+  }
+  if (rod.stress && (rod.stress->buckling_share() > buckling_share_limit || rod.stress->strain > strain_limit))
+    text += (text.empty() ? "" : ", ") + std::string(large);
+  return text;
 }
 
 std::string beyond_text(const SpeedResult& result) {
   std::string text;
-  for (std::size_t r = 0; result.theory && r < result.rods.size(); ++r)
-    if (const std::string one = beyond_text(*result.theory, r); !one.empty())
-      text += (text.empty() ? "" : ", ") + result.rods[r].name + " " + one;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    if (const std::string one = beyond_text(result, r); !one.empty())
+      text += (text.empty() ? "" : "; ") + result.rods[r].name + " " + one;
   return text;
 }
 

@@ -1,4 +1,5 @@
-// What is said where an answer lies beyond the linear theory (theory_error.hpp), and where that was not judged.
+// What is said where an answer lies beyond the linear theory (theory_error.hpp) or beyond small deflections
+// (rod_stress.hpp), and where that was not judged.
 #pragma once
 
 #include <optional>
@@ -15,11 +16,19 @@ namespace hb::tools {
 // Where along the sweep; one sentence for each elastic link.
 [[nodiscard]] std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepResult& result);
 
+// One sentence for each elastic link whose answer is beyond small deflections.
+[[nodiscard]] std::vector<std::string> limit_warnings(const SceneModel& model, const SpeedResult& result);
+// Where along the sweep.
+[[nodiscard]] std::vector<std::string> limit_warnings(const SweepScene& scene, const SweepResult& result);
+[[nodiscard]] inline bool beyond_limits(const RodPoint& rod) {
+  return rod.buckling_share > buckling_share_limit || rod.strain > strain_limit;
+}
+
 // Theory errors were asked for and exist: a linkage with q computed.
 [[nodiscard]] bool has_theory(const SweepScene& scene, const SweepResult& result);
 
-// For titles of pictures: "beyond the linear theory (0.17)", empty where it is not.
-[[nodiscard]] std::string beyond_text(const TheoryErrors& errors, std::size_t rod);
+// For titles of pictures: "beyond the linear theory (0.17)", "beyond small deflections"; empty where it is neither.
+[[nodiscard]] std::string beyond_text(const SpeedResult& result, std::size_t rod);
 // The same of all rods.
 [[nodiscard]] std::string beyond_text(const SpeedResult& result);
 

@@ -178,14 +178,14 @@ std::string shortfall(const TuneResult& result) {
   if (result.design.status == DesignStatus::infeasible)
     return fmt::format(
         "no design that meets all conditions was found within the bounds{}; at the nearest one not met: {}",
-        result.design.out_of_analyses ? " by the analyses allowed" : "", not_met(result));
+        result.design.out_of_analyses ? " by the analyses or the time allowed" : "", not_met(result));
   if (!result.agrees) return "the worst cases found on more speeds differ from those of the search";
   if (!result.modes_suffice)
     return fmt::format("the design found needs more modes for the tolerance than the {} of the search",
                        result.num_modes);
   if (!result.holds) return "with the errors of their values these conditions may not be met: " + not_met(result);
   if (result.design.status == DesignStatus::stopped)
-    return "the analyses allowed ran out before the search had settled";
+    return "the analyses or the time allowed ran out before the search had settled";
   return "";
 }
 

@@ -15,13 +15,12 @@ namespace hb::tools {
 // The speed in rpm; of the numbers that mean this speed the one with the fewest digits, as someone would have given it.
 [[nodiscard]] double rpm_of(double speed, const Units& units);
 // "300 rpm", or "omega = 2.05 rad/s" for a [hill] scene.
-[[nodiscard]] std::string speed_text(double speed, const Scene& scene);
-// What the verdict means for a disturbance, with the time to halve or to grow tenfold.
-[[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Units& units);
+[[nodiscard]] std::string speed_text(double speed, const Scene& scene, int digits = 10);
 // In tables of numbers: 1 unstable, 0 undecided, -1 stable, -2 bounded.
 [[nodiscard]] int verdict_number(Verdict verdict);
 inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided, -1 stable, -2 bounded";
-// The growth rate with its error, both halves apart where they differ much: "115.02 +4.9e+03 -3.1e-01".
+// The growth rate with its error, both halves apart where they differ much: "115.02 +4.9e+03 -3.1e-01"; of
+// closed-form bounds "between -16.4 and -11.2".
 [[nodiscard]] std::string growth_text(const Stability& stability);
 // "-16.045448 +/- 1.2e-11": digits as far as the error allows.
 [[nodiscard]] std::string with_error(double value, double error);

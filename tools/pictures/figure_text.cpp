@@ -5,37 +5,16 @@
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/theory_words.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
 
-std::string verdict_text(const RodResult& rod) {
-  if (!rod.stability) return "";
-  switch (rod.stability->verdict) {
-    case Verdict::stable:
-      return ", stable";
-    case Verdict::unstable:
-      return ", UNSTABLE: would not be seen in a machine";
-    case Verdict::bounded:
-      return ", bounded";
-    case Verdict::undecided:
-      break;
-  }
-  return ", stability undecided";
-}
-
-std::string verdicts_text(const SpeedResult& result) {
-  std::string text;
-  bool same = true;
-  const RodResult* first = nullptr;
-  for (const RodResult& rod : result.rods) {
-    if (!rod.stability) continue;
-    if (!first) first = &rod;
-    same = same && rod.stability->verdict == first->stability->verdict;
-    text += ", " + rod.name + " " + to_string(rod.stability->verdict);
-  }
-  return first && same ? std::string(", ") + to_string(first->stability->verdict) : text;
+// The mechanism's, whichever rods are shown.
+std::string verdict_text(const SpeedResult& result) {
+  const std::string verdict = title_verdict(named_verdicts(result.rods));
+  return verdict.empty() ? "" : ", " + verdict;
 }
 
 }  // namespace
@@ -66,15 +45,15 @@ std::string rod_title(const SceneModel& model, const SpeedResult& result, const 
                       const std::string& shown) {
   const std::string subject = model.linkage() ? ", " + rod.name : "";
   std::string beyond;
-  for (std::size_t r = 0; result.theory && r < result.rods.size(); ++r)
-    if (&result.rods[r] == &rod) beyond = beyond_text(*result.theory, r);
-  return two_lines(short_name(model.scene) + subject + ", " + speed_text(result.speed, model.scene) + verdict_text(rod),
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    if (&result.rods[r] == &rod) beyond = beyond_text(result, r);
+  return two_lines(short_name(model.scene) + subject + ", " + speed_text(result.speed, model.scene) + verdict_text(result),
                    shown + (beyond.empty() ? "" : "; " + beyond));
 }
 
 std::string scene_title(const SceneModel& model, const SpeedResult& result, const std::string& shown) {
   const std::string beyond = beyond_text(result);
-  return two_lines(short_name(model.scene) + ", " + speed_text(result.speed, model.scene) + verdicts_text(result),
+  return two_lines(short_name(model.scene) + ", " + speed_text(result.speed, model.scene) + verdict_text(result),
                    shown + (beyond.empty() ? "" : (shown.empty() ? "" : "\n") + literal(beyond)));
 }
 

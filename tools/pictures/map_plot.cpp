@@ -9,6 +9,7 @@
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 
 namespace hb::tools {
 namespace {
@@ -132,7 +133,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom horizontal maxrows 3 samplen 3 "
       "width 1\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
-      literal(scene_name(document.scene)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),
+      literal(short_name(document.scene) + ", " + map_verdict(document)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),
       r.y().front(), r.y().back(), axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label),
       -limit, limit, ticks(c, colour), palette, line_labels(r));
   if (some_missing) {
@@ -167,7 +168,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
     int number;
     const char *colour, *title;
   };
-  for (const Kind& kind : {Kind{BoundaryKind::minus_one, -1, "#000000", "boundary −1: half the speed"},
+  for (const Kind& kind : {Kind{BoundaryKind::minus_one, -1, "#000000", "boundary −1: period doubling"},
                            Kind{BoundaryKind::plus_one, 1, "#00735a", "boundary +1: once per turn"},
                            Kind{BoundaryKind::complex, 0, "#7b3294", "boundary, complex pair"}}) {
     const auto has = [&](const std::vector<RodCurve>& curves) {

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/sweep_words.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 
 namespace hb::tools {
 namespace {
@@ -24,7 +26,10 @@ std::string title(const SweepScene& scene, const SweepResult& result, std::size_
   const std::string subject = scene.first().linkage() ? ", " + result.rods[rod].name : "";
   std::string at;
   if (scene.axis().kind == Axis::Kind::parameter) at = " at " + speed_text(result.points.front().speed, scene.scene());
-  return "set title '{/:Bold " + literal(scene_name(scene.scene()) + subject + at) + "}'.\"\\n\".'" + shown + "'\n";
+  const std::string verdict = sweep_title_verdict(result);
+  return "set title '{/:Bold " +
+         literal(short_name(scene.scene()) + subject + at + (verdict.empty() ? "" : ", " + verdict)) + "}'.\"\\n\".'" +
+         shown + "'\n";
 }
 
 std::string axis(const SweepScene& scene) {
@@ -32,18 +37,32 @@ std::string axis(const SweepScene& scene) {
   return fmt::format("set xrange [{}:{}]\nset xlabel {}\n", values.front(), values.back(), quoted(axis_label(scene)));
 }
 
-std::string shaded(const SweepRod& rod) {
+std::string shaded(const SweepRod& rod, const char* colour = "#d55e00") {
   std::string text;
   for (const UnstableBand& band : rod.bands) {
     text += fmt::format(
-        "set object rectangle from first {}, graph 0 to first {}, graph 1 fillcolor rgb '#d55e00' fillstyle solid 0.18 "
+        "set object rectangle from first {}, graph 0 to first {}, graph 1 fillcolor rgb '{}' fillstyle solid 0.18 "
         "noborder behind\n",
-        band.from, band.to);
+        band.from, band.to, colour);
   }
   return text;
 }
 
-std::string shaded_note(const SweepRod& rod) { return rod.bands.empty() ? "" : "; shaded: unstable"; }
+// Bands of this rod, over those of the others: there the mechanism is unstable too.
+std::string shaded(const SweepResult& result, std::size_t r) {
+  std::string text;
+  for (std::size_t other = 0; other < result.rods.size(); ++other)
+    if (other != r) text += shaded(result.rods[other], "#777777");
+  return text + shaded(result.rods[r]);
+}
+
+std::string shaded_note(const SweepResult& result, std::size_t r) {
+  std::string others;
+  for (std::size_t other = 0; other < result.rods.size(); ++other)
+    if (other != r && !result.rods[other].bands.empty()) others += (others.empty() ? "" : ", ") + result.rods[other].name;
+  return (result.rods[r].bands.empty() ? std::string() : std::string("; shaded: unstable")) +
+         (others.empty() ? "" : "; shaded grey: unstable because of " + literal(others));
+}
 
 // A curve, grey and dashed where the answer is beyond the linear theory. `style`: what stands behind "with lines".
 std::string curve(const std::string& csv, int column, const SweepColumns& columns, const std::string& style,
@@ -59,10 +78,8 @@ std::string curve(const std::string& csv, int column, const SweepColumns& column
 std::string beyond_note(const CsvFile& csv, const SweepColumns& columns) {
   if (columns.beyond == 0) return "";
   const bool some = (csv.rows.col(columns.beyond - 1).array() > 0).any();
-  return some ? "'.\"\\n\".'grey, dashed: beyond the linear theory" : "";
+  return some ? "'.\"\\n\".'grey, dashed: beyond the linear theory or small deflections" : "";
 }
-
-std::string figure_name(const std::string& kind, const std::string& name) { return file_name(kind + "_" + name); }
 
 // Finite values of a column.
 std::vector<double> finite(const CsvFile& csv, int column) {
@@ -107,18 +124,18 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   const auto frequency = [&](int mode) { return columns.first_frequency + 2 * mode; };
   const double from = scene.axis().values.front(), to = scene.axis().values.back();
 
-  // Crank frequency in Hz: factor * x, or constant.
-  const double seconds = scene.scene().units.time_in_s;
+  // The crank's frequency: factor * x, or constant.
+  const FrequencyUnit unit = frequency_unit(scene.scene());
   double factor = 0, constant = 0;
   switch (scene.axis().kind) {
     case Axis::Kind::rpm:
-      factor = 1.0 / 60;
+      factor = unit.factor * speed_from_rpm(1, scene.scene().units);
       break;
     case Axis::Kind::omega:
-      factor = 1 / (2 * std::numbers::pi * seconds);
+      factor = unit.factor;
       break;
     case Axis::Kind::parameter:
-      constant = result.points.front().speed / (2 * std::numbers::pi * seconds);
+      constant = unit.factor * result.points.front().speed;
       break;
   }
   const double fastest = factor * to + constant;
@@ -133,9 +150,10 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   std::string& text = figure.commands;
   text += title(scene, result, r,
                 "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
-                    "; dots: resonance peaks" + shaded_note(rod) + beyond_note(csv, columns));
-  text += axis(scene) + shaded(rod);
-  text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [Hz]'\nunset key\nset rmargin 20\n", top);
+                    (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") + shaded_note(result, r) + beyond_note(csv, columns));
+  text += axis(scene) + shaded(result, r);
+  text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [{}]'\nunset key\nset rmargin 20\n", top,
+                      literal(unit.name));
   const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
   text += fmt::format(
       "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 "
@@ -232,8 +250,8 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   figure.name = figure_name("peaks", rod.name);
   const std::string meaning = scene.first().linkage() ? "q_i: amplitude of sin(iπx/l)" : "q_i: unknowns of the system";
   std::string& text = figure.commands;
-  text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(rod) + beyond_note(csv, columns)) +
-          axis(scene) + shaded(rod);
+  text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(result, r) + beyond_note(csv, columns)) +
+          axis(scene) + shaded(result, r);
   double top = 0, bottom = HUGE_VAL;
   for (int i = 0; i < shown; ++i) {
     for (const double value : where_stable(result, csv, columns.first_peak + i)) {
@@ -265,14 +283,14 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
   figure.height = 640;
   std::string& text = figure.commands;
   std::string heading =
-      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(rod) +
+      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(result, r) +
                                     beyond_note(csv, columns));
   heading.replace(0, 10, "");  // without "set title "
   heading.pop_back();
   text += fmt::format(
       "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n",
       heading, beyond_note(csv, columns).empty() ? 4.5 : 6);
-  text += axis(scene) + shaded(rod);
+  text += axis(scene) + shaded(result, r);
   const auto range = [&](int column) {
     const std::vector<double> values = where_stable(result, csv, column);
     double low = HUGE_VAL;
@@ -300,9 +318,9 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
   Figure figure;
   figure.name = figure_name("growth", rod.name);
   std::string& text = figure.commands;
-  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(rod) +
+  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(result, r) +
                                          beyond_note(csv, columns)) +
-          axis(scene) + shaded(rod);
+          axis(scene) + shaded(result, r);
   // Around the leading rate: modes that decay far faster would hide it.
   const double low = growth.empty() ? -1 : *std::min_element(growth.begin(), growth.end());
   const double high = std::max(largest(growth), 0.0);
@@ -336,6 +354,7 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
   groups.push_back({crank, {crank, "torque"}});
   std::string bands;
   for (const SweepRod& rod : result.rods) bands += shaded(rod);
+  const std::string verdict = sweep_title_verdict(result);
 
   std::vector<Figure> figures;
   for (const auto& [name, bodies] : groups) {
@@ -361,8 +380,8 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
       const double margin = 0.15 * (high - low);
       const std::string range = high > low ? fmt::format("set yrange [{}:{}]\n", low - margin, high + margin) : "";
       panels += fmt::format(
-          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#0072b2' fillstyle solid "
-          "0.25 "
+          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#b8b8b8' fillstyle solid "
+          "0.6 "
           "notitle, '' using 1:{} with lines lt 1 title 'elastic', '' using 1:{} with lines lt 1 notitle, "
           "'' using 1:{} with lines lt 2 dashtype 2 title 'rigid', '' using 1:{} with lines lt 2 dashtype 2 notitle\n"
           "unset key\n",
@@ -377,11 +396,11 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
     figure.width = 1000;
     figure.height = 130 + 230 * rows;
     figure.commands = fmt::format(
-        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'smallest and largest force over the turn, elastic "
-        "beside "
-        "rigid; shaded: unstable'\nset key at screen 0.99, screen 0.995 right top vertical samplen 3\nset format '%g'\n"
+        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'between smallest and largest force over the turn, "
+        "elastic beside rigid{}'\nset key at screen 0.99, screen 0.995 right top vertical samplen 3\nset format '%g'\n"
         "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset xtics autofreq\nset ytics autofreq\n",
-        rows, literal(scene_name(scene.scene()) + ", joints of " + name), axis(scene), bands, panels);
+        rows, literal(short_name(scene.scene()) + ", joints of " + name + (verdict.empty() ? "" : ", " + verdict)),
+        bands.empty() ? "" : "; shaded orange: unstable", axis(scene), bands, panels);
     figure.commands += clean_up;
     figures.push_back(std::move(figure));
   }

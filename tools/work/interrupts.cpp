@@ -1,5 +1,6 @@
 #include "tools/work/interrupts.hpp"
 
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,7 +21,12 @@ Slot slots[16];
 std::atomic<pid_t> child_group = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
-volatile std::sig_atomic_t interrupt_seen = 0;
+enum Phase { computing, guarded, delivering, drawing };
+
+volatile std::sig_atomic_t interrupt_seen = 0, time_up = 0, phase = computing;
+volatile std::sig_atomic_t status_at_end = exit_interrupted;
+std::string time_message, time_document;  // read by a signal handler, not changed once the timer runs
+constexpr unsigned grace = 5;  // seconds in which long work may end by itself
 struct sigaction before_guard[2];  // of SIGINT and SIGTERM
 
 // Only calls that a signal handler may make.
@@ -33,7 +39,15 @@ void remove_tree(const char* path) {
   if (child > 0) waitpid(child, nullptr, 0);
 }
 
-void remove_unfinished_and_end(int) {
+void write_all(int descriptor, const std::string& text) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t written = write(descriptor, text.data() + done, text.size() - done);
+    if (written <= 0) return;
+    done += static_cast<std::size_t>(written);
+  }
+}
+
+[[noreturn]] void remove_unfinished_and_exit(int status) {
   if (const pid_t group = child_group; group > 0 && kill(-group, SIGKILL) == 0) waitpid(group, nullptr, 0);
   for (Slot& slot : slots) {
     const int state = slot.state;
@@ -45,11 +59,29 @@ void remove_unfinished_and_end(int) {
     if (state == 2 + static_cast<int>(Unfinished::Kind::empty_folder)) rmdir(slots[s].path);
     if (state == 2 + static_cast<int>(Unfinished::Kind::file)) unlink(slots[s].path);
   }
-  _exit(exit_interrupted);
+  _exit(status);
+}
+
+void remove_unfinished_and_end(int) { remove_unfinished_and_exit(exit_interrupted); }
+
+// The time limit, or the end of the grace that long work was given.
+void on_alarm(int) {
+  if (phase == delivering || (phase == guarded && interrupt_seen == 0 && time_up == 0)) {
+    time_up = 1;
+    alarm(grace);
+    return;
+  }
+  if (interrupt_seen != 0) remove_unfinished_and_exit(exit_interrupted);
+  if (phase != drawing) {
+    write_all(STDERR_FILENO, time_message);
+    write_all(STDOUT_FILENO, time_document);
+  }
+  remove_unfinished_and_exit(status_at_end);
 }
 
 void raise_flag(int signal) {
   interrupt_seen = 1;
+  alarm(grace);
   sigaction(signal, &before_guard[signal == SIGINT ? 0 : 1], nullptr);
 }
 
@@ -58,6 +90,7 @@ struct sigaction action(void (*handler)(int)) {
   result.sa_handler = handler;
   sigemptyset(&result.sa_mask);
   for (const int signal : signals) sigaddset(&result.sa_mask, signal);
+  sigaddset(&result.sa_mask, SIGALRM);
   result.sa_flags = SA_RESTART;
   return result;
 }
@@ -71,6 +104,27 @@ void end_cleanly_on_signals() {
     const bool ignored = sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
     if (signal != SIGHUP || !ignored) sigaction(signal, &ending, nullptr);
   }
+  const struct sigaction alarmed = action(on_alarm);
+  sigaction(SIGALRM, &alarmed, nullptr);
+}
+
+void end_after(double seconds, int status, const std::string& message, const std::string& document) {
+  time_message = message;
+  time_document = document;
+  status_at_end = status;
+  itimerval timer{};
+  timer.it_value.tv_sec = static_cast<time_t>(seconds);
+  timer.it_value.tv_usec = static_cast<suseconds_t>(1e6 * (seconds - static_cast<double>(timer.it_value.tv_sec)));
+  setitimer(ITIMER_REAL, &timer, nullptr);
+}
+
+bool time_is_up() { return time_up != 0; }
+
+void begin_delivery() { phase = delivering; }
+
+void begin_pictures(int status) {
+  status_at_end = status;
+  phase = drawing;
 }
 
 Unfinished::Unfinished(const std::filesystem::path& path, Kind kind) {
@@ -97,23 +151,34 @@ SignalsHeld::SignalsHeld() {
   sigset_t held;
   sigemptyset(&held);
   for (const int signal : signals) sigaddset(&held, signal);
+  sigaddset(&held, SIGALRM);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
 }
 
 SignalsHeld::~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-InterruptGuard::InterruptGuard() {
+InterruptGuard::InterruptGuard(bool signals) {
   interrupt_seen = 0;
+  phase = guarded;
+  if (!signals) {
+    sigaction(SIGINT, nullptr, &before_guard[0]);
+    sigaction(SIGTERM, nullptr, &before_guard[1]);
+    return;
+  }
   const struct sigaction flag = action(raise_flag);
   sigaction(SIGINT, &flag, &before_guard[0]);
   sigaction(SIGTERM, &flag, &before_guard[1]);
 }
 
 InterruptGuard::~InterruptGuard() {
+  phase = computing;
+  if (asked_to_end()) alarm(0);  // it ended by itself
   sigaction(SIGINT, &before_guard[0], nullptr);
   sigaction(SIGTERM, &before_guard[1], nullptr);
 }
 
 bool interrupted() { return interrupt_seen != 0; }
+
+bool asked_to_end() { return interrupted() || time_is_up(); }
 
 }  // namespace hb::tools

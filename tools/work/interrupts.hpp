@@ -6,6 +6,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <string>
 
 namespace hb::tools {
 
@@ -14,6 +15,16 @@ constexpr int exit_interrupted = 130;  // as shells report Ctrl-C
 // Once, at the start of the program. SIGHUP that is ignored (nohup) stays so; SIGINT does not, which shells ignore for
 // what they run in the background and which is then sent on purpose.
 void end_cleanly_on_signals();
+
+// After `seconds` long work under an InterruptGuard is asked to end; whatever is not over five seconds later, and other work
+// at once, ends the program with `status`, `message` on standard error and `document` on standard output. Once at most.
+void end_after(double seconds, int status, const std::string& message, const std::string& document);
+[[nodiscard]] bool time_is_up();
+
+// From the complete answer on. Files are put in their place and printed whatever the time; pictures that are not drawn
+// when it is up are given up with `status`.
+void begin_delivery();
+void begin_pictures(int status);
 
 // Something on the disk that goes when a signal ends the program while this object lives.
 class Unfinished {
@@ -50,14 +61,18 @@ class SignalsHeld {
   sigset_t before_;
 };
 
-// While it lives, the first Ctrl-C or SIGTERM only raises a flag; the second acts as it would without.
+// While it lives, the first Ctrl-C or SIGTERM, and the end of the time, only raise a flag. The second signal acts as it
+// would without, and so does the first one where the work has not ended five seconds later.
 class InterruptGuard {
  public:
-  InterruptGuard();
+  // Without `signals` it is about the time alone.
+  explicit InterruptGuard(bool signals = true);
   ~InterruptGuard();
   InterruptGuard(const InterruptGuard&) = delete;
   InterruptGuard& operator=(const InterruptGuard&) = delete;
 };
 [[nodiscard]] bool interrupted();
+// Either of both.
+[[nodiscard]] bool asked_to_end();
 
 }  // namespace hb::tools

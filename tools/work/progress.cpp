@@ -14,6 +14,9 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+// A forecast after so many seconds, or never: by then parts of every kind have been seen.
+constexpr double first_look = 2, worth_saying = 10;
+
 }  // namespace
 
 Progress::Progress(std::string what, std::size_t total)
@@ -35,6 +38,21 @@ void Progress::advance(std::size_t steps) {
   const double left = spent * static_cast<double>(total_ - done_) / static_cast<double>(done_);
   fmt::print(stderr, "\r\033[K{}: {} of {} ({:.0f} %), {} left", what_, done_, total_,
              100.0 * static_cast<double>(done_) / static_cast<double>(total_), duration(left));
+}
+
+Forecast::Forecast(std::string what, std::size_t total, int num_threads)
+    : what_(std::move(what)), total_(total), num_threads_(num_threads), start_(std::chrono::steady_clock::now()) {}
+
+void Forecast::advance(std::size_t steps) {
+  const std::lock_guard lock(mutex_);
+  done_ += steps;
+  const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  if (said_ || spent < first_look || done_ == 0) return;
+  said_ = true;
+  const double left = spent * static_cast<double>(total_ - done_) / static_cast<double>(done_);
+  if (spent + left < worth_saying) return;
+  fmt::print(stderr, "hb: {} takes about {} ({} parts, {} {}); --threads and --time-limit change that\n", what_,
+             duration(spent + left), total_, num_threads_, num_threads_ == 1 ? "thread" : "threads");
 }
 
 }  // namespace hb::tools

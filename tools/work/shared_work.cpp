@@ -62,6 +62,7 @@ void SharedWork::step(const std::string& what, const Parts& parts) {
   };
   const std::size_t num_chunks = (count + chunk_size - 1) / chunk_size;
   if (ranks().size() == 1) {
+    Forecast forecast(what, count, num_threads_);
     const bool complete = parallel_for(
         num_chunks, num_threads_,
         [&](std::size_t chunk) {
@@ -69,9 +70,10 @@ void SharedWork::step(const std::string& what, const Parts& parts) {
             split(*earlier, parts, from(chunk), to(chunk));
           } else {
             compute(chunk);
-            keep(chunk);
+            if (!ends_early()) keep(chunk);
           }
           progress.advance(to(chunk) - from(chunk));
+          forecast.advance(to(chunk) - from(chunk));
         },
         stop_);
     if (!complete) throw WorkStopped();
@@ -173,19 +175,17 @@ KeptRun::~KeptRun() {
 bool KeptRun::run(const std::function<void(SharedWork&)>& work) {
   if (!ranks().first()) {
     const InterruptGuard guard;
-    SharedWork share(num_threads_, nullptr, interrupted);
+    SharedWork share(num_threads_, nullptr, asked_to_end);
     work(share);
     throw ShareDone();
   }
-  if (!checkpoint_) {
-    SharedWork unkept(num_threads_);
-    work(unkept);
-    return true;
-  }
   const InterruptGuard guard;
-  SharedWork kept(num_threads_, &*checkpoint_, interrupted);
+  const bool alone = ranks().size() == 1;
+  SharedWork shared(num_threads_, checkpoint_ ? &*checkpoint_ : nullptr,
+                    alone && !checkpoint_ ? std::function<bool()>() : alone ? interrupted : asked_to_end,
+                    alone ? early_end(checkpoint_.has_value()) : std::function<bool()>());
   try {
-    work(kept);
+    work(shared);
   } catch (const WorkStopped&) {
     return false;
   } catch (const std::out_of_range& error) {
@@ -196,9 +196,20 @@ bool KeptRun::run(const std::function<void(SharedWork&)>& work) {
 }
 
 void KeptRun::delivered() {
+  if (asked_to_end()) return;  // what is finished serves --resume
   if (checkpoint_) checkpoint_->remove();
   checkpoint_.reset();
 }
+
+std::function<bool()> early_end(bool folder) { return folder ? time_is_up : asked_to_end; }
+
+int stopped_status() {
+  if (interrupted()) return exit_interrupted;
+  fmt::print(stderr, "hb: the time limit was reached before there was an answer\n");
+  return exit_not_reached;
+}
+
+int ended_status(int status) { return interrupted() ? exit_interrupted : status; }
 
 EarlierParts earlier_parts_flag(bool resume, bool restart, bool out) {
   if (resume && restart) throw UsageError("--restart: found beside --resume, allowed: one of the two");

@@ -21,17 +21,20 @@ struct WorkStopped {};
 
 class SharedWork : public Work {
  public:
-  // `kept`, if given, holds what an earlier run finished of the same steps in the same order.
-  explicit SharedWork(int num_threads, Checkpoint* kept = nullptr, std::function<bool()> stop = {})
-      : num_threads_(num_threads), kept_(kept), stop_(std::move(stop)) {}
+  // `kept`, if given, holds what an earlier run finished of the same steps in the same order. `stop` ends a step with
+  // WorkStopped; `early` lets it go on to its end without computing what is left, of which nothing is kept.
+  explicit SharedWork(int num_threads, Checkpoint* kept = nullptr, std::function<bool()> stop = {},
+                      std::function<bool()> early = {})
+      : num_threads_(num_threads), kept_(kept), stop_(std::move(stop)), early_(std::move(early)) {}
 
   void for_each(std::size_t count, const std::function<void(std::size_t)>& task) const override;
   void step(const std::string& what, const Parts& parts) override;
+  [[nodiscard]] bool ends_early() const override { return early_ && early_(); }
 
  private:
   int num_threads_;
   Checkpoint* kept_;
-  std::function<bool()> stop_;
+  std::function<bool()> stop_, early_;
   std::uint64_t step_ = 0;
 };
 
@@ -46,7 +49,8 @@ class KeptRun {
   KeptRun(const KeptRun&) = delete;
   KeptRun& operator=(const KeptRun&) = delete;
 
-  // False if Ctrl-C or SIGTERM ended it early.
+  // False if it was stopped before there was an answer: by Ctrl-C or SIGTERM where finished parts are kept, or in one
+  // of several processes. Else the answer may lack what was not computed before Ctrl-C or the end of the time.
   [[nodiscard]] bool run(const std::function<void(SharedWork&)>& work);
   // The answer is in its place: the parts go.
   void delivered();
@@ -56,6 +60,14 @@ class KeptRun {
   int num_threads_;
   std::optional<Checkpoint> checkpoint_;
 };
+
+// What ends work on the way to an answer that has to be given as far as it is there; with `folder` only the time: then
+// what is finished is kept at Ctrl-C.
+[[nodiscard]] std::function<bool()> early_end(bool folder);
+// Exit status of work that was stopped, after the words that belong to it.
+[[nodiscard]] int stopped_status();
+// Status of an answer: 130 after Ctrl-C, else `status`.
+[[nodiscard]] int ended_status(int status);
 
 // --resume and --restart.
 [[nodiscard]] EarlierParts earlier_parts_flag(bool resume, bool restart, bool out);

@@ -146,6 +146,9 @@ Keep parse_keep(const std::string& text) {
   const std::string dense = without_blanks(text);
   const std::size_t less = dense.find("<="), more = dense.find(">=");
   const std::size_t sign = std::min(less, more);
+  if (const std::size_t strict = dense.find_first_of("<>="); sign == std::string::npos && strict != sign)
+    refuse("keep", text, "with a sign that is not <= or >=",
+           fmt::format("{}{}{}", dense.substr(0, strict), dense[strict] == '>' ? ">=" : "<=", dense.substr(strict + 1)));
   keep.metric = parse_metric("keep", text, dense.substr(0, sign));
   keep.at_least = more < less;
   if (sign == std::string::npos) {
@@ -164,9 +167,12 @@ Keep parse_keep(const std::string& text) {
   const bool may_be_zero = is_margin(keep.metric) || keep.metric.kind == MetricKind::clearance;
   if (!value || !(may_be_zero ? *value >= 0 : *value > 0))
     refuse("keep", text, fmt::format("where \"{}\" is no number {} 0", bound, may_be_zero ? ">=" : ">"), "a bound");
-  if (better_large(keep.metric.kind) != keep.at_least)
-    refuse("keep", text, "which keeps nothing good",
-           better_large(keep.metric.kind) ? ">= with this quantity" : "<= with this quantity");
+  if (better_large(keep.metric.kind) != keep.at_least) {
+    const std::string quantity = dense.substr(0, sign);
+    const bool large = better_large(keep.metric.kind);
+    refuse("keep", text, fmt::format("but {} is better {}", quantity, large ? "large" : "small"),
+           fmt::format("{}{}{}", quantity, large ? ">=" : "<=", dense.substr(sign + 2)));
+  }
   keep.bound = *value;
   return keep;
 }

@@ -136,6 +136,7 @@ class Tuner {
       const int left = task_.options.max_evaluations - static_cast<int>(result.design.trials.size()) -
                        result.confirmations - 1;  // the next confirmation
       if (result.verified() || result.rounds == most_rounds || left < 1 || !needed.allFinite()) return;
+      if (task_.options.stop && task_.options.stop()) return;
       ++result.rounds;
       std::string why;
       if (!result.agrees) {

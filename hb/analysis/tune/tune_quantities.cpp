@@ -152,11 +152,6 @@ double mass_of(const SceneModel& model, const std::string& name) {
   return sum;
 }
 
-double frequency_ratio(const HillSystem& system, double speed) {
-  const double w2 = scale_system(system, speed).mean_diagonal().minCoeff();
-  return w2 > 0 ? std::sqrt(w2) : 0.0;
-}
-
 double lowest_frequency(const HillSystem& system) {
   // At rest only the part without speed is left: M^-1 mean(C_0), nearly diagonal; its lowest w^2 by its diagonal in
   // scaled coordinates.

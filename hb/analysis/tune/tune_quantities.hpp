@@ -9,6 +9,7 @@
 #include "hb/engine/boundaries/mode_tracks.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/nearest_resonance.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 
 namespace hb {
@@ -63,9 +64,8 @@ struct JointQuantities {
 // Of the elastic link of that name; empty: of all asked for.
 [[nodiscard]] double mass_of(const SceneModel& model, const std::string& name);
 
-// omega_1 of the mean system at rest, rad per unit time, and omega_1/Omega at a speed.
+// omega_1 of the mean system at rest, rad per unit time.
 [[nodiscard]] double lowest_frequency(const HillSystem& system);
-[[nodiscard]] double frequency_ratio(const HillSystem& system, double speed);
 
 struct SpeedSpan {
   double from = 0, to = 0;  // rad per unit time; equal: one speed

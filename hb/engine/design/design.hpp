@@ -49,6 +49,7 @@ struct DesignOptions {
   double tolerance = 1e-5;  // of each variable, relative to its bounds' distance (on its scale)
   int max_evaluations = 600;  // analyses, those of differences included, gradients not
   std::uint64_t seed = 1;  // of mlsl
+  std::function<bool()> stop = {};  // asked before each analysis: true ends the search as if no analysis were left
   bool only_local = false;  // from the start, without the global search of automatic, direct and mlsl
   std::function<void(int evaluations, bool feasible, double goal)> progress;  // best so far, after each analysis
 };

@@ -36,7 +36,7 @@ class DesignSearch {
   std::size_t num_conditions() const { return static_cast<std::size_t>(problem_.num_conditions); }
   std::size_t num_parts() const { return static_cast<std::size_t>(problem_.num_parts); }
   int evaluations() const { return static_cast<int>(result_.trials.size()); }
-  int left() const { return options_.max_evaluations - evaluations(); }
+  int left() const { return options_.stop && options_.stop() ? 0 : options_.max_evaluations - evaluations(); }
   bool feasible() const { return best_ && violation(best_->values) <= 0; }
   // Of the best design so far.
   double least_violation() const { return best_ ? violation(best_->values) : HUGE_VAL; }

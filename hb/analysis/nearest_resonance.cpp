@@ -1,0 +1,75 @@
+#include "hb/analysis/nearest_resonance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hb/engine/system/scaled_system.hpp"
+#include "lib/dense.hpp"
+
+namespace hb {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index most_unknowns = 60;
+
+// Omega with r(Omega) = n by Omega <- Omega r(Omega)/n, which is exact where omega_1 does not depend on the speed.
+std::optional<NearestResonance> resonance_of(const HillSystem& system, double speed, int n) {
+  constexpr int most_steps = 60;
+  constexpr double tolerance = 1e-10;
+  double Omega = speed;
+  for (int step = 0; step < most_steps; ++step) {
+    const double ratio = frequency_ratio(system, Omega);
+    if (!(ratio > 0) || !std::isfinite(ratio)) return std::nullopt;
+    const double next = Omega * ratio / n;
+    if (!(next > 0) || !std::isfinite(next)) return std::nullopt;
+    if (std::abs(next - Omega) <= tolerance * Omega) return NearestResonance{n, next, n * next};
+    Omega = next;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+double frequency_ratio(const HillSystem& system, double speed) {
+  const double w2 = scale_system(system, speed).mean_diagonal().minCoeff();
+  return w2 > 0 ? std::sqrt(w2) : 0.0;
+}
+
+std::optional<NearestResonance> nearest_resonance(const HillSystem& system, double speed) {
+  if (system.num_modes() > most_unknowns) return std::nullopt;
+  const double ratio = frequency_ratio(system, speed);
+  constexpr double most_orders = 1e6;
+  if (!(ratio > 0 && ratio < most_orders)) return std::nullopt;
+  const int below = std::max(1, static_cast<int>(std::floor(ratio)));
+  std::optional<NearestResonance> nearest;
+  for (const int n : {below, below + 1}) {
+    const std::optional<NearestResonance> found = resonance_of(system, speed, n);
+    if (found && (!nearest || std::abs(found->speed - speed) < std::abs(nearest->speed - speed))) nearest = found;
+  }
+  return nearest;
+}
+
+std::optional<double> quasi_static_response(const HillSystem& system, double speed) {
+  const FourierSeries C = stiffness_at(system, speed), h = load_at(system, speed);
+  const Index I = system.num_modes();
+  if (h.c.size() == 0 || I > most_unknowns) return std::nullopt;
+  const Index H = std::max(C.num_harmonics(), h.num_harmonics());
+  const Index N = fourier::fast_length(std::max<Index>(4 * H + 2, 32));
+  const Eigen::MatrixXd matrices = fourier::synthesise(C, N), loads = fourier::synthesise(h, N);
+  double largest = 0;
+  int sign = 0;
+  for (Index j = 0; j < N; ++j) {
+    const Eigen::Map<const Eigen::MatrixXd> at(matrices.col(j).data(), I, I);
+    const dense::Lu<double> lu(at);
+    // The determinant keeps its sign over the turn, or C is singular between two angles.
+    const int now = lu.sign() * (((lu.pivots().array() < 0).count() % 2 == 0) ? 1 : -1);
+    if (!(lu.rcond() > 0) || (j > 0 && now != sign)) return std::nullopt;
+    sign = now;
+    largest = std::max(largest, lu.solve(Eigen::VectorXd(loads.col(j))).cwiseAbs().maxCoeff());
+  }
+  if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
+  return largest;
+}
+
+}  // namespace hb

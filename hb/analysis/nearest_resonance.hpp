@@ -1,0 +1,29 @@
+// Where a forced vibration is in its resonance curve: the speed of the nearest simple resonance, and how much larger the
+// response is than that of the load applied slowly.
+#pragma once
+
+#include <optional>
+
+#include "lib/hill_system.hpp"
+
+namespace hb {
+
+// r = omega_1/Omega with omega_1 the lowest natural frequency of the system averaged over the turn at the speed Omega, by
+// the diagonal of its stiffness in scaled coordinates; 0 where that is not positive.
+[[nodiscard]] double frequency_ratio(const HillSystem& system, double speed);
+
+struct NearestResonance {
+  int order = 0;  // n of n Omega = omega_1
+  double speed = 0;  // Omega there, rad per unit time
+  double frequency = 0;  // omega_1 there, rad per unit time
+};
+
+// Where r = n: of all orders n >= 1 the one whose speed is nearest; empty where none is found (no positive mean
+// stiffness, more than 60 unknowns).
+[[nodiscard]] std::optional<NearestResonance> nearest_resonance(const HillSystem& system, double speed);
+
+// max over i and tau of |q_i| of the solution of C(tau; Omega) q = h(tau; Omega) at each crank angle by itself. Empty
+// without a load, where C is singular or indefinite at some angle, and for more than 60 unknowns.
+[[nodiscard]] std::optional<double> quasi_static_response(const HillSystem& system, double speed);
+
+}  // namespace hb

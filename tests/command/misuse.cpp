@@ -1,0 +1,107 @@
+// Mistakes that users made at their first attempts, and what they have to be told.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+struct Misuse {
+  const char* name;
+  // Changes of the six-link scene, written as scene.toml: what stands there, what is written instead.
+  std::vector<std::pair<const char*, const char*>> edits;
+  const char* arguments;
+  int status;
+  std::vector<const char*> said;  // on either stream, each
+  std::vector<const char*> not_said = {};
+};
+
+class Misused : public CommandTest, public testing::WithParamInterface<Misuse> {};
+
+TEST_P(Misused, IsToldInTheWordsOfWhatWasWritten) {
+  const Misuse& misuse = GetParam();
+  std::string text = read(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  for (const auto& [from, to] : misuse.edits) {
+    const std::size_t at = text.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text.replace(at, std::string(from).size(), to);
+  }
+  std::ofstream(folder_ / "scene.toml") << text;
+  // Angles, as a table over one turn has them, before three stiffnesses.
+  std::ofstream table(folder_ / "table.csv");
+  for (int k = 0; k < 36; ++k) table << 10 * k << "," << 1 + 0.01 * k << ",0.1,4\n";
+  table.close();
+  std::ofstream(folder_ / "hill.toml")
+      << "[hill]\nmass = [[1, 0], [0, 1]]\nstiffness = { file = \"table.csv\" }\n[analysis]\nomega = 1\n";
+  const CommandResult result = hb(misuse.arguments);
+  const std::string all = result.out + result.err;
+  EXPECT_EQ(result.status, misuse.status) << all;
+  for (const char* part : misuse.said) EXPECT_NE(all.find(part), std::string::npos) << part << "\n" << all;
+  for (const char* part : misuse.not_said) EXPECT_EQ(all.find(part), std::string::npos) << part << "\n" << all;
+  if (misuse.status == 2) {
+    EXPECT_TRUE(result.out.empty()) << result.out;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  }
+}
+
+const std::vector<Misuse> misuses = {
+    // Scenes
+    {"youngs_modulus_in_megapascal", {{"21e7", "210000"}}, "scene scene.toml", 0,
+     {"WARNING", "found 210 MPa; 210 GPa if the number was in MPa"}},
+    {"youngs_modulus_in_psi", {{"21e7", "30e6"}, {"length = \"mm\"", "length = \"in\""}, {"mass = \"kg\"", "mass = \"lb\""}},
+     "scene scene.toml", 0, {"WARNING", "206.8 GPa if the number was in psi"}},
+    {"gravity_of_another_unit", {{"gravity = 9810", "gravity = 9.81"}}, "scene scene.toml", 0,
+     {"WARNING", "9.81 m/s^2 if the number was in m/s^2"}},
+    {"second_moment_of_a_misprint", {{"J = 45", "J = 4500"}}, "scene scene.toml", 0,
+     {"WARNING", "J/area^2 = 45", "a square 1/12"}},
+    {"angles_taken_for_stiffnesses", {}, "steady hill.toml", 2, {"table.csv:1", "angles in the first column", "k11"}},
+    {"text_without_quotes", {{"title = \"Six-link mechanism\"", "title = Six-link mechanism"}}, "scene scene.toml", 2,
+     {"text needs quotes: title = \"Six-link mechanism\""}},
+    {"decimal_comma", {{"length = 55", "length = 55,5"}}, "scene scene.toml", 2,
+     {"The decimal point is a point: length = 55.5"}},
+    {"damping_ratio_is_a_key", {{"damping_internal = 1e-4", "damping_ratio = 0.01"}}, "scene scene.toml", 0,
+     {"ratio 0.01 of mode 1"}, {"damping_x meant"}},
+    {"damping_ratio_misspelt", {{"damping_internal = 1e-4", "damping_ration = 0.01"}}, "scene scene.toml", 2,
+     {"damping_ratio meant?"}},
+    {"branch_left_out", {{"branch = -1", "# branch"}}, "scene scene.toml", 2,
+     {"dyad.0.branch", "counter-clockwise (1) or clockwise (-1)"}},
+    {"mass_left_out", {{"mass = 0.165, ", ""}}, "scene scene.toml", 2, {"AB.mass", "density or material"}},
+    {"unknown_section", {{"area = 10, J = 45", "section = { shape = \"circle\", diameter = 3 }"}}, "scene scene.toml", 2,
+     {"\"circle\"", "round", "tube"}},
+    {"unit_by_its_long_name", {{"length = \"mm\"", "length = \"inch\""}}, "scene scene.toml", 2, {"in meant?"}},
+    {"dyads_are_counted_one_way", {{"pivot = [570, 0]", "pivot = [5700, 0]"}}, "scene scene.toml", 2,
+     {"dyad.1", "(CD, O3D)", "does not close"}, {"dyad 2"}},
+    {"inertia_less_than_the_mass_has", {}, "steady scene.toml --rpm 300 --modes 1", 0, {}, {"inertia_pivot", "allowed"}},
+    {"number_without_its_unit", {}, "steady scene.toml --rpm 300 --set 'AB.length=\"55 kg\"'", 2, {"a mass", "\"55 mm\""}},
+    // Speeds and ranges
+    {"misspelt_flag", {}, "steady scene.toml --rmp 300", 2, {"unknown flag --rmp (--rpm meant?)", "--help"}},
+    {"misspelt_long_flag", {}, "steady scene.toml --stabilty-method bound", 2, {"(--stability-method meant?)"}},
+    {"range_for_one_speed", {}, "steady scene.toml --rpm 200:300:10", 2, {"one speed"}, {"FROM:TO"}},
+    {"one_speed_for_a_range", {}, "sweep scene.toml --rpm 300", 2, {"single speed 300", "FROM:TO:STEP"}},
+    {"range_with_a_dash", {}, "sweep scene.toml --rpm 100-300", 2, {"a range is 100:300:10"}},
+    {"range_without_a_step", {}, "sweep scene.toml --rpm 100:300", 2, {"a step is missing: 100:300:10 or 100:300:x50"}},
+    {"unit_behind_a_speed", {}, "steady scene.toml --rpm 300rpm", 2, {"without a unit: 300"}},
+    {"decimal_comma_in_a_speed", {}, "steady scene.toml --rpm 300,5", 2, {"the decimal point is a point: 300.5"}},
+    {"decimal_comma_in_a_number_set", {}, "steady scene.toml --rpm 300 --set AB.J=4,5", 2, {"the decimal point is a point"}},
+    {"clockwise_speed", {}, "steady scene.toml --rpm -300", 2, {"mirror the scene"}},
+    {"too_many_points", {}, "sweep scene.toml --rpm 1:1000001:1", 2, {"1000001 points", "at most 1000000 points"}},
+    {"step_in_a_map", {}, "map scene.toml --x rpm=0.5:6:0.1 --y AB.J=30:60:5", 2,
+     {"the number of points is 0.1", "the third number is no step"}},
+    // Words
+    {"misspelt_choice", {}, "steady scene.toml --rpm 300 --only stabilty", 2, {"stability meant?"}},
+    {"keep_the_wrong_way_round", {}, "tune scene.toml --minimise mass --vary AB.J=20:90 --keep 'frequency<=100'", 2,
+     {"frequency is better large", "allowed: frequency>=100"}},
+    {"keep_with_less_instead_of_less_or_equal", {}, "tune scene.toml --minimise mass --vary AB.J=20:90 --keep 'deflection<2'",
+     2, {"allowed: deflection<=2"}},
+    {"unknown_number", {}, "steady scene.toml --rpm 300 --set AB.JJ=3", 2, {"AB.J meant?"}},
+    {"bounds_alone_are_called_bounds", {}, "steady scene.toml --rpm 300 --modes 1 --only verdict", 0,
+     {"growth rate       between -"}, {"+/- 1.5e+03", "WARNING"}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, Misused, testing::ValuesIn(misuses),
+                         [](const testing::TestParamInfo<Misuse>& info) { return std::string(info.param.name); });
+
+}  // namespace

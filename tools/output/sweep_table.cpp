@@ -1,0 +1,194 @@
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "tools/output/output_units.hpp"
+#include "tools/output/sweep_output.hpp"
+#include "tools/output/sweep_words.hpp"
+#include "tools/output/theory_words.hpp"
+#include "tools/output/verdict_words.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Text = fmt::memory_buffer;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+template <class... Args>
+void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
+}
+
+// The axis as the head of a narrow column: "rpm", "AB.J [mm^4]".
+std::string axis_column(const SweepScene& scene) {
+  if (scene.axis().kind == Axis::Kind::rpm) return "rpm";
+  if (scene.axis().kind == Axis::Kind::omega) return "omega [rad/" + scene.scene().units.time + "]";
+  return axis_label(scene);
+}
+
+// No more digits than are known.
+std::string located(double x, double error) {
+  constexpr int most = 12, fewest = 3;
+  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
+  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
+}
+
+std::string kind_words(BoundaryKind kind, bool linkage) {
+  switch (kind) {
+    case BoundaryKind::plus_one: return linkage ? "repeating with every turn (+1)" : "repeating with every period (+1)";
+    case BoundaryKind::minus_one: return "period doubling (-1)";
+    case BoundaryKind::complex: break;
+  }
+  return "at a frequency of its own (complex pair)";
+}
+
+std::string growth_digits(const Stability& stability) {
+  return fmt::format("{:.{}g}", stability.growth_rate + 0.0,
+                     std::min(6, trusted_digits(stability.growth_rate, stability.growth_error)));
+}
+
+// Rows of the table: every so many points, and the last.
+std::vector<std::size_t> shown_rows(std::size_t count) {
+  constexpr std::size_t most = 16;
+  const std::size_t every = (count + most - 1) / most;
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < count; k += every) rows.push_back(k);
+  if (rows.back() != count - 1) rows.push_back(count - 1);
+  return rows;
+}
+
+void add_point(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r, const SweepPoint& point,
+               bool distances) {
+  const OutputUnits units = output_units(scene.scene());
+  add(text, "  {:>14.8g}", point.x);
+  if (!point.problem.empty()) {
+    add(text, "  no answer\n");
+    return;
+  }
+  const RodPoint& here = point.rods[r];
+  if (result.computed.steady) add(text, "  {:>14.6g}", here.max_abs.empty() ? nan : here.max_abs.front());
+  if (result.computed.shape)
+    add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan), here.bending_moment.value_or(nan) * units.moment);
+  if (has_theory(scene, result))
+    add(text, "  {:>12}", (here.theory_error ? fmt::format("{:.1e}", *here.theory_error) : "no value") +
+                              (beyond_theory(here.theory_error) || beyond_limits(here) ? " !" : "  "));
+  if (result.computed.stability) {
+    const Stability& stability = here.stability->stability;
+    add(text, "  {:>16}", growth_digits(stability));
+    if (distances) {
+      const std::optional<double> distance = distance_to_boundary(result.rods[r], point.x);
+      add(text, "  {:>14}", distance ? fmt::format("{:.6g}", *distance) : "");
+    }
+    add(text, "  {}", stability.verdict == Verdict::unstable ? "UNSTABLE" : to_string(stability.verdict));
+  }
+  add(text, "\n");
+}
+
+void add_bands(Text& text, const SweepScene& scene, const SweepRod& rod) {
+  const OutputUnits units = output_units(scene.scene());
+  const bool linkage = scene.first().linkage() != nullptr;
+  const std::string unit = axis_unit(scene).empty() ? "" : " " + axis_unit(scene);
+  add(text, "  {}\n", rod.bands.empty() ? "no unstable band" : "unstable bands");
+  for (const UnstableBand& band : rod.bands) {
+    add(text, "    {} .. {}{}  fastest growth of its points {:.4g} {} at {:.6g}{}; begins {}, ends {}\n",
+        located(band.from, band.error_from), located(band.to, band.error_to), unit, band.fastest, units.rate,
+        band.fastest_x, unit, band.open_from ? "before the sweep" : kind_words(band.kind_from, linkage),
+        band.open_to ? "beyond the sweep" : kind_words(band.kind_to, linkage));
+  }
+}
+
+void add_peaks(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r) {
+  const OutputUnits units = output_units(scene.scene());
+  const FrequencyUnit frequency = frequency_unit(scene.scene());
+  const std::string unit = axis_unit(scene).empty() ? "" : " " + axis_unit(scene);
+  const auto found = std::count_if(result.critical.begin(), result.critical.end(),
+                                   [&](const CriticalPoint& point) { return point.rod == r; });
+  add(text, "  {}\n", found == 0 ? "no resonance peak" : "resonance peaks");
+  for (const CriticalPoint& point : result.critical) {
+    if (point.rod != r) continue;
+    const SweepPoint* there = refined_point(result, point.peak.x);
+    const bool unbounded = std::isinf(point.peak.value);
+    add(text, "    {}{}  ", located(point.peak.x, point.peak.error), unit);
+    if (unbounded)
+      add(text, "|q_{}| unbounded in the linear theory: a multiplier passes +1", point.component + 1);
+    else
+      add(text, "max |q_{}| = {:.5g}{}", point.component + 1, point.peak.value,
+          units.response.empty() ? "" : " " + units.response);
+    if (point.mode >= 0)
+      add(text, ", mode {} at {:.4g} {} = {}Omega", point.mode + 1, point.frequency * frequency.factor, frequency.name,
+          point.order == 1 ? "" : fmt::format("{} ", point.order));
+    if (has_theory(scene, result) && (unbounded || (there && (beyond_theory(there->rods[r].theory_error)))))
+      add(text, "; beyond the linear theory");
+    add(text, "\n");
+  }
+}
+
+}  // namespace
+
+std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
+  const OutputUnits units = output_units(scene.scene());
+  const std::vector<double>& values = scene.axis().values;
+  const std::string verdict = sweep_verdict(scene, result);
+  Text text;
+  add(text, "{}{}{}\n{} = {:.10g} to {:.10g}{}, {} points", scene_name(scene.scene()), verdict.empty() ? "" : ": ",
+      verdict, scene.axis().path, values.front(), values.back(),
+      axis_unit(scene).empty() || axis_unit(scene) == scene.axis().path ? "" : " " + axis_unit(scene), values.size());
+  if (!is_speed(scene)) add(text, " at {}", speed_text(result.points.front().speed, scene.scene()));
+  add(text, "\n");
+  const std::vector<std::size_t> rows = shown_rows(values.size());
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const SweepRod& rod = result.rods[r];
+    if (!rod.reported) continue;
+    add(text, "\n{}: {} {}\n", rod.name, rod.num_modes,
+        scene.first().linkage() ? (rod.num_modes == 1 ? "mode" : "modes")
+                                : (rod.num_modes == 1 ? "unknown" : "unknowns"));
+    const bool distances = distance_to_boundary(rod, values.front()).has_value();
+    add(text, "  {:>14}", axis_column(scene));
+    if (result.computed.steady) add(text, "  {:>14}", "max |q_1|" + bracketed(units.response));
+    if (result.computed.shape) add(text, "  {:>15}  {:>14}", "deflection" + bracketed(units.length), "moment [N m]");
+    if (has_theory(scene, result)) add(text, "  {:>12}", "theory error");
+    if (result.computed.stability) {
+      add(text, "  {:>16}", "growth" + bracketed(units.rate));
+      if (distances) add(text, "  {:>14}", "to boundary");
+      add(text, "  verdict");
+    }
+    add(text, "\n");
+    for (const std::size_t k : rows) add_point(text, scene, result, r, result.points[k], distances);
+    if (rows.size() < values.size())
+      add(text, "  ({} of {} points; --json and --out have all)\n", rows.size(), values.size());
+    if (result.searched_bands)
+      add_bands(text, scene, rod);
+    else if (result.computed.stability)
+      add(text, "  unstable bands between the points were not looked for\n");
+    if (result.searched_peaks)
+      add_peaks(text, scene, result, r);
+    else if (result.computed.steady)
+      add(text, "  resonance peaks between the points were not looked for\n");
+  }
+  const auto closed = static_cast<std::size_t>(std::count_if(
+      result.points.begin(), result.points.end(), [](const SweepPoint& point) { return point.problem.empty(); }));
+  if (closed < result.points.size()) {
+    const auto first = std::find_if(result.points.begin(), result.points.end(),
+                                    [](const SweepPoint& point) { return !point.problem.empty(); });
+    add(text, "\n{} of {} points have no answer; the first: {}\n", result.points.size() - closed, result.points.size(),
+        first->problem);
+  }
+  add(text, "\n");
+  for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  for (const std::string& sentence : result.notes) add(text, "NOTE: {}\n", sentence);
+  for (const std::string& warning : scene.scene().warnings) add(text, "WARNING: {}\n", warning);
+  if (has_theory(scene, result))
+    for (const std::string& warning : theory_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
+  for (const std::string& warning : limit_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
+  if (!verdict.empty()) add(text, "Verdict: {}\n", verdict);
+  return fmt::to_string(text);
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,41 @@
+// What exponents and verdicts mean, in words and in rows of tables.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "lib/scene/scene.hpp"
+
+namespace hb::tools {
+
+// Frequencies of disturbances as shown: in Hz, of a [hill] scene as angular frequency in its own unit.
+struct FrequencyUnit {
+  double factor = 1;  // on rad per unit time
+  std::string name;  // "Hz", "rad/s"
+};
+[[nodiscard]] FrequencyUnit frequency_unit(const Scene& scene);
+
+// What the verdict means for a disturbance, with the time to halve or to grow tenfold. `unfolded`: Exponent::frequency
+// is that of the motion.
+[[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Scene& scene,
+                                           bool unfolded = true);
+
+// The verdict of each elastic link; empty: not looked at.
+using NamedVerdicts = std::vector<std::pair<std::string, std::optional<Verdict>>>;
+[[nodiscard]] NamedVerdicts named_verdicts(const std::vector<RodResult>& rods);
+// Of all together: "UNSTABLE because of AB", "stable (AB, CD)", and which were not looked at; empty where none was.
+[[nodiscard]] std::string mechanism_verdict(const NamedVerdicts& verdicts);
+// The same, short, for titles of pictures: "stable", "UNSTABLE because of AB", "stability undecided (AB)".
+[[nodiscard]] std::string title_verdict(const NamedVerdicts& verdicts);
+
+// Rows of growth rate, frequency (unfolded), damping ratio and error; of a conjugate pair one. Those not resolved to a
+// part in 10^6 are marked with ?.
+[[nodiscard]] std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, double speed,
+                                         const Scene& scene);
+// Rows of e^(lambda 2 pi/Omega): all of them.
+[[nodiscard]] std::string multipliers_rows(const Stability& stability, double speed, const Scene& scene);
+
+}  // namespace hb::tools
