@@ -165,11 +165,13 @@ void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& swe
   }
   Json& branches = json["branches"] = Json::array();
   for (const NonlinearBranch& branch : sweep.branches) branches.push_back(branch_json(scene, sweep, branch));
-  Json &folds = json["folds"] = Json::array(), &details = json["fold_details"] = Json::array();
+  Json folds = Json::array(), details = Json::array();
   for (const NonlinearEvent& fold : sweep.folds) {
     folds.push_back(place_of(scene, fold.x, fold.speed));
     details.push_back(event_json(scene, fold));
   }
+  json["folds"] = std::move(folds);
+  json["fold_details"] = std::move(details);
   Json& bifurcations = json["bifurcations"] = Json::array();
   for (const NonlinearEvent& event : sweep.bifurcations) bifurcations.push_back(event_json(scene, event));
   Json& jumps = json["jumps"] = Json::array();
