@@ -1,0 +1,547 @@
+#include "hb/engine/boundaries/interval_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numbers>
+
+#include "hb/engine/boundaries/growth_model.hpp"
+#include "hb/engine/boundaries/strands.hpp"
+
+namespace hb {
+
+int counts[10];
+int why = 0;
+#define WHY(n, x) (why = n, x)
+namespace {
+
+using cplx = std::complex<double>;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+// Two exponents move by this part of a turn against each other at most from place to place, where they may excite each
+// other.
+constexpr double most_motion = 0.25, most_motion_while_unstable = 0.15;
+// Models take places no farther away than that.
+constexpr double most_motion_of_models = 0.5;
+// Intervals are not divided below this, relative to x: narrower bands are not looked for.
+constexpr double least_width = 2e-9;
+constexpr int most_divisions = 48;
+constexpr int most_evaluations = 1000;
+
+struct Place {
+  StabilitySample sample;
+  Strands strands;
+  std::vector<MeanExponent> mean;
+  std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
+  bool unstable = false;
+
+  double x() const { return sample.x; }
+  double growth() const { return sample.stability.growth_rate / sample.speed; }
+  double growth_error() const { return sample.stability.growth_error / sample.speed; }
+};
+
+struct Cell {
+  double from, to;  // places
+  int divisions = 0;
+};
+
+class Search {
+ public:
+  Search(const SystemAt& at, const SweepOptions& options) : at_(at), options_(options) {
+    located_ = options;
+    located_.stability.leading_only = true;
+  }
+
+  SearchedInterval run(const StabilitySample& a, const StabilitySample& b, const StabilitySample* before,
+                       const StabilitySample* after) {
+    for (const StabilitySample* sample : {before, &a, &b, after})
+      if (sample != nullptr) places_.emplace(sample->x, place(*sample));
+    first_ = a.x;
+    last_ = b.x;
+    cells_.push_back({a.x, b.x, 0});
+    while (!cells_.empty()) {
+      const Cell cell = cells_.back();
+      cells_.pop_back();
+      if (places_.at(cell.from).unstable != places_.at(cell.to).unstable)
+        split_at_boundary(cell);
+      else
+        settle(cell);
+    }
+    return result();
+  }
+
+ private:
+  using Node = std::map<double, Place>::iterator;
+
+  Place place(const StabilitySample& sample) const {
+    Place made;
+    made.sample = sample;
+    made.mean = sample.mean;
+    if (made.mean.empty()) {
+      if (const std::optional<ScaledSystem> system = at_(sample.x)) made.mean = mean_exponents(*system);
+    }
+    made.strands = strands_of(sample, made.mean);
+    made.unstable = is_unstable(sample);
+    return made;
+  }
+
+  const ParametricCoupling* coupling(Place& p) const {
+    if (!p.coupling) {
+      const std::optional<ScaledSystem> system = at_(p.x());
+      if (!system) return nullptr;
+      p.coupling = std::make_shared<ParametricCoupling>(*system, options_.max_order);
+    }
+    return p.coupling.get();
+  }
+
+  // A growth that is not told from none between two places.
+  double least_growth(const Place& p, const Place& q) const {
+    double least = options_.least_growth;
+    for (const Place* place : {&p, &q})
+      if (place->growth_error() < 1) least = std::max(least, place->growth_error());
+    return least;
+  }
+
+  bool evaluate(double x) {
+    ++evaluations_;
+    ++counts[why];
+    const std::optional<StabilitySample> sample = stability_sample(at_, x, options_.stability);
+    if (!sample || !std::isfinite(sample->stability.growth_rate)) return false;
+    places_.emplace(x, place(*sample));
+    return true;
+  }
+
+  void give_up(const Cell& cell) { not_excluded_.push_back({cell.from, cell.to}); }
+
+  // --- A change of verdict in the cell ---
+
+  void split_at_boundary(const Cell& cell) {
+    const Place &p = places_.at(cell.from), &q = places_.at(cell.to);
+    const StabilityBoundary boundary = locate_boundary(at_, p.sample, q.sample, located_);
+    boundaries_.push_back(boundary);
+    const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
+    if (right < cell.to) cells_.push_back({right, cell.to, cell.divisions + 1});
+    if (left > cell.from) cells_.push_back({cell.from, left, cell.divisions + 1});
+  }
+
+  // The nearest place on one side of the boundary that shows the verdict of that side.
+  double beside(const StabilityBoundary& boundary, const Cell& cell, int side) {
+    const double end = side < 0 ? cell.from : cell.to, room = std::abs(end - boundary.x);
+    const bool unstable = boundary.unstable_above == (side > 0);
+    double step = std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
+    for (; step < 0.5 * room; step *= 16) {
+      const double x = boundary.x + side * step;
+      why = 8;
+      if (places_.contains(x) || !evaluate(x)) break;
+      if (places_.at(x).unstable == unstable) return x;
+      places_.erase(x);
+    }
+    return end;
+  }
+
+  // --- One verdict at both ends ---
+
+  void settle(const Cell& cell) {
+    const double width = cell.to - cell.from;
+    if (width <= least_width * std::max(std::abs(cell.from), std::abs(cell.to))) return;
+    Place &p = places_.at(cell.from), &q = places_.at(cell.to);
+    const double x = p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
+    if (std::isnan(x)) return;
+    if (cell.divisions >= most_divisions || evaluations_ >= most_evaluations || !(x > cell.from && x < cell.to) ||
+        !evaluate(x)) {
+      if (getenv("DBG")) fprintf(stderr, "give up %.15g %.15g x %.17g div %d ev %d\n", cell.from, cell.to, x, cell.divisions, evaluations_);
+      give_up(cell);
+      return;
+    }
+    cells_.push_back({x, cell.to, cell.divisions + 1});
+    cells_.push_back({cell.from, x, cell.divisions + 1});
+  }
+
+  // NaN: settled; otherwise where to look.
+  double doubtful_while_stable(Place& p, Place& q) {
+    const double middle = 0.5 * (p.x() + q.x());
+    if (p.strands.all.empty() || q.strands.all.empty()) return bounded_without_strands(p, q) ? nan : middle;
+    if (!resolved(p, q, most_motion)) return WHY(0, middle);
+    const double least = least_growth(p, q);
+    const std::vector<std::size_t> onward = continued(p.strands, q.strands);
+    double worst = least, where = nan;
+    const auto meeting = meetings(p, q, onward, least);
+    for (const Meeting& m : meeting) {
+      const std::optional<GrowthModel> model = pair_model(p, m.a, m.b, q);
+      if (!model) return WHY(1, m.x);
+      const double far = std::max(-model->mean_growth(), least), centre = model->centre(), width = q.x() - p.x();
+      if (centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width && model->rise() > 0.25 * far * far)
+        return WHY(2, centre);
+      if (const auto [x, high] = highest(*model, p, q); high > worst) {
+        worst = high;
+        where = central(*model, p, q, x);
+      }
+    }
+    if (!std::isnan(where)) return WHY(3, where);
+    if (level(p, q, least)) return nan;
+    why = 4;
+    for (std::size_t k = 0; k < p.strands.all.size(); ++k) {
+      double high = HUGE_VAL, x = middle;
+      for (const std::optional<GrowthModel>& model : {single_model(p, k, q), partner_model(p, k, q)}) {
+        if (!model) continue;
+        if (const auto [x_model, high_model] = highest(*model, p, q); high_model < high) {
+          high = high_model;
+          x = x_model;
+        }
+      }
+      if (high > worst) {
+        worst = high;
+        where = clamped(x, p, q);
+      }
+    }
+    return where;
+  }
+
+  double doubtful_while_unstable(Place& p, Place& q) {
+    const double middle = 0.5 * (p.x() + q.x());
+    if (p.strands.all.empty() || q.strands.all.empty()) return middle;
+    if (!resolved(p, q, most_motion_while_unstable)) return WHY(5, middle);
+    std::vector<GrowthModel> models;
+    for (Place* place : {&p, &q}) {
+      for (std::size_t k = 0; k < place->strands.all.size(); ++k) {
+        if (!(place->strands.all[k].s.real() > 0)) break;
+        const Place& other = place == &p ? q : p;
+        for (const std::optional<GrowthModel>& model :
+             {single_model(*place, k, other), partner_model(*place, k, other)})
+          if (model) models.push_back(*model);
+      }
+    }
+    if (models.empty()) return WHY(6, middle);
+    why = 7;
+    double worst = HUGE_VAL, where = middle;
+    for (const double x : probes(p, q)) {
+      double low = -HUGE_VAL;
+      for (const GrowthModel& model : models) low = std::max(low, model(x).low);
+      if (low < worst) {
+        worst = low;
+        where = x;
+      }
+    }
+    return worst > 0 ? nan : clamped(where, p, q);
+  }
+
+  // Bounds on the growth alone.
+  bool bounded_without_strands(const Place& p, const Place& q) const {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Place* place : window(p, q)) {
+      const double upper = place->growth() + place->growth_error();
+      low = std::min(low, upper);
+      high = std::max(high, upper);
+    }
+    return high + (high - low) < 0;
+  }
+
+  // No two exponents that may excite each other move farther than that.
+  bool resolved(Place& p, Place& q, double most) {
+    if (p.mean.size() != q.mean.size()) return true;
+    const std::size_t n = p.mean.size();
+    const std::vector<double> growth = growth_by_mean(p, q);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = i + 1; j < n; ++j) {
+        const double at_p = p.mean[j].value.imag() - p.mean[i].value.imag();
+        const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
+        if (!(std::abs(at_p - at_q) > most)) continue;
+        // Two of which one grows leave a gap only if they decay together.
+        if (p.unstable && (std::max(growth[i], growth[j]) < 0 || growth[i] + growth[j] > 0)) continue;
+        const double needed =
+            p.unstable ? std::sqrt(std::abs(growth[i] * growth[j])) : needed_coupling(growth[i], growth[j]);
+        if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling),
+                     std::min(q.mean[i].coupling, q.mean[j].coupling)) < needed)
+          continue;
+        const ParametricCoupling *of_p = coupling(p), *of_q = coupling(q);
+        if (of_p == nullptr || of_q == nullptr) return false;
+        const int first = std::max(1, static_cast<int>(std::ceil(std::min(at_p, at_q) - 0.5)));
+        const int last = std::min(options_.max_order, static_cast<int>(std::floor(std::max(at_p, at_q) + 0.5)));
+        for (int k = first; k <= last; ++k)
+          if (!(std::max((*of_p)(i, j, k), (*of_q)(i, j, k)) < needed)) return false;
+      }
+    }
+    return true;
+  }
+
+  // Growth of the exponents that belong to each mean exponent, the larger one of both places.
+  static std::vector<double> growth_by_mean(const Place& p, const Place& q) {
+    std::vector<double> growth(p.mean.size(), -HUGE_VAL);
+    for (const Place* place : {&p, &q})
+      for (const Strand& strand : place->strands.all)
+        if (!strand.mean.empty())
+          growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
+    for (std::size_t k = 0; k < growth.size(); ++k)
+      if (std::isinf(growth[k])) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
+    return growth;
+  }
+
+  // Two exponents that meet grow if their coupling exceeds the root of the product of their decays.
+  double needed_coupling(double growth, double other) const {
+    return std::max(std::sqrt(std::max(-growth, 0.0) * std::max(-other, 0.0)), options_.least_growth);
+  }
+
+  bool may_excite(Place& p, std::size_t a, std::size_t b, double needed) const {
+    const Strand &s = p.strands.all[a], &t = p.strands.all[b];
+    if (s.mean.empty() || t.mean.empty()) return true;
+    for (const std::size_t n : s.mean) {
+      for (const std::size_t r : t.mean) {
+        if (n == r || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
+        const ParametricCoupling* strength = coupling(p);
+        if (strength == nullptr) return true;
+        const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
+        const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
+        const int k = static_cast<int>(std::round(to - from));
+        if (k == 0) {
+          if (!(strength->symmetric() && in * ir > 0)) return true;
+        } else if (!((k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k)) < needed)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  struct Meeting {
+    std::size_t a, b;  // strands at p
+    double x;  // where they meet, roughly
+  };
+
+  static double apart(const Strands& s, std::size_t a, std::size_t b) {
+    return std::abs(folded(s.all[a].s - s.all[b].s).imag());
+  }
+  // Imaginary part modulo 1/2 of where two strands meet.
+  static double meeting_point(const Strands& s, std::size_t a, std::size_t b) {
+    const double m = s.all[b].s.imag() + 0.5 * folded(s.all[a].s - s.all[b].s).imag();
+    return m - 0.5 * std::round(2 * m);
+  }
+
+  // Pairs that may come together between p and q and excite each other: the distances at both ends add up to no more
+  // than they may have moved.
+  std::vector<Meeting> meetings(Place& p, Place& q, const std::vector<std::size_t>& onward, double least) {
+    std::vector<Meeting> found;
+    const Strands &sp = p.strands, &sq = q.strands;
+    std::vector<double> motion(sp.all.size());
+    for (std::size_t k = 0; k < sp.all.size(); ++k) {
+      motion[k] = 2 * mean_motion(sp, sq, k);
+      if (onward[k] != no_strand) motion[k] += std::abs(folded(sq.all[onward[k]].s - sp.all[k].s).imag());
+    }
+    for (std::size_t a = 0; a < sp.all.size(); ++a) {
+      for (std::size_t b = a + 1; b < sp.all.size(); ++b) {
+        const double most = motion[a] + motion[b] + 1e-12, here = apart(sp, a, b);
+        if (here > most) continue;
+        // What they move is more than what locks them, and than the growth that this gives.
+        const double mean = 0.5 * (sp.all[a].s.real() + sp.all[b].s.real());
+        if (mean + 0.5 * (most + std::abs(sp.all[a].s.real() - sp.all[b].s.real())) < 0) continue;
+        const double point = meeting_point(sp, a, b);
+        if (point < -1e-12) continue;  // the conjugate pair's
+        double there = HUGE_VAL;
+        for (std::size_t c = 0; c < sq.all.size(); ++c)
+          for (std::size_t d = c + 1; d < sq.all.size(); ++d) {
+            const double away = meeting_point(sq, c, d) - point;
+            if (std::abs(away - 0.5 * std::round(2 * away)) <= most) there = std::min(there, apart(sq, c, d));
+          }
+        if (!(here + there <= most)) continue;
+        if (getenv("DBG")) fprintf(stderr, "meet %.10g %.10g: %zu(%.4g %.4f) %zu(%.4g %.4f) most %.3g here %.3g there %.3g\n", p.x(), q.x(), a, sp.all[a].s.real(), sp.all[a].s.imag(), b, sp.all[b].s.real(), sp.all[b].s.imag(), most, here, there);
+        const double needed = needed_coupling(sp.all[a].s.real(), sp.all[b].s.real());
+        if (!may_excite(p, a, b, std::max(needed, least))) continue;
+        const double sum = here + there;
+        found.push_back({a, b, clamped(p.x() + (q.x() - p.x()) * (sum > 0 ? here / sum : 0.5), p, q)});
+      }
+    }
+    return found;
+  }
+
+  // Growth that hardly changes.
+  bool level(const Place& p, const Place& q, double least) const {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (const Place* place : window(p, q)) {
+      if (place->unstable) return false;
+      low = std::min(low, place->growth());
+      high = std::max(high, place->growth());
+    }
+    return high + 2 * (high - low) <= least;
+  }
+
+  // --- Models ---
+
+  // p, q and up to one more on either side or two on one.
+  std::vector<const Place*> window(const Place& p, const Place& q) const {
+    const double room = 1e-4 * std::abs(q.x() - p.x());
+    const auto low = places_.find(std::min(p.x(), q.x())), high = places_.find(std::max(p.x(), q.x()));
+    std::vector<const Place*> left, right;
+    for (auto it = low; it != places_.begin() && left.size() < 2;) {
+      --it;
+      if (low->first - it->first > room && usable(it->second, p)) left.push_back(&it->second);
+    }
+    for (auto it = std::next(high); it != places_.end() && right.size() < 2; ++it)
+      if (it->first - high->first > room && usable(it->second, p)) right.push_back(&it->second);
+    std::vector<const Place*> chosen = {&p, &q};
+    std::size_t l = 0, r = 0;
+    while (chosen.size() < 4 && (l < left.size() || r < right.size())) {
+      const bool take_left = l < left.size() && (r == right.size() || l < r ||
+                                                 (l == r && low->first - left[l]->x() <= right[r]->x() - high->first));
+      chosen.push_back(take_left ? left[l++] : right[r++]);
+    }
+    return chosen;
+  }
+  static bool usable(const Place& place, const Place& like) {
+    return !place.strands.all.empty() && !like.strands.all.empty();
+  }
+
+  // Where strands of p are at another place of its window, from place to place.
+  std::optional<std::vector<std::size_t>> followed(const Place& p, const Place& to,
+                                                   std::vector<std::size_t> strands) const {
+    auto it = places_.find(p.x());
+    const bool up = to.x() > p.x();
+    while (it->first != to.x()) {
+      const auto next = up ? std::next(it) : std::prev(it);
+      if (!usable(next->second, p)) return std::nullopt;
+      const std::vector<std::size_t> onward = continued(it->second.strands, next->second.strands);
+      for (std::size_t& k : strands) {
+        k = onward[k];
+        if (k == no_strand) return std::nullopt;
+      }
+      it = next;
+    }
+    return strands;
+  }
+
+  static std::optional<GrowthModel> consistent_model(std::vector<GrowthNode> nodes, const Place& p,
+                                                     const Place& q) {
+    if (nodes.size() < 3 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+    GrowthModel model(std::move(nodes));
+    if (!model.consistent()) return std::nullopt;
+    return model;
+  }
+
+  std::optional<GrowthModel> single_model(const Place& p, std::size_t k, const Place& q) const {
+    std::vector<GrowthNode> nodes;
+    for (const Place* place : window(p, q)) {
+      const auto at = followed(p, *place, {k});
+      if (!at) continue;
+      if (place != &p && place != &q && mean_motion(p.strands, place->strands, k) > most_motion_of_models) continue;
+      const Strand& s = place->strands.all[(*at)[0]];
+      nodes.push_back({place->x(), s.s.real(), s.s.imag(), 0, s.error, 0});
+    }
+    return consistent_model(std::move(nodes), p, q);
+  }
+
+  std::optional<GrowthModel> pair_model(const Place& p, std::size_t a, std::size_t b, const Place& q) const {
+    std::vector<GrowthNode> nodes;
+    for (const Place* place : window(p, q)) {
+      const auto at = followed(p, *place, {a, b});
+      if (!at) continue;
+      const Strand &s = place->strands.all[(*at)[0]], &t = place->strands.all[(*at)[1]];
+      // Farther apart they are nearer on the other side.
+      constexpr double farthest = 0.4;
+      if (!(std::abs(folded(s.s - t.s).imag()) <= farthest)) continue;
+      if (place != &p && place != &q &&
+          mean_motion(p.strands, place->strands, a) + mean_motion(p.strands, place->strands, b) > most_motion_of_models)
+        continue;
+      nodes.push_back(pair_node(place->x(), s.s, t.s, s.error, t.error));
+    }
+    if (nodes.size() < 3 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+    return consistent_model(std::move(nodes), p, q);
+  }
+
+  // With the strand that is nearest.
+  std::optional<GrowthModel> partner_model(const Place& p, std::size_t k, const Place& q) const {
+    std::size_t partner = no_strand;
+    double least = HUGE_VAL;
+    for (std::size_t other = 0; other < p.strands.all.size(); ++other) {
+      if (other == k) continue;
+      const double distance = apart(p.strands, k, other);
+      if (distance < least) {
+        least = distance;
+        partner = other;
+      }
+    }
+    if (partner == no_strand) return std::nullopt;
+    return pair_model(p, k, partner, q);
+  }
+
+  // Dense at both ends, where an interpolation's error vanishes with the distance.
+  static std::vector<double> probes(const Place& p, const Place& q) {
+    std::vector<double> x;
+    const double width = q.x() - p.x();
+    constexpr int middle = 12;
+    for (int k = 1; k < middle; ++k) x.push_back(p.x() + width * k / middle);
+    for (double t = 0.05; t > 1e-6; t *= 0.3) {
+      x.push_back(p.x() + t * width);
+      x.push_back(q.x() - t * width);
+    }
+    return x;
+  }
+
+  static std::pair<double, double> highest(const GrowthModel& model, const Place& p, const Place& q) {
+    double worst = -HUGE_VAL, where = 0.5 * (p.x() + q.x());
+    std::vector<double> all = probes(p, q);
+    all.push_back(model.centre());
+    for (const double x : all) {
+      const double high = model(x).high;
+      if (!(high <= worst)) {
+        worst = high;
+        where = x;
+      }
+    }
+    return {where, worst};
+  }
+
+  // The pair's centre if it is inside, or where its growth is least known.
+  static double central(const GrowthModel& model, const Place& p, const Place& q, double worst) {
+    const double width = q.x() - p.x(), centre = model.centre();
+    return centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width ? centre : clamped(worst, p, q);
+  }
+
+  static double clamped(double x, const Place& p, const Place& q) {
+    const double margin = 0.02 * (q.x() - p.x());
+    return std::clamp(x, p.x() + margin, q.x() - margin);
+  }
+
+  SearchedInterval result() {
+    SearchedInterval found;
+    found.evaluations = evaluations_;
+    std::sort(boundaries_.begin(), boundaries_.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    found.boundaries = boundaries_;
+    for (std::size_t k = 0; k + 1 < boundaries_.size(); ++k) {
+      const StabilitySample* chosen = nullptr;
+      for (auto it = places_.upper_bound(boundaries_[k].x); it != places_.end() && it->first < boundaries_[k + 1].x; ++it)
+        if (it->first > first_ && it->first < last_ && it->second.unstable == boundaries_[k].unstable_above &&
+            (chosen == nullptr || (it->second.sample.stability.growth_rate > chosen->stability.growth_rate) ==
+                                      boundaries_[k].unstable_above))
+          chosen = &it->second.sample;
+      if (chosen != nullptr) found.samples.push_back(*chosen);
+    }
+    std::sort(not_excluded_.begin(), not_excluded_.end());
+    for (const std::array<double, 2>& piece : not_excluded_) {
+      if (!found.not_excluded.empty() && piece[0] <= found.not_excluded.back()[1])
+        found.not_excluded.back()[1] = std::max(found.not_excluded.back()[1], piece[1]);
+      else
+        found.not_excluded.push_back(piece);
+    }
+    return found;
+  }
+
+  const SystemAt& at_;
+  const SweepOptions& options_;
+  SweepOptions located_;
+  std::map<double, Place> places_;
+  std::vector<Cell> cells_;
+  std::vector<StabilityBoundary> boundaries_;
+  std::vector<std::array<double, 2>> not_excluded_;
+  double first_ = 0, last_ = 0;
+  int evaluations_ = 0;
+};
+
+}  // namespace
+
+SearchedInterval search_interval(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
+                                 const StabilitySample* before, const StabilitySample* after,
+                                 const SweepOptions& options) {
+  return Search(at, options).run(a, b, before, after);
+}
+
+}  // namespace hb
