@@ -119,9 +119,11 @@ class Search {
 
   void split_at_boundary(const Cell& cell) {
     const Place &p = places_.at(cell.from), &q = places_.at(cell.to);
-    const StabilityBoundary boundary = locate_boundary(at_, p.sample, q.sample, located_);
-    boundaries_.push_back(boundary);
+    StabilityBoundary boundary = locate_boundary(at_, p.sample, q.sample, located_);
     const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
+    const StabilitySample& inside = places_.at(boundary.unstable_above ? right : left).sample;
+    if (leading_resolved(inside.stability)) boundary.kind = boundary_kind(inside.stability, inside.speed);
+    boundaries_.push_back(boundary);
     if (right < cell.to) cells_.push_back({right, cell.to, cell.divisions + 1});
     if (left > cell.from) cells_.push_back({cell.from, left, cell.divisions + 1});
   }
@@ -162,7 +164,8 @@ class Search {
   // NaN: settled; otherwise where to look.
   double doubtful_while_stable(Place& p, Place& q) {
     const double middle = 0.5 * (p.x() + q.x());
-    if (p.strands.all.empty() || q.strands.all.empty()) return bounded_without_strands(p, q) ? nan : middle;
+    if (bounded(p, q)) return nan;
+    if (p.strands.all.empty() || q.strands.all.empty()) return middle;
     if (!resolved(p, q, most_motion)) return WHY(0, middle);
     const double least = least_growth(p, q);
     const std::vector<std::size_t> onward = continued(p.strands, q.strands);
@@ -227,15 +230,10 @@ class Search {
     return worst > 0 ? nan : clamped(where, p, q);
   }
 
-  // Bounds on the growth alone.
-  bool bounded_without_strands(const Place& p, const Place& q) const {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const Place* place : window(p, q)) {
-      const double upper = place->growth() + place->growth_error();
-      low = std::min(low, upper);
-      high = std::max(high, upper);
-    }
-    return high + (high - low) < 0;
+  // A closed-form bound on the growth proves stability at both ends with more to spare than it changes.
+  static bool bounded(const Place& p, const Place& q) {
+    const double a = p.sample.growth_bound, b = q.sample.growth_bound;
+    return std::max(a, b) + std::abs(a - b) < 0;
   }
 
   // No two exponents that may excite each other move farther than that.
@@ -357,7 +355,9 @@ class Search {
   // Growth that hardly changes.
   bool level(const Place& p, const Place& q, double least) const {
     double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const Place* place : window(p, q)) {
+    const std::vector<const Place*> places = window(p, q);
+    if (places.size() < 3) return false;
+    for (const Place* place : places) {
       if (place->unstable) return false;
       low = std::min(low, place->growth());
       high = std::max(high, place->growth());

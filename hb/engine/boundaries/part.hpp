@@ -1,12 +1,13 @@
 // Results as lists of numbers, so that a part of long work can be kept in a file or come from another process.
 #pragma once
 
+#include <complex>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
-#include "hb/engine/boundaries/sweep.hpp"
+#include "hb/engine/boundaries/interval_search.hpp"
 
 namespace hb {
 
@@ -44,6 +45,14 @@ void visit_as_number(Visit& visit, Number& value) {
   value = static_cast<Number>(number);
 }
 
+template <class Visit>
+void visit_complex(Visit& visit, std::complex<double>& value) {
+  double re = value.real(), im = value.imag();
+  visit(re);
+  visit(im);
+  value = {re, im};
+}
+
 // The size, then each element by `each`.
 template <class Visit, class Container, class Each>
 void visit_elements(Visit& visit, Container& container, Each&& each) {
@@ -72,15 +81,19 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
   Stability& stability = sample.stability;
   visit(sample.x);
   visit(sample.speed);
-  visit_elements(visit, stability.exponents, [&](Exponent& exponent) {
-    double re = exponent.value.real(), im = exponent.value.imag();
-    visit(re);
-    visit(im);
-    exponent.value = {re, im};
-    visit(exponent.error);
-    visit_as_number(visit, exponent.mode);
-    visit(exponent.frequency);
+  for (std::vector<Exponent>* list : {&stability.exponents, &stability.uncertain}) {
+    visit_elements(visit, *list, [&](Exponent& exponent) {
+      visit_complex(visit, exponent.value);
+      visit(exponent.error);
+      visit_as_number(visit, exponent.mode);
+      visit(exponent.frequency);
+    });
+  }
+  visit_elements(visit, sample.mean, [&](MeanExponent& exponent) {
+    visit_complex(visit, exponent.value);
+    visit(exponent.coupling);
   });
+  visit(sample.growth_bound);
   visit(stability.growth_rate);
   visit(stability.growth_error);
   visit(stability.growth_low);
@@ -96,6 +109,17 @@ void visit_boundary(Visit& visit, StabilityBoundary& boundary) {
   visit_as_number(visit, boundary.kind);
   visit_as_number(visit, boundary.unstable_above);
   visit_as_number(visit, boundary.converged);
+}
+
+template <class Visit>
+void visit_interval(Visit& visit, SearchedInterval& interval) {
+  visit_elements(visit, interval.boundaries, [&](StabilityBoundary& boundary) { visit_boundary(visit, boundary); });
+  visit_elements(visit, interval.samples, [&](StabilitySample& sample) { visit_sample(visit, sample); });
+  visit_elements(visit, interval.not_excluded, [&](std::array<double, 2>& piece) {
+    visit(piece[0]);
+    visit(piece[1]);
+  });
+  visit_as_number(visit, interval.evaluations);
 }
 
 // part(0) .. part(count - 1) by `parts` (empty: one after the other) of results that visit(visitor, result) writes and

@@ -1,6 +1,7 @@
 // What is known of a system's stability at one value of a parameter.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -16,6 +17,7 @@ struct StabilitySample {
   double speed = 0;  // rad per unit time
   Stability stability;
   std::vector<MeanExponent> mean;  // may be empty: then it is computed where it is needed
+  double growth_bound = HUGE_VAL;  // in closed form, per radian of crank angle
 };
 
 // The system at x, in the solvers' coordinates; empty where there is none (a linkage that does not close). Same x, same
