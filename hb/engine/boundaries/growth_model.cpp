@@ -47,14 +47,16 @@ std::pair<Value, double> GrowthModel::interpolated(double x, const Of& of) const
 
 bool GrowthModel::consistent() const {
   constexpr double part = 0.1, angle = 0.01;
-  if (nodes_.size() < 4) return true;
   GrowthModel others({nodes_.begin(), nodes_.end() - 1});
   const GrowthNode& last = nodes_.back();
-  double scale = 0;
-  for (const GrowthNode& node : nodes_) scale = std::max(scale, std::abs(node.Q));
+  double scale = 0, moved = 0;
+  for (const GrowthNode& node : nodes_) {
+    scale = std::max(scale, std::abs(node.Q));
+    moved = std::max(moved, std::abs(node.angle - last.angle));
+  }
   const cplx Q = others.interpolated<cplx>(last.x, [](const GrowthNode& node) { return node.Q; }).first;
   const double turns = others.interpolated<double>(last.x, [](const GrowthNode& node) { return node.angle; }).first;
-  return std::abs(Q - last.Q) <= part * scale && std::abs(turns - last.angle) <= angle;
+  return std::abs(Q - last.Q) <= part * scale && std::abs(turns - last.angle) <= angle + part * moved;
 }
 
 GrowthBounds GrowthModel::operator()(double x) const {

@@ -4,6 +4,7 @@
 // which has no branch where the two meet: Q ~ kappa^2 - c^2 (x - x_0)^2 beside a resonance of centre x_0.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <vector>
@@ -40,6 +41,8 @@ class GrowthModel {
   double centre() const;
   // How far Re Q at the centre exceeds what it is at the two places.
   double rise() const;
+  // Of the exponents at the two places.
+  double error() const { return std::max(nodes_[0].growth_error, nodes_[1].growth_error); }
   double mean_growth() const { return 0.5 * (nodes_[0].growth + nodes_[1].growth); }
 
  private:

@@ -168,13 +168,13 @@ class Search {
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
     if (!resolved(p, q, most_motion)) return WHY(0, middle);
     const double least = least_growth(p, q);
-    const std::vector<std::size_t> onward = continued(p.strands, q.strands);
     double worst = least, where = nan;
-    const auto meeting = meetings(p, q, onward, least);
+    const auto meeting = meetings(p, q, least);
     for (const Meeting& m : meeting) {
       const std::optional<GrowthModel> model = pair_model(p, m.a, m.b, q);
       if (!model) return WHY(1, m.x);
-      const double far = std::max(-model->mean_growth(), least), centre = model->centre(), width = q.x() - p.x();
+      worst = std::max(worst, 2 * model->error());
+      const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
       if (centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width && model->rise() > 0.25 * far * far)
         return WHY(2, centre);
       if (const auto [x, high] = highest(*model, p, q); high > worst) {
@@ -185,7 +185,10 @@ class Search {
     if (!std::isnan(where)) return WHY(3, where);
     if (level(p, q, least)) return nan;
     why = 4;
-    for (std::size_t k = 0; k < p.strands.all.size(); ++k) {
+    // One that decays several times as fast as the leading one does not rise above zero by itself.
+    constexpr double several = 4;
+    const double slowest = std::min(p.growth(), q.growth());
+    for (std::size_t k = 0; k < p.strands.all.size() && p.strands.all[k].s.real() > several * slowest - least; ++k) {
       double high = HUGE_VAL, x = middle;
       for (const std::optional<GrowthModel>& model : {single_model(p, k, q), partner_model(p, k, q)}) {
         if (!model) continue;
@@ -206,6 +209,7 @@ class Search {
     const double middle = 0.5 * (p.x() + q.x());
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
     if (!resolved(p, q, most_motion_while_unstable)) return WHY(5, middle);
+    if (keeps_growing(p, q)) return nan;
     std::vector<GrowthModel> models;
     for (Place* place : {&p, &q}) {
       for (std::size_t k = 0; k < place->strands.all.size(); ++k) {
@@ -247,9 +251,9 @@ class Search {
         const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
         if (!(std::abs(at_p - at_q) > most)) continue;
         // Two of which one grows leave a gap only if they decay together.
-        if (p.unstable && (std::max(growth[i], growth[j]) < 0 || growth[i] + growth[j] > 0)) continue;
-        const double needed =
-            p.unstable ? std::sqrt(std::abs(growth[i] * growth[j])) : needed_coupling(growth[i], growth[j]);
+        const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
+        if (p.unstable && (larger < 0 || larger + smaller > 0)) continue;
+        const double needed = p.unstable ? larger : needed_coupling(larger, smaller);
         if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling),
                      std::min(q.mean[i].coupling, q.mean[j].coupling)) < needed)
           continue;
@@ -264,7 +268,8 @@ class Search {
     return true;
   }
 
-  // Growth of the exponents that belong to each mean exponent, the larger one of both places.
+  // Growth of the exponents that belong to each mean exponent, the larger one of both places. One that is locked to
+  // another belongs to either: while unstable those without any count as its partners.
   static std::vector<double> growth_by_mean(const Place& p, const Place& q) {
     std::vector<double> growth(p.mean.size(), -HUGE_VAL);
     for (const Place* place : {&p, &q})
@@ -272,7 +277,7 @@ class Search {
         if (!strand.mean.empty())
           growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
     for (std::size_t k = 0; k < growth.size(); ++k)
-      if (std::isinf(growth[k])) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
+      if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
     return growth;
   }
 
@@ -281,25 +286,56 @@ class Search {
     return std::max(std::sqrt(std::max(-growth, 0.0) * std::max(-other, 0.0)), options_.least_growth);
   }
 
-  bool may_excite(Place& p, std::size_t a, std::size_t b, double needed) const {
+  // How far two strands of p that may excite each other move against each other on the way to q at most, twice as far
+  // as their mean exponents; negative: they do not excite each other.
+  double exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const {
     const Strand &s = p.strands.all[a], &t = p.strands.all[b];
-    if (s.mean.empty() || t.mean.empty()) return true;
+    const bool comparable = p.mean.size() == q.mean.size();
+    double motion = s.mean.empty() || t.mean.empty() ? HUGE_VAL : -1;
     for (const std::size_t n : s.mean) {
       for (const std::size_t r : t.mean) {
-        if (n == r || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
-        const ParametricCoupling* strength = coupling(p);
-        if (strength == nullptr) return true;
         const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
+        const double moved = !comparable ? HUGE_VAL
+                                         : 2 * (std::abs(q.mean[n].value.imag() - in) +
+                                                std::abs(q.mean[r].value.imag() - ir));
+        if (n == r || moved <= motion || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
+        const ParametricCoupling* strength = coupling(p);
+        if (strength == nullptr) return HUGE_VAL;
         const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
         const int k = static_cast<int>(std::round(to - from));
-        if (k == 0) {
-          if (!(strength->symmetric() && in * ir > 0)) return true;
-        } else if (!((k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k)) < needed)) {
-          return true;
-        }
+        const bool excites = k == 0 ? !(strength->symmetric() && in * ir > 0)
+                                    : !((k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k)) < needed);
+        if (excites) motion = moved;
       }
     }
-    return false;
+    return motion;
+  }
+
+  // Twice what each strand of p may move on its way to q, and what it seems to have moved.
+  static std::vector<double> motions(const Place& p, const Place& q) {
+    const std::vector<std::size_t> onward = continued(p.strands, q.strands);
+    std::vector<double> motion(p.strands.all.size());
+    for (std::size_t k = 0; k < motion.size(); ++k) {
+      motion[k] = 2 * mean_motion(p.strands, q.strands, k);
+      if (onward[k] != no_strand)
+        motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
+    }
+    return motion;
+  }
+
+  // The leading strand grows so fast at both ends that what it moves against any other one which may quench it cannot
+  // unlock it on the way.
+  bool keeps_growing(Place& p, const Place& q) const {
+    const std::vector<Strand>& all = p.strands.all;
+    const std::vector<double> motion = motions(p, q);
+    const double growth = std::min(p.growth(), q.growth());
+    for (std::size_t b = 1; b < all.size(); ++b) {
+      if (all[0].s.real() + all[b].s.real() > 0) continue;
+      const double most = motion[0] + motion[b];
+      if (most < growth || apart(p.strands, 0, b) > most) continue;
+      if (exciting_motion(p, q, 0, b, std::sqrt(all[0].s.real() * std::abs(all[b].s.real()))) >= 0) return false;
+    }
+    return growth > motion[0];
   }
 
   struct Meeting {
@@ -318,14 +354,12 @@ class Search {
 
   // Pairs that may come together between p and q and excite each other: the distances at both ends add up to no more
   // than they may have moved.
-  std::vector<Meeting> meetings(Place& p, Place& q, const std::vector<std::size_t>& onward, double least) {
+  std::vector<Meeting> meetings(Place& p, Place& q, double least) {
     std::vector<Meeting> found;
     const Strands &sp = p.strands, &sq = q.strands;
-    std::vector<double> motion(sp.all.size());
-    for (std::size_t k = 0; k < sp.all.size(); ++k) {
-      motion[k] = 2 * mean_motion(sp, sq, k);
-      if (onward[k] != no_strand) motion[k] += std::abs(folded(sq.all[onward[k]].s - sp.all[k].s).imag());
-    }
+    const std::vector<double> motion = motions(p, q);
+    std::vector<double> mean_part;
+    for (std::size_t k = 0; k < motion.size(); ++k) mean_part.push_back(2 * mean_motion(sp, sq, k));
     for (std::size_t a = 0; a < sp.all.size(); ++a) {
       for (std::size_t b = a + 1; b < sp.all.size(); ++b) {
         const double most = motion[a] + motion[b] + 1e-12, here = apart(sp, a, b);
@@ -335,18 +369,25 @@ class Search {
         if (mean + 0.5 * (most + std::abs(sp.all[a].s.real() - sp.all[b].s.real())) < 0) continue;
         const double point = meeting_point(sp, a, b);
         if (point < -1e-12) continue;  // the conjugate pair's
-        double there = HUGE_VAL;
+        double there = HUGE_VAL, there_all = HUGE_VAL;  // along the axis; in all
         for (std::size_t c = 0; c < sq.all.size(); ++c)
           for (std::size_t d = c + 1; d < sq.all.size(); ++d) {
             const double away = meeting_point(sq, c, d) - point;
-            if (std::abs(away - 0.5 * std::round(2 * away)) <= most) there = std::min(there, apart(sq, c, d));
+            if (std::abs(away - 0.5 * std::round(2 * away)) > most || apart(sq, c, d) > there) continue;
+            there = apart(sq, c, d);
+            there_all = std::abs(folded(sq.all[c].s - sq.all[d].s));
           }
         if (!(here + there <= most)) continue;
-        if (getenv("DBG")) fprintf(stderr, "meet %.10g %.10g: %zu(%.4g %.4f) %zu(%.4g %.4f) most %.3g here %.3g there %.3g\n", p.x(), q.x(), a, sp.all[a].s.real(), sp.all[a].s.imag(), b, sp.all[b].s.real(), sp.all[b].s.imag(), most, here, there);
+        // Two that stay together, so near that nothing grows.
+        constexpr double together = 0.2, far = 0.9;
+        if (std::max(std::abs(folded(sp.all[a].s - sp.all[b].s)), there_all) < -together * mean && most < far) continue;
         const double needed = needed_coupling(sp.all[a].s.real(), sp.all[b].s.real());
-        if (!may_excite(p, a, b, std::max(needed, least))) continue;
-        const double sum = here + there;
-        found.push_back({a, b, clamped(p.x() + (q.x() - p.x()) * (sum > 0 ? here / sum : 0.5), p, q)});
+        const double exciting = exciting_motion(p, q, a, b, std::max(needed, least));
+        const double sum = here + there, moved = exciting + motion[a] + motion[b] - mean_part[a] - mean_part[b];
+        if (exciting < 0 || sum > moved + 1e-12) continue;
+        // Where they have hardly come nearer than they may have moved, nothing is known of the place.
+        const double part = sum > 0.15 * moved ? here / sum : 0.5;
+        found.push_back({a, b, clamped(p.x() + (q.x() - p.x()) * part, p, q)});
       }
     }
     return found;
@@ -411,7 +452,7 @@ class Search {
 
   static std::optional<GrowthModel> consistent_model(std::vector<GrowthNode> nodes, const Place& p,
                                                      const Place& q) {
-    if (nodes.size() < 3 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+    if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
     GrowthModel model(std::move(nodes));
     if (!model.consistent()) return std::nullopt;
     return model;
@@ -443,7 +484,7 @@ class Search {
         continue;
       nodes.push_back(pair_node(place->x(), s.s, t.s, s.error, t.error));
     }
-    if (nodes.size() < 3 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+    if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
     return consistent_model(std::move(nodes), p, q);
   }
 

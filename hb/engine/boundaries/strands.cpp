@@ -11,19 +11,16 @@ using cplx = std::complex<double>;
 
 // A mean exponent this much farther than the nearest one is still a candidate: modulation shifts exponents.
 constexpr double doubt = 0.15;
-// ... if its frequency is that of the harmonic that carries the motion, which is not always known, or the decay alike.
-constexpr double like_frequency = 1.5, like_decay = 0.2;
+// ... but not one that decays so many times faster or slower. What the solver names an exponent does not count: in a
+// group of coupled modes it is a guess.
+constexpr double unlike_decay = 3;
 
-std::vector<std::size_t> candidates(cplx s, double frequency, const std::vector<MeanExponent>& mean) {
+std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mean) {
   std::vector<std::pair<double, std::size_t>> distances;
   for (std::size_t n = 0; n < mean.size(); ++n) {
-    const cplx mu = mean[n].value;
-    const double decays = std::max(std::abs(mu.real()), std::abs(s.real()));
-    const bool one_frequency = std::abs(std::abs(mu.imag()) - frequency) <= like_frequency;
-    const bool one_decay = std::abs(mu.real() - s.real()) <= like_decay * decays;
-    const double unlikely = one_frequency && one_decay ? 0 : one_frequency || one_decay ? 0.5 * doubt : 2 * doubt;
-    distances.emplace_back(std::abs(folded(s - mu).imag()) + std::min(1.0, std::abs(mu.real() - s.real())) + unlikely,
-                           n);
+    const double decay = -mean[n].value.real(), seen = -s.real();
+    const bool alike = decay <= unlike_decay * seen && seen <= unlike_decay * decay;
+    distances.emplace_back(std::abs(folded(s - mean[n].value).imag()) + (alike ? 0 : 2 * doubt), n);
   }
   std::sort(distances.begin(), distances.end());
   std::vector<std::size_t> found;
@@ -49,7 +46,7 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
     for (const Exponent& e : *list) {
       if (!std::isfinite(e.error)) continue;
       const cplx s = folded(e.value / sample.speed);
-      strands.all.push_back({s, e.error / sample.speed, candidates(s, e.frequency / sample.speed, mean)});
+      strands.all.push_back({s, e.error / sample.speed, candidates(s, mean)});
     }
   }
   std::stable_sort(strands.all.begin(), strands.all.end(),
