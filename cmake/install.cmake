@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(HB_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hb)
 
-install(TARGETS hb_lib hb_engine EXPORT hb_targets)
+install(TARGETS hb_lib hb_engine hb_analysis EXPORT hb_targets)
 install(EXPORT hb_targets NAMESPACE hb:: FILE hb-targets.cmake DESTINATION ${HB_PACKAGE_DIR})
 
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
@@ -29,6 +29,6 @@ if(TARGET hb_command)
   install(TARGETS hb_command)
 endif()
 if(TARGET hb_mpi)
-  install(TARGETS hb_mpi)
+  install(TARGETS hb_mpi OPTIONAL)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -1,9 +1,10 @@
 #include "lib/hill_system.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -50,7 +51,7 @@ void validate(const HillSystem& system) {
   require(system.damping.rows() == I && system.damping.cols() == I, "damping must have the size of mass");
   require(system.mass.allFinite(), "mass has entries that are not finite");
   require(system.damping.allFinite(), "damping has entries that are not finite");
-  require(Eigen::FullPivLU<Eigen::MatrixXd>(system.mass).isInvertible(), "mass is singular");
+  require(dense::is_invertible(system.mass), "mass is singular");
   for (int p = 0; p < 3; ++p) {
     require_series(system.stiffness[p], I * I, "stiffness (power " + std::to_string(p) + ")");
     require_series(system.load[p], I, "load (power " + std::to_string(p) + ")");

@@ -11,7 +11,7 @@ tune() {
   rm -rf tuned
   hb tune scene.toml "$@" --out tuned >tune.txt
   mv tune.txt tuned
-  rm tuned/.hb-tune tuned/*.png tuned/tune.json tuned/plots.gp tuned/campbell_*.csv tuned/map*.csv
+  rm tuned/.hb-tune tuned/*.png tuned/tune.json tuned/tune.gp tuned/campbell_*.csv tuned/tune_map.csv
 }
 
 # grid NAME "FIRST NUMBERS" "SECOND NUMBERS": brute force over every pair, as grid_NAME.csv.

@@ -1,15 +1,24 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing, and only those. Needs root or sudo when something is missing.
+# tools/setup.sh [command|tests]: installs the Debian packages that are missing, and only those: what builds and runs the
+# command (default), or what the tests, the benchmarks and the page tests need too. Needs root or sudo when something is
+# missing.
 set -euo pipefail
 
+purpose=${1:-command}
 packages=(
   g++ cmake ninja-build git
   libeigen3-dev libfftw3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-  libsundials-dev libnlopt-dev libnlopt-cxx-dev
-  libgtest-dev libbenchmark-dev
-  libopenmpi-dev openmpi-bin
+  libsundials-dev libnlopt-dev libnlopt-cxx-dev libjs-dygraphs
   gnuplot-nox fonts-dejavu-core
 )
+case $purpose in
+  command) ;;
+  tests) packages+=(libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin chromium chromium-driver python3-selenium) ;;
+  *)
+    echo "tools/setup.sh: found $purpose, allowed: command, tests" >&2
+    exit 2
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
@@ -28,7 +37,7 @@ if ((EUID != 0)); then
   as_root=(sudo)
 fi
 
-echo "Installing ${missing[*]}" >&2
+echo "Installing ${missing[*]} (Debian's packages and what they depend on; a minute or two)" >&2
 "${as_root[@]}" apt-get update </dev/null
 "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
   apt-get install --yes --no-install-recommends "${missing[@]}" </dev/null

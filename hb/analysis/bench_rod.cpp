@@ -12,7 +12,7 @@
 
 #include "hb/engine/time/fixed_step.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -38,7 +38,7 @@ Eigen::MatrixXd at_angles(const FourierSeries& series, Eigen::Index N) {
 }
 
 // Repeats until 50 ms or 200 runs have passed, at least once; shortest and median time of one run.
-void time_row(Row& row, const std::function<void()>& work) {
+void time_row(BenchRow& row, const std::function<void()>& work) {
   std::vector<double> times;
   const auto start = Clock::now();
   do {
@@ -57,9 +57,9 @@ constexpr double shooting_tolerances[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr double marching_tolerances[] = {1e-3, 1e-5, 1e-7, 1e-9, 1e-11};
 constexpr int steps_a_turn[] = {128, 512, 2048, 8192, 32768, 131072, 524288};
 // The error is measured against a reference that errs itself.
-const Row* fastest(const RodBench& bench, double error, bool harmonic_balance) {
-  const Row* best = nullptr;
-  for (const Row& row : bench.rows)
+const BenchRow* quickest(const RodBench& bench, double error, bool harmonic_balance) {
+  const BenchRow* best = nullptr;
+  for (const BenchRow& row : bench.rows)
     if (row.harmonic_balance == harmonic_balance && row.error + bench.reference_error <= error &&
         (best == nullptr || row.seconds < best->seconds))
       best = &row;
@@ -74,7 +74,7 @@ std::size_t bench_cases() {
          2 * (std::size(shooting_tolerances) + std::size(marching_tolerances) + std::size(steps_a_turn));
 }
 
-RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const BenchOptions& with, Progress& progress) {
+RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const BenchOptions& with) {
   const double time_limit = with.time_limit;
   const double speed = system.speed;
   RodBench bench;
@@ -84,7 +84,7 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
   tight.tolerance = 1e-13;
   tight.time_limit = 10 * time_limit;
   const ShootingResult reference = solve_by_shooting(system, tight);
-  progress.advance();
+  with.done();
   if (reference.orbit.q.size() == 0 || !(reference.orbit.q.cwiseAbs().maxCoeff() > 0)) {
     bench.notes.push_back("no reference: " +
                           (reference.message.empty() ? "the rod carries no load" : reference.message));
@@ -96,10 +96,10 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
   const auto note = [&](const std::string& sentence) { bench.notes.push_back(sentence); };
 
   const auto series_row = [&](const char* method, const SteadyOptions& options, double asked) {
-    Row row{rod.name, method, asked, 0, 0, 0, 0, true};
+    BenchRow row{rod.name, method, asked, 0, 0, 0, 0, true};
     SteadyState state;
     time_row(row, [&] { state = solve_steady_state(rod.system, speed, options); });
-    progress.advance();
+    with.done();
     if (state.status == SteadyStatus::singular) return;
     row.size = state.num_harmonics;
     row.error = error_of(at_angles(state.q, exact.cols()), exact);
@@ -112,13 +112,13 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
 
   for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
     for (const double tolerance : shooting_tolerances) {
-      Row row{rod.name, std::string("shooting, ") + to_string(integrator), tolerance};
+      BenchRow row{rod.name, std::string("shooting, ") + to_string(integrator), tolerance};
       ShootingResult result;
       time_row(row, [&] {
         result =
             solve_by_shooting(system, {.integrator = integrator, .time_limit = time_limit, .single_run = tolerance});
       });
-      progress.advance();
+      with.done();
       if (result.orbit.q.size() == 0) {
         note(fmt::format("{} at {:.0e}: {}", row.method, tolerance, result.message));
         continue;
@@ -134,7 +134,7 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
   }
   for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
     for (const double tolerance : marching_tolerances) {
-      Row row{rod.name, std::string("marching, ") + to_string(integrator), tolerance};
+      BenchRow row{rod.name, std::string("marching, ") + to_string(integrator), tolerance};
       MarchingResult result;
       time_row(row, [&] {
         result = march_from_rest(system, {.tolerance = tolerance,
@@ -143,7 +143,7 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
                                           .time_limit = time_limit,
                                           .growth_rate = reference.growth_rate});
       });
-      progress.advance();
+      with.done();
       if (result.status != ShootingStatus::converged) {
         note(fmt::format("{} at {:.0e}: {}", row.method, tolerance,
                          result.message.empty() ? to_string(result.status) : result.message));
@@ -159,7 +159,7 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
     const int order = method == FixedStep::newmark ? 2 : 4;
     double seconds_before = 0;
     for (const int steps : steps_a_turn) {
-      progress.advance();
+      with.done();
       if (4 * seconds_before > time_limit) {
         note(fmt::format("{} with {} steps a turn: would take about {:.0f} s, more than the time limit", name, steps,
                          4 * seconds_before));
@@ -168,7 +168,7 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
       // The transient is followed well below the error of such steps, h^order or more.
       const double h = 2 * std::numbers::pi / steps;
       const double settled = std::max(0.1 * std::pow(h, order), 1e-12);
-      Row row{rod.name, name};
+      BenchRow row{rod.name, name};
       MarchingResult result;
       time_row(row, [&] { result = march_fixed_step(system, method, steps, settled, 100000, time_limit); });
       if (result.status != ShootingStatus::converged) {
@@ -189,8 +189,8 @@ std::string ratio_sentence(const RodBench& bench, double error) {
   if (!(bench.reference_error < error))
     return fmt::format("at {:.0e}: not known, the reference itself has an error of {:.1e}", error,
                        bench.reference_error);
-  const Row* series = fastest(bench, error, true);
-  const Row* integration = fastest(bench, error, false);
+  const BenchRow* series = quickest(bench, error, true);
+  const BenchRow* integration = quickest(bench, error, false);
   if (series == nullptr && integration == nullptr) return fmt::format("at {:.0e}: no method reaches it", error);
   if (series == nullptr)
     return fmt::format("at {:.0e}: only {} reaches it, in {:.3g} s", error, integration->method, integration->seconds);
@@ -203,4 +203,4 @@ std::string ratio_sentence(const RodBench& bench, double error) {
                      series->seconds, integration->method, integration->seconds, how);
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -6,9 +6,8 @@
 #include <numbers>
 
 #include "lib/rod/time_domain_rod.hpp"
-#include "tools/output/wording.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 constexpr double turn = 2 * std::numbers::pi;
@@ -215,10 +214,10 @@ bool SpeedCheck::agrees() const {
          (!joints || joints->agrees());
 }
 
-std::optional<WorstCase> worst_case(const std::vector<SpeedCheck>& checks) {
-  std::optional<WorstCase> worst;
+std::optional<WorstComparison> worst_comparison(const std::vector<SpeedCheck>& checks) {
+  std::optional<WorstComparison> worst;
   const auto look_at = [&](double speed, const std::string& where, const Comparison& comparison) {
-    if (!worst || !(share(comparison) <= share(worst->comparison))) worst = WorstCase{speed, where, comparison};
+    if (!worst || !(share(comparison) <= share(worst->comparison))) worst = WorstComparison{speed, where, comparison};
   };
   for (const SpeedCheck& check : checks) {
     for (const RodCheck& rod : check.rods)
@@ -305,4 +304,4 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
   return check;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -10,7 +10,7 @@
 #include "hb/engine/time/shooting.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 struct CheckOptions {
   Integrator integrator = Integrator::automatic;
@@ -61,12 +61,12 @@ struct SpeedCheck {
 };
 
 // The comparison that uses most of what it is allowed.
-struct WorstCase {
+struct WorstComparison {
   double speed = 0;
   std::string where;  // rod, or joint
   Comparison comparison;
 };
-[[nodiscard]] std::optional<WorstCase> worst_case(const std::vector<SpeedCheck>& checks);
+[[nodiscard]] std::optional<WorstComparison> worst_comparison(const std::vector<SpeedCheck>& checks);
 
 // What time integration is asked for: 1e-9, or what the scene asks for if that is less accurate.
 [[nodiscard]] double shooting_tolerance(const Settings& settings);
@@ -80,4 +80,4 @@ struct WorstCase {
 [[nodiscard]] SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& settings,
                                      const CheckOptions& options);
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 // Largest value over the turn of any component of any joint force, and of the torque.
@@ -68,4 +68,4 @@ ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces
           relative(errors.force_cut, size.force), relative(errors.torque_cut, size.torque)};
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -5,7 +5,7 @@
 
 #include "lib/linkage/joint_forces.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 // Estimated errors of joint forces (any component at any joint) and of the driving torque, relative to the largest of
 // each over the turn.
@@ -20,4 +20,4 @@ struct ForceErrors {
                                        double response_error, const std::vector<LinkResponse>& more_harmonics,
                                        const std::vector<LinkResponse>& more_modes);
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -6,17 +6,16 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <numbers>
 
-#include "tools/command/command.hpp"
-#include "tools/output/output_units.hpp"
-#include "tools/output/scene_report.hpp"
-#include "tools/output/wording.hpp"
+#include "lib/linkage/transmission_angle.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 constexpr Eigen::Index first_auto_modes = 3;
-constexpr Eigen::Index max_auto_modes = 60;
+constexpr Eigen::Index max_auto_modes = max_modes;
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
 class Stopwatch {
  public:
@@ -27,6 +26,8 @@ class Stopwatch {
 };
 
 bool wants_modes_error(const Only& only) { return only.steady || only.shape; }
+
+bool wants_response(const Only& only) { return only.steady || only.shape || only.reactions; }
 
 // What was asked for and exists in the scene: a [hill] system has no joints and no shape.
 Only available(const SceneModel& model, Only only) {
@@ -210,6 +211,66 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Only& compute
   return sentences;
 }
 
+// Joint forces with their errors, where they are asked for and every rod has a periodic solution.
+void add_forces(const SceneModel& model, double speed, const Settings& settings, SpeedResult& result) {
+  std::vector<Stage>& stages = result.stages;
+  if (!result.computed.reactions) {
+    if (model.linkage()) stages.push_back({"joint forces", 0, "not asked for", true});
+    return;
+  }
+  for (const RodResult& rod : result.rods) {
+    if (rod.steady->status != SteadyStatus::singular) continue;
+    stages.push_back({"joint forces", 0, rod.name + " has no periodic solution", true});
+    return;
+  }
+  Stopwatch watch;
+  std::vector<LinkResponse> responses, more_modes;
+  double response_error = 0;
+  for (const RodResult& rod : result.rods) {
+    responses.push_back({rod.link, rod.steady->q});
+    more_modes.push_back({rod.link, rod.more_modes.c.size() > 0 ? rod.more_modes : rod.steady->q});
+    response_error = std::max(response_error, rod.steady->error_bound);
+  }
+  result.forces = joint_forces(*model.linkage(), speed, responses);
+  stages.push_back({"joint forces", watch.seconds(), ""});
+  Stopwatch error_watch;
+  std::vector<LinkResponse> more_harmonics;
+  for (std::size_t r = 0; r < model.rods.size(); ++r)
+    more_harmonics.push_back(
+        {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
+  result.force_errors =
+      force_errors(*model.linkage(), speed, *result.forces, response_error, more_harmonics, more_modes);
+  stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
+}
+
+// What the exact model would change, where q was computed.
+void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
+  if (!model.linkage() || result.rods.empty()) return;
+  if (!wants_response(result.computed)) {
+    result.stages.push_back({"theory error", 0, "q was not asked for", true});
+    return;
+  }
+  Stopwatch watch;
+  std::vector<Eigen::Index> modes;
+  for (const RodResult& rod : result.rods) modes.push_back(rod.num_modes);
+  std::vector<HillSystem> systems(modes.size());
+  std::vector<LinearRod> rods;
+  for (std::size_t r = 0; r < modes.size(); ++r) {
+    const bool as_made = modes[r] == model.rods[r].system.num_modes();
+    if (!as_made) systems[r] = system_with(model, model.rods[r], modes[r]);
+    rods.push_back({as_made ? &model.rods[r].system : &systems[r], &result.rods[r].steady->q});
+  }
+  const JointForces* forces = result.forces ? &*result.forces : nullptr;
+  const bool as_made = model.exact && std::ranges::equal(modes, model.exact->rods(), {}, {}, &ExactModel::Rod::num_modes);
+  result.theory = as_made ? theory_errors(*model.exact, speed, rods, forces)
+                          : theory_errors(theory_model(*model.linkage(), modes), speed, rods, forces);
+  result.stages.push_back({"theory error", watch.seconds(), result.theory->reason});
+  if (!model.exact) return;
+  Stopwatch share_watch;
+  for (std::size_t r = 0; r < modes.size(); ++r) result.theory->rods[r].axial_share = axial_share(*model.exact, r);
+  result.stages.push_back({"share of axial elasticity", share_watch.seconds(), ""});
+}
+
 }  // namespace
 
 Eigen::Index comparison_modes(Eigen::Index num_modes) { return num_modes + std::max<Eigen::Index>(3, num_modes / 2); }
@@ -233,11 +294,23 @@ double cut_error(const Body& link, const RodCoefficients& rod, double speed, con
   return safety * ((w - w_finer).cwiseAbs().maxCoeff() / scale);
 }
 
+const char* method_text(SteadyMethod method) {
+  switch (method) {
+    case SteadyMethod::direct:
+      return "direct";
+    case SteadyMethod::iterative:
+      return "iterative";
+    case SteadyMethod::automatic:
+      break;
+  }
+  return "automatic";
+}
+
 void require_resolved(const Scene& scene, const LinkageCoefficients& coefficients) {
   if (!coefficients.resolved) refuse_unresolved(scene, coefficients);
 }
 
-SceneModel make_model(Scene scene, const Settings& settings) {
+SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes) {
   SceneModel model;
   model.scene = std::move(scene);
   Stopwatch watch;
@@ -261,17 +334,18 @@ SceneModel make_model(Scene scene, const Settings& settings) {
 
   for (const std::string& name : settings.rods) {
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      throw UsageError(fmt::format(
-          "--rods: found \"{}\", allowed: {}", name,
-          names.empty() ? "nothing, the scene has no elastic links" : fmt::format("{}", fmt::join(names, ", "))));
+      throw RequestError(
+          "rods", fmt::format("\"{}\"", name),
+          names.empty() ? "nothing, the scene has no elastic links" : fmt::format("{}", fmt::join(names, ", ")));
     }
   }
   if (!settings.rods.empty()) {
     const auto asked = [&](const RodModel& rod) {
       return std::find(settings.rods.begin(), settings.rods.end(), rod.name) != settings.rods.end();
     };
-    // Joint forces carry the vibration of every rod, reported or not.
-    const bool all_needed = available(model, settings.only).reactions;
+    // Joint forces carry the vibration of every rod, reported or not, so does what bending does to the mechanism, and
+    // the mechanism is stable where every rod is.
+    const bool all_needed = model.linkage() && (wants_response(settings.only) || settings.only.stability);
     for (RodModel& rod : model.rods) {
       rod.reported = asked(rod);
       if (!rod.reported && !all_needed) {
@@ -294,11 +368,14 @@ SceneModel make_model(Scene scene, const Settings& settings) {
       const Body& link = link_of(model, rod);
       const Eigen::Index I = start_modes(settings);
       rod.system = ritz_system(link, coefficients_of(model, rod), I);
-      if (rod.reported && wants_modes_error(settings.only)) {
+      if (compares_modes && rod.reported && wants_modes_error(settings.only)) {
         rod.finer = ritz_system(link, coefficients_of(model, rod), comparison_modes(I));
       }
     }
     model.stages.push_back({"Ritz matrices", ritz_watch.seconds(), ""});
+    if (wants_response(settings.only) && !is_auto(settings))
+      model.exact = std::make_shared<const ExactModel>(
+          theory_model(*linkage, std::vector<Eigen::Index>(model.rods.size(), start_modes(settings))));
   }
   return model;
 }
@@ -335,7 +412,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       stages.push_back({"shape of " + rod.name, watch.seconds(), ""});
     }
 
-    if (!only.stability || !rod.reported) {
+    if (!only.stability) {
       stages.push_back({"stability of " + rod.name, 0, "not asked for", true});
     } else {
       const StabilityOptions options = stability_options(settings);
@@ -347,34 +424,9 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     result.rods.push_back(std::move(entry));
   }
 
-  if (!only.reactions) {
-    if (model.linkage()) stages.push_back({"joint forces", 0, "not asked for", true});
-    return result;
-  }
-  for (const RodResult& rod : result.rods) {
-    if (rod.steady->status != SteadyStatus::singular) continue;
-    stages.push_back({"joint forces", 0, rod.name + " has no periodic solution", true});
-    return result;
-  }
-  Stopwatch watch;
-  std::vector<LinkResponse> responses, more_modes;
-  double response_error = 0;
-  for (const RodResult& rod : result.rods) {
-    responses.push_back({rod.link, rod.steady->q});
-    more_modes.push_back({rod.link, rod.more_modes.c.size() > 0 ? rod.more_modes : rod.steady->q});
-    response_error = std::max(response_error, rod.steady->error_bound);
-  }
-  result.forces = joint_forces(*model.linkage(), speed, responses);
-  stages.push_back({"joint forces", watch.seconds(), ""});
-  Stopwatch error_watch;
-  std::vector<LinkResponse> more_harmonics;
-  for (std::size_t r = 0; r < model.rods.size(); ++r)
-    more_harmonics.push_back(
-        {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
-  result.force_errors =
-      force_errors(*model.linkage(), speed, *result.forces, response_error, more_harmonics, more_modes);
-  stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
+  add_forces(model, speed, settings, result);
+  judge_theory(model, speed, result);
   return result;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

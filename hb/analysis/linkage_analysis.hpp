@@ -2,6 +2,7 @@
 // is computed. What depends on geometry alone is in SceneModel, computed once.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,10 +12,11 @@
 #include "lib/linkage/joint_forces.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
-#include "tools/command/common_flags.hpp"
 #include "hb/analysis/force_error.hpp"
+#include "hb/analysis/request.hpp"
+#include "hb/analysis/theory_error.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 // One stage of the work, for --stats.
 struct Stage {
@@ -28,7 +30,7 @@ struct RodModel {
   std::string name;  // "system" for a [hill] scene
   int link = -1;  // body number; -1 for a [hill] scene
   int coefficients = -1;  // place in LinkageCoefficients::rods
-  bool reported = true;  // false: solved only because joint forces need it
+  bool reported = true;  // false: solved only because joint forces and the theory error need it
   HillSystem system;  // with the number of modes asked for (auto: the number to start from)
   HillSystem finer;  // with comparison_modes; empty if the error of the cut is not asked for
 };
@@ -37,6 +39,8 @@ struct SceneModel {
   Scene scene;
   LinkageCoefficients coefficients;  // empty for a [hill] scene
   std::vector<RodModel> rods;
+  // Of the same rods and modes, for the theory error; null where q is not asked for and for a [hill] scene.
+  std::shared_ptr<const ExactModel> exact;
   std::vector<Stage> stages;
 
   const Linkage* linkage() const { return std::get_if<Linkage>(&scene.model); }
@@ -65,6 +69,8 @@ struct SpeedResult {
   std::vector<RodResult> rods;
   std::optional<JointForces> forces;
   std::optional<ForceErrors> force_errors;
+  // Of the rods in their order; empty: q was not computed ("not judged"), or the scene has no elastic links.
+  std::optional<TheoryErrors> theory;
   std::vector<std::string> shortfalls;  // one sentence for each thing that missed its tolerance; empty: all reached
   std::vector<Stage> stages;
 };
@@ -78,10 +84,13 @@ class UnresolvedLinkage : public ObstructedLinkage {
 // Throws UnresolvedLinkage where the turn is not resolved.
 void require_resolved(const Scene& scene, const LinkageCoefficients& coefficients);
 
-// Throws UsageError for a name in settings.rods that is not an elastic link, and UnresolvedLinkage.
-[[nodiscard]] SceneModel make_model(Scene scene, const Settings& settings);
+// Throws RequestError for a name in settings.rods that is not an elastic link, and UnresolvedLinkage. With
+// `compares_modes` false RodModel::finer stays empty.
+[[nodiscard]] SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes = true);
 
 [[nodiscard]] SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings);
+
+[[nodiscard]] const char* method_text(SteadyMethod method);
 
 // The cut of the Ritz series leaves a visible part of the deflection out.
 [[nodiscard]] inline bool needs_more_modes(const RodResult& rod) {
@@ -101,4 +110,4 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
 [[nodiscard]] double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                                const FourierSeries& finer);
 
-}  // namespace hb::tools
+}  // namespace hb

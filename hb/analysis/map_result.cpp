@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 constexpr std::size_t max_lines = 10;
@@ -75,13 +75,13 @@ std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vecto
       for (const BoundaryPoint& p : curve.points) places.push_back({r, p.x, p.y});
     }
   }
-  std::vector<bool> hidden(places.size(), false);
+  std::vector<char> hidden(places.size(), false);
   if (maps.size() > 1) {
     StabilityOptions options = search.search.stability;
     options.leading_only = true;
-    hidden = computed_parts<bool>(
+    hidden = computed_parts<char>(
         search.parts, places.size(),
-        [&](std::size_t k) {
+        [&](std::size_t k) -> char {
           for (std::size_t r = 0; r < maps.size(); ++r) {
             if (r == places[k].rod) continue;
             const std::optional<ScaledSystem> system = plane.system(r, places[k].x, places[k].y);
@@ -89,7 +89,7 @@ std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vecto
           }
           return false;
         },
-        [](auto& visit, bool& is_hidden) { visit_as_number(visit, is_hidden); });
+        [](auto& visit, char& is_hidden) { visit_as_number(visit, is_hidden); });
   }
   std::vector<RodCurve> result;
   std::size_t k = 0;
@@ -134,4 +134,4 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
   return result;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

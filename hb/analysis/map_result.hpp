@@ -9,7 +9,7 @@
 #include "hb/analysis/resonance_lines.hpp"
 #include "hb/analysis/scene_plane.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 struct RodCurve {
   std::size_t rod = 0;
@@ -56,4 +56,4 @@ struct MapResult {
 [[nodiscard]] MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x,
                                     const PlaneAxis& y_axis, std::vector<double> y, const MapOptions& search);
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -8,7 +8,7 @@
 
 #include "hb/engine/boundaries/boundary_curve.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 constexpr std::size_t lattice = 97;  // places per side where the frequencies are computed
@@ -107,4 +107,4 @@ std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<dou
   return lines;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

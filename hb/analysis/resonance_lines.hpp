@@ -9,7 +9,7 @@
 
 #include "hb/engine/boundaries/stability_map.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 struct ResonanceLine {
   int i = 0, j = 0;  // modes, from 0
@@ -26,4 +26,4 @@ struct ResonanceLine {
 [[nodiscard]] std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<double, 2> x,
                                                          std::array<double, 2> y, std::size_t max_lines);
 
-}  // namespace hb::tools
+}  // namespace hb

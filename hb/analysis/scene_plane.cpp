@@ -9,11 +9,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "lib/rod/rod.hpp"
-#include "tools/command/command.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
+#include "lib/rod/rod.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 using Eigen::Index;
@@ -154,8 +153,7 @@ struct Patch {
 }  // namespace
 
 struct ScenePlane::Implementation {
-  SceneSource source;
-  std::vector<Override> overrides;
+  SceneFamily family;
   std::array<PlaneAxis, 2> axes;
   PlaneOptions options;
   std::optional<Scene> corner;
@@ -166,11 +164,11 @@ struct ScenePlane::Implementation {
   std::atomic<std::size_t> computed = 0;
   std::size_t patches = 0;
 
-  std::vector<Override> overrides_at(double u, double v) const {
-    std::vector<Override> all = overrides;
-    if (varies[0]) all.push_back(number_override(axes[0].path, u));
-    if (varies[1]) all.push_back(number_override(axes[1].path, v));
-    return all;
+  Numbers numbers_at(double u, double v) const {
+    Numbers numbers;
+    if (varies[0]) numbers.push_back({axes[0].path, u});
+    if (varies[1]) numbers.push_back({axes[1].path, v});
+    return numbers;
   }
 
   bool asked(const std::string& name) const {
@@ -180,7 +178,7 @@ struct ScenePlane::Implementation {
   // Systems of the rods, those of links multiplied by EJ (stability does not see it).
   std::vector<HillSystem> systems_from_scene(double u, double v) {
     ++computed;
-    const Scene scene = source.with(overrides_at(u, v));
+    const Scene scene = family.scene(numbers_at(u, v));
     if (const auto* hill = std::get_if<HillSystem>(&scene.model)) return {*hill};
     const Linkage& linkage = std::get<Linkage>(scene.model);
     const LinkageCoefficients coefficients = linkage_coefficients(linkage);
@@ -218,11 +216,7 @@ struct ScenePlane::Implementation {
   }
 
   void for_each(std::size_t count, const std::function<void(std::size_t)>& work) const {
-    if (options.parallel_for) {
-      options.parallel_for(count, work);
-    } else {
-      for (std::size_t k = 0; k < count; ++k) work(k);
-    }
+    options.work->for_each(count, work);
   }
 
   using Samples = std::vector<std::optional<std::vector<HillSystem>>>;
@@ -331,10 +325,9 @@ struct ScenePlane::Implementation {
   }
 };
 
-ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y,
-                       PlaneOptions options)
+ScenePlane::ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOptions options)
     : self_(new Implementation{
-          std::move(source), std::move(overrides), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
+          std::move(family), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
   static std::atomic<std::size_t> next_id = 1;
   Implementation& s = *self_;
   s.id = next_id++;
@@ -349,7 +342,7 @@ ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, Plan
   std::optional<ObstructedLinkage> obstructed;
   const auto look_at = [&](double u, double v) {
     try {
-      Scene scene = s.source.with(s.overrides_at(u, v));
+      Scene scene = s.family.scene(s.numbers_at(u, v));
       if (!s.corner) s.corner = std::move(scene);
     } catch (const ObstructedLinkage& error) {
       if (!obstructed) obstructed = error;
@@ -369,10 +362,10 @@ ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, Plan
   if (const auto* linkage = std::get_if<Linkage>(&s.corner->model)) {
     std::vector<std::string> all;
     for (const int link : elastic_links(*linkage)) all.push_back(body_name(*linkage, link));
-    if (all.empty()) throw UsageError("the scene has no elastic links: nothing can become unstable");
+    if (all.empty()) throw RequestError("", "no elastic links", "a scene with some", "the scene has no elastic links: nothing can become unstable");
     for (const std::string& name : s.options.rods) {
       if (std::find(all.begin(), all.end(), name) == all.end()) {
-        throw UsageError(fmt::format("--rods: found \"{}\", allowed: {}", name, fmt::join(all, ", ")));
+        throw RequestError("rods", fmt::format("\"{}\"", name), fmt::format("{}", fmt::join(all, ", ")));
       }
     }
     for (const std::string& name : all) {
@@ -381,7 +374,7 @@ ScenePlane::ScenePlane(SceneSource source, std::vector<Override> overrides, Plan
   } else {
     s.names.push_back("system");
     for (const std::string& name : s.options.rods) {
-      if (name != "system") throw UsageError(fmt::format("--rods: found \"{}\", allowed: system", name));
+      if (name != "system") throw RequestError("rods", fmt::format("\"{}\"", name), "system");
     }
     s.options.rods.clear();
   }
@@ -438,4 +431,4 @@ std::string ScenePlane::evidence() const {
   return fmt::format("{} geometries computed, {} interpolating patches", self_->computed.load(), self_->patches);
 }
 
-}  // namespace hb::tools
+}  // namespace hb

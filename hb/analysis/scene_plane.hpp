@@ -4,20 +4,18 @@
 // Chebyshev nodes give them to rounding; where they do not, each place is computed from the scene.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "hb/engine/system/scaled_system.hpp"
+#include "hb/analysis/scene_family.hpp"
+#include "hb/analysis/work.hpp"
 #include "hb/engine/boundaries/stability_map.hpp"
+#include "hb/engine/system/scaled_system.hpp"
 #include "lib/scene/scene.hpp"
 
-namespace hb::tools {
-
-// Calls work(0) .. work(count - 1), each once, in any order.
-using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& work)>;
+namespace hb {
 
 struct PlaneAxis {
   enum class Role { rpm, omega, scene_number };
@@ -30,14 +28,17 @@ struct PlaneOptions {
   Eigen::Index num_modes = 5;
   double speed = 0;               // rad per unit time, where no axis is the speed
   std::vector<std::string> rods;  // names asked for; empty: all
-  ParallelFor parallel_for;
+  const Work* work = nullptr;  // has to be given; outlives the plane
 };
 
 class ScenePlane {
  public:
-  // Throws SceneError where the scene is wrong at a corner of the plane, UsageError for a name in options.rods that is
+  // Throws SceneError where the scene is wrong at a corner of the plane, RequestError for a name in options.rods that is
   // not an elastic link.
-  ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y, PlaneOptions options);
+  ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOptions options);
+  ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y, PlaneOptions options)
+      : ScenePlane(SceneFamily(std::move(source), std::move(overrides)), std::move(x), std::move(y),
+                   std::move(options)) {}
   ~ScenePlane();
   ScenePlane(ScenePlane&&) noexcept;
 
@@ -60,4 +61,4 @@ class ScenePlane {
   std::unique_ptr<Implementation> self_;
 };
 
-}  // namespace hb::tools
+}  // namespace hb

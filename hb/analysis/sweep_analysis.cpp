@@ -7,11 +7,9 @@
 #include <chrono>
 #include <cmath>
 
-#include "tools/command/command.hpp"
-#include "tools/work/shared_work.hpp"
-#include "tools/work/sweep_parts.hpp"
+#include "hb/analysis/sweep_parts.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 // Peaks and boundaries are looked for on values more accurate than the points themselves need.
@@ -45,7 +43,7 @@ TurnRange turn_range(const FourierSeries& series, Eigen::Index component) {
 }
 
 RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
-                     const Only& only, std::vector<LinkResponse>& responses) {
+                     const Only& only, FourierSeries& q) {
   RodPoint point;
   if (wants_steady(only)) {
     SteadyOptions options;
@@ -66,10 +64,10 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
         point.deflection = shape.deflection.max_abs;
         point.bending_moment = shape.bending_moment.max_abs;
       }
-      if (only.reactions) responses.push_back({rod.link, std::move(state.q)});
+      q = std::move(state.q);
     }
   }
-  if (only.stability && rod.reported) {
+  if (only.stability) {  // of every rod: the mechanism is stable where all are
     StabilityOptions options;
     options.method = settings.stability_method;
     point.stability = stability_sample(scale_system(rod.system, speed), x, options);
@@ -85,10 +83,20 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
   point.problem = place.problem;
   if (!place.model) return point;
   const Only only = available(*place.model, wanted);
-  std::vector<LinkResponse> responses;
-  for (const RodModel& rod : place.model->rods)
-    point.rods.push_back(analyse_rod(*place.model, rod, x, place.speed, scene.settings(), only, responses));
-  if (only.reactions && responses.size() == place.model->rods.size()) {
+  const std::vector<RodModel>& rods = place.model->rods;
+  std::vector<FourierSeries> q(rods.size());
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only, q[r]));
+  const bool solved = std::ranges::none_of(q, [](const FourierSeries& series) { return series.c.size() == 0; });
+  if (place.model->exact) {
+    std::vector<LinearRod> linear;
+    for (std::size_t r = 0; r < rods.size(); ++r) linear.push_back({&rods[r].system, &q[r]});
+    const TheoryErrors errors = theory_errors(*place.model->exact, place.speed, linear);
+    for (std::size_t r = 0; r < rods.size(); ++r) point.rods[r].theory_error = errors.rods[r].q;
+  }
+  if (only.reactions && solved) {
+    std::vector<LinkResponse> responses;
+    for (std::size_t r = 0; r < rods.size(); ++r) responses.push_back({rods[r].link, q[r]});
     const JointForces forces = joint_forces(*place.model->linkage(), place.speed, responses);
     for (const JointForce& joint : forces.joints) {
       for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
@@ -212,30 +220,37 @@ void add_maxima(const std::vector<ResponseSample>& samples, std::size_t rod, int
 
 }  // namespace
 
-SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis,
-                       double fixed_speed, double fixed_rpm)
-    : source_(std::move(source)),
-      overrides_(std::move(overrides)),
+namespace {
+
+// Addresses come back, these do not.
+std::size_t next_id() {
+  static std::atomic<std::size_t> next = 1;
+  return next++;
+}
+
+}  // namespace
+
+SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double fixed_speed, double fixed_rpm)
+    : family_(std::move(family)),
       settings_(std::move(settings)),
       axis_(std::move(axis)),
       fixed_speed_(fixed_speed),
-      fixed_rpm_(fixed_rpm) {
+      fixed_rpm_(fixed_rpm),
+      id_(next_id()) {
   // The error of the cut is no part of a sweep: no finer Ritz matrices.
   Settings model_settings = settings_;
-  model_settings.only.steady = model_settings.only.shape = false;
+  constexpr bool compares_modes = false;
   const bool auto_modes = std::holds_alternative<AutoModes>(settings_.modes);
   if (axis_.kind != Axis::Kind::parameter) {
-    Scene scene = source_.with(overrides_);
+    Scene scene = family_.scene();
     units_ = scene.units;
-    first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings));
+    first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings, compares_modes));
   } else {
     for (std::size_t k = 0; k < axis_.values.size() && !first_; ++k) {
-      std::vector<Override> all = overrides_;
-      all.push_back(number_override(axis_.path, axis_.values[k]));
       try {
-        Scene scene = source_.with(all);
+        Scene scene = family_.scene({{axis_.path, axis_.values[k]}});
         units_ = scene.units;
-        first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings));
+        first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings, compares_modes));
       } catch (const ObstructedLinkage&) {
         if (k + 1 == axis_.values.size()) throw;
       }
@@ -255,7 +270,8 @@ SweepScene::SweepScene(SceneSource source, std::vector<Override> overrides, Sett
     }
     settings_.modes = modes;
     model_settings.modes = modes;
-    first_ = std::make_shared<SceneModel>(make_model(first_->scene, model_settings));
+    id_ = next_id();  // places looked at so far have other models
+    first_ = std::make_shared<SceneModel>(make_model(first_->scene, model_settings, compares_modes));
   }
 }
 
@@ -270,27 +286,23 @@ ScenePlace SweepScene::at(double x) const {
   }
   // Several questions are asked at one place in a row.
   struct Last {
-    const SweepScene* owner = nullptr;
+    std::size_t owner = 0;
     double x = 0;
     ScenePlace place;
   };
   static thread_local Last last;
-  if (last.owner == this && last.x == x) return last.place;
+  if (last.owner == id_ && last.x == x) return last.place;
   ScenePlace place{nullptr, fixed_speed_, ""};
-  std::vector<Override> all = overrides_;
-  all.push_back(number_override(axis_.path, x));
-  Settings model_settings = settings_;
-  model_settings.only.steady = model_settings.only.shape = false;
   try {
-    place.model = std::make_shared<SceneModel>(make_model(source_.with(all), model_settings));
+    place.model = std::make_shared<SceneModel>(make_model(family_.scene({{axis_.path, x}}), settings_, false));
   } catch (const ObstructedLinkage& obstruction) {
     place.problem = obstruction.what();
   }
-  last = {this, x, place};
+  last = {id_, x, place};
   return place;
 }
 
-SweepResult run_sweep(const SweepScene& scene, SharedWork& work) {
+SweepResult run_sweep(const SweepScene& scene, Work& work) {
   const Settings& settings = scene.settings();
   const std::vector<double>& values = scene.axis().values;
   const SceneModel& model = scene.first();
@@ -537,11 +549,6 @@ SweepResult run_sweep(const SweepScene& scene, SharedWork& work) {
   return result;
 }
 
-SweepResult run_sweep(const SweepScene& scene) {
-  SharedWork work(scene.settings().threads);
-  return run_sweep(scene, work);
-}
-
 std::vector<const SweepPoint*> all_points(const SweepResult& result) {
   std::vector<const SweepPoint*> points;
   for (const SweepPoint& point : result.points) points.push_back(&point);
@@ -560,4 +567,4 @@ std::vector<std::vector<ModeState>> tracks(const SweepResult& result, std::size_
   return track_modes(places, result.rods[rod].num_modes);
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/steady/response_peak.hpp"
+#include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/scene_family.hpp"
+#include "hb/analysis/work.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/boundaries/mode_tracks.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
-#include "hb/analysis/linkage_analysis.hpp"
+#include "hb/engine/steady/response_peak.hpp"
 
-namespace hb::tools {
-
-class SharedWork;
+namespace hb {
 
 struct Axis {
   enum class Kind { rpm, omega, parameter };
@@ -37,9 +37,12 @@ struct ScenePlace {
 class SweepScene {
  public:
   // `fixed_speed` (rad per unit time; `fixed_rpm` as given) is used where the axis is not the speed. Throws SceneError
-  // or UsageError for what cannot be at any value; a linkage that does not close is a place's problem instead.
+  // or RequestError for what cannot be at any value; a linkage that does not close is a place's problem instead.
+  SweepScene(SceneFamily family, Settings settings, Axis axis, double fixed_speed, double fixed_rpm);
   SweepScene(SceneSource source, std::vector<Override> overrides, Settings settings, Axis axis, double fixed_speed,
-             double fixed_rpm);
+             double fixed_rpm)
+      : SweepScene(SceneFamily(std::move(source), std::move(overrides)), std::move(settings), std::move(axis),
+                   fixed_speed, fixed_rpm) {}
 
   [[nodiscard]] ScenePlace at(double x) const;
   const Axis& axis() const { return axis_; }
@@ -49,13 +52,13 @@ class SweepScene {
   const SceneModel& first() const { return *first_; }
 
  private:
-  SceneSource source_;
-  std::vector<Override> overrides_;
+  SceneFamily family_;
   Settings settings_;
   Axis axis_;
   double fixed_speed_, fixed_rpm_;
   Units units_;
   std::shared_ptr<const SceneModel> first_;
+  std::size_t id_;  // of this object and its copies alone
 };
 
 // Smallest and largest over the turn.
@@ -69,6 +72,7 @@ struct RodPoint {
   double error_bound = 0, resonance_distance = 0;
   std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
   std::optional<double> deflection, bending_moment;  // largest over rod and turn
+  std::optional<double> theory_error;  // TheoryErrors::Rod::q; empty: beyond the linear theory, or q not asked for
   std::optional<StabilitySample> stability;
 };
 
@@ -113,8 +117,7 @@ struct SweepResult {
   std::vector<Stage> stages;
 };
 
-[[nodiscard]] SweepResult run_sweep(const SweepScene& scene, SharedWork& work);
-[[nodiscard]] SweepResult run_sweep(const SweepScene& scene);  // nothing kept
+[[nodiscard]] SweepResult run_sweep(const SweepScene& scene, Work& work);
 
 // Points and refined points together, ascending.
 [[nodiscard]] std::vector<const SweepPoint*> all_points(const SweepResult& result);
@@ -122,4 +125,4 @@ struct SweepResult {
 [[nodiscard]] std::vector<std::vector<ModeState>> tracks(const SweepResult& result, std::size_t rod,
                                                          const std::vector<const SweepPoint*>& points);
 
-}  // namespace hb::tools
+}  // namespace hb

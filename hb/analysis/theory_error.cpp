@@ -100,6 +100,14 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
 
 }  // namespace
 
+// Points enough for 1e-3 of the error.
+ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_modes) {
+  std::vector<ExactModel::Rod> rods;
+  const std::vector<int> links = elastic_links(linkage);
+  for (std::size_t r = 0; r < links.size(); ++r) rods.push_back({links[r], num_modes.at(r)});
+  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 14);
+}
+
 TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,
                            const JointForces* forces) {
   TheoryErrors errors;
@@ -115,6 +123,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   const ExactResidual exact = model.residual(speed, angles, motion);
   if (exact.breakdown) {
     errors.reason = describe(*exact.breakdown, model.linkage());
+    errors.steepest = exact.breakdown->slope;
     return errors;
   }
   for (std::size_t r = 0; r < rods.size(); ++r) {

@@ -31,13 +31,18 @@ struct TheoryErrors {
     std::optional<double> q;
     std::optional<double> deflection;  // max over x and t of |dw| over max |w|, of the modes kept
     FourierSeries correction;  // dq
+    std::optional<double> axial_share;  // where asked for: axial_share() of this rod
   };
   std::vector<Rod> rods;
   // Largest change over the turn of any joint force's component, and of the driving torque, over the largest of each;
   // only where linear forces are given. Empty also where q + dq breaks the exact model.
   std::optional<double> force, torque;
+  double steepest = 0;  // largest slope |w'| of the linear answer that the exact model met; 0: none
   std::string reason;  // why there is no value: a rod folds, the bent linkage opens, no periodic solution
 };
+
+// The exact model of all elastic links with as many modes, with the points along the rods that a theory error needs.
+[[nodiscard]] ExactModel theory_model(const Linkage& linkage, const std::vector<Eigen::Index>& num_modes);
 
 // `forces`: of the same linear answer, or nullptr.
 [[nodiscard]] TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,

@@ -66,8 +66,9 @@ std::array<std::vector<BodyLoad>, 3> rigid_loads(const Linkage& linkage, const s
   return loads;
 }
 
-// Dyads in reverse order; what a later dyad passes on at its joint 0 is taken off the load of the body it hangs on.
-// With the coupler's load (K, k) about its joint 0, F1 = (X + i Y) e^{i phi} on it at joint 1 and F0 passed on:
+// lib/README.md (M10) to (M12). Dyads in reverse order; what a later dyad passes on at its joint 0 is taken off the
+// load of the body it hangs on. With the coupler's load (K, k) about its joint 0, F1 = (X + i Y) e^{i phi} on it at
+// joint 1 and F0 passed on:
 //     coupler:  l Y = k,   F0 = F1 - K
 //     rocker, load (K', k') about its pivot, psi its angle:  L [X sin(phi-psi) + Y cos(phi-psi)] = -k',  G = K' + F1
 //     slider, load K', guide direction u = e^{i gamma}:  X cos(phi-gamma) - Y sin(phi-gamma) = -Re(K'/u),

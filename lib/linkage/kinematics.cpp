@@ -269,10 +269,10 @@ std::optional<Obstruction> find_obstruction(const Linkage& linkage) {
     found.dead_centre = std::abs(lowest.g) <= smallest_sine * smallest_sine;
     const std::string place = found.dead_centre ? fmt::format("at crank angle {:.6g} deg", degrees(lowest.tau))
                                                 : where_open(margin, lowest.tau);
-    found.message = fmt::format("dyad {} ({}, {}) {} {}: {}", d + 1, dyad.coupler.name,
-                                body_name(linkage, closing_index(found.dyad)),
-                                found.dead_centre ? "is in a dead centre" : "does not close", place,
-                                what_happens(dyad, margin.joint(lowest.tau), found.dead_centre));
+    found.message =
+        fmt::format("the dyad ({}, {}) {} {}: {}", dyad.coupler.name, body_name(linkage, closing_index(found.dyad)),
+                    found.dead_centre ? "is in a dead centre" : "does not close", place,
+                    what_happens(dyad, margin.joint(lowest.tau), found.dead_centre));
     return found;
   }
   return std::nullopt;

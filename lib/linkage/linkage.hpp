@@ -14,6 +14,12 @@
 
 namespace hb {
 
+// Shear of a thick rod: shear force = k G F (w' - rotation of the section).
+struct Shear {
+  double modulus = 0;      // G
+  double coefficient = 0;  // k
+};
+
 // Uniform pinned-pinned elastic link (physics of the rod; the paper's letters in brackets).
 struct Elastic {
   double youngs_modulus = 0;    // E
@@ -23,6 +29,8 @@ struct Elastic {
   double internal_damping = 0;  // alpha_c, unit time: stress = E (strain + alpha_c d strain/dt)
   double damping_x = 0;         // c_x, external damping per length, along the rod
   double damping_y = 0;         // c_y, across the rod
+  double section_height = 0;    // in the plane of motion; 0: unknown
+  std::optional<Shear> shear;   // none: rigid in shear
 };
 
 struct Body {

@@ -25,6 +25,7 @@ double axial_force(const std::vector<BodyMotion>& motion, const MechanismForces&
 
 }  // namespace
 
+// lib/README.md (M4):
 // f0 = mu/EJ (g cos phi + a0y) + c_y/EJ v0y       f1 = mu/EJ phi_tt + c_y/EJ phi_t       f2 = mu/EJ phi_t^2
 // f3 = mu/EJ (g sin phi + a0x) + c_x/EJ v0x       f4 = X/EJ - f3 l + f2 l^2/2
 Eigen::Matrix<double, 5, 3> rod_coefficients_at(const Linkage& linkage, const std::vector<BodyMotion>& motion,
@@ -93,6 +94,7 @@ LinkageCoefficients linkage_coefficients(const Linkage& linkage, double toleranc
   return result;
 }
 
+// lib/README.md (M5) to (M8):
 // m_ii = (rho/E)(i pi/l)^2 + mu/EJ                b_ii = alpha_c (i pi/l)^4 + c_y/EJ
 // c_ii = (i pi/l)^4 + (i pi/l)^2 f4 + i^2 pi^2/(2 l) f3 - (5/4 + i^2 pi^2/6) f2
 // c_ik = -a_ik [ (2/l) f3 - f2 ]   i+k odd        c_ik = -a_ik f2   i+k even        a_ik = i k [1/(i-k)^2 + 1/(i+k)^2]

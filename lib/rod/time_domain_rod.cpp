@@ -1,6 +1,5 @@
 #include "lib/rod/time_domain_rod.hpp"
 
-#include <Eigen/LU>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "lib/dense.hpp"
 #include "lib/linkage/kinematics.hpp"
 
 namespace hb {
@@ -214,7 +214,7 @@ Eigen::VectorXd required_wrenches(const Linkage& linkage, const Layout& layout, 
 Eigen::VectorXd solve_forces(const Linkage& linkage, const Layout& layout, const std::vector<BodyMotion>& motion,
                              double Omega, double tau, const std::vector<LinkDeflection>& deflections) {
   const Eigen::MatrixXd A = equilibrium_matrix(linkage, layout, motion);
-  return A.partialPivLu().solve(required_wrenches(linkage, layout, motion, Omega, tau, deflections));
+  return dense::Lu<double>(A).solve(required_wrenches(linkage, layout, motion, Omega, tau, deflections));
 }
 
 Complex force_at(const Eigen::VectorXd& forces, Eigen::Index column) { return {forces(column), forces(column + 1)}; }

@@ -9,6 +9,8 @@
 #include <span>
 
 #include "lib/linkage/kinematics.hpp"
+#include "lib/scene/plausibility.hpp"
+#include "lib/scene/quantity.hpp"
 #include "lib/scene/scene_parts.hpp"
 #include "lib/scene/scene_paths.hpp"
 
@@ -18,31 +20,26 @@ using std::numbers::pi;
 
 namespace {
 
-struct Unit {
-  std::string_view name;
-  double size;  // in m, kg, s or rad
-};
-
-constexpr Unit length_units[] = {{"m", 1},     {"mm", 1e-3}, {"cm", 1e-2},   {"dm", 1e-1},
-                                 {"um", 1e-6}, {"km", 1e3},  {"in", 0.0254}, {"ft", 0.3048}};
-constexpr Unit mass_units[] = {{"kg", 1}, {"g", 1e-3}, {"mg", 1e-6}, {"t", 1e3}, {"lb", 0.45359237}};
-constexpr Unit time_units[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
-constexpr Unit angle_units[] = {{"rad", 1}, {"deg", pi / 180}};
+// What [units] may name: symbols of which the scene's other units are made.
+constexpr std::string_view length_units[] = {"m", "mm", "cm", "dm", "um", "km", "in", "ft"};
+constexpr std::string_view mass_units[] = {"kg", "g", "mg", "t", "lb"};
+constexpr std::string_view time_units[] = {"s", "ms", "us", "min"};
+constexpr std::string_view angle_units[] = {"rad", "deg"};
 
 // Name and size of the unit that a key names; unchanged if the key is absent.
-void read_unit(const TableView& units, std::string_view key, std::span<const Unit> known, std::string& name,
+void read_unit(const TableView& units, std::string_view key, std::span<const std::string_view> known, std::string& name,
                double& size) {
   const auto text = units.text(key);
   if (!text) return;
-  const auto unit = std::ranges::find(known, *text, &Unit::name);
-  if (unit == known.end()) {
-    std::vector<std::string> names;
-    for (const Unit& u : known) names.emplace_back(u.name);
-    units.problem(key, fmt::format("found {}, an unknown unit, allowed {}", describe(*units.node(key)), joined(names)));
+  if (std::ranges::find(known, *text) == known.end()) {
+    const std::vector<std::string> names(known.begin(), known.end());
+    const std::string meant = unit_meant(*text, names);
+    units.problem(key, fmt::format("found {}, an unknown unit{}, allowed {}", describe(*units.node(key)),
+                                   meant.empty() ? "" : fmt::format(" ({} meant?)", meant), joined(names)));
     return;
   }
   name = *text;
-  size = unit->size;
+  size = size_of(*unit_of_symbol(name));
 }
 
 }  // namespace
@@ -66,24 +63,24 @@ namespace {
 constexpr double max_speeds = 1e7;
 constexpr Limits speed_limits{slowest, fastest, true, "a number > 0 (1e-12 to 1e12)"};
 
-std::optional<Speeds> read_rpm(const TableView& analysis) {
-  const toml::node* node = analysis.node("rpm");
+std::optional<Speeds> read_speeds(const TableView& analysis, const char* key) {
+  const toml::node* node = analysis.node(key);
   if (!node) return std::nullopt;
   if (!node->is_array()) {
     static constexpr Limits limits{slowest, fastest, true, "a number > 0 (1e-12 to 1e12), or [from, to, step]"};
-    const auto rpm = analysis.number("rpm", limits);
-    return rpm ? std::optional<Speeds>({*rpm, *rpm, 0}) : std::nullopt;
+    const auto speed = analysis.number(key, limits);
+    return speed ? std::optional<Speeds>({*speed, *speed, 0}) : std::nullopt;
   }
-  const auto values = analysis.numbers("rpm", speed_limits);
+  const auto values = analysis.numbers(key, speed_limits);
   if (!values) return std::nullopt;
   constexpr const char* words = "[from, to, step] with 0 < from <= to and step > 0";
   if (values->size() != 3 || !((*values)[0] <= (*values)[1])) {
-    analysis.problem("rpm", fmt::format("found [{}], allowed {}", fmt::join(*values, ", "), words));
+    analysis.problem(key, fmt::format("found [{}], allowed {}", fmt::join(*values, ", "), words));
     return std::nullopt;
   }
   const Speeds speeds{(*values)[0], (*values)[1], (*values)[2]};
   if (!((speeds.to - speeds.from) / speeds.step <= max_speeds)) {
-    analysis.problem("rpm", fmt::format("found more than {} speeds, allowed fewer", max_speeds));
+    analysis.problem(key, fmt::format("found more than {} speeds, allowed fewer", max_speeds));
     return std::nullopt;
   }
   return speeds;
@@ -115,8 +112,8 @@ AnalysisDefaults read_analysis(const TableView& analysis, int num_modes) {
   static constexpr Limits tolerances{1e-14, 1e-1, true, "a number from 1e-14 to 0.1"};
   AnalysisDefaults defaults;
   defaults.modes = read_modes(analysis, num_modes);
-  defaults.rpm = read_rpm(analysis);
-  defaults.omega = analysis.number("omega", speed_limits);
+  defaults.rpm = read_speeds(analysis, "rpm");
+  defaults.omega = read_speeds(analysis, "omega");
   defaults.tolerance = analysis.number("tolerance", tolerances).value_or(defaults.tolerance);
   if (analysis.has("rpm") && analysis.has("omega")) {
     analysis.problem("omega", "found both rpm and omega, allowed one of the two");
@@ -150,7 +147,8 @@ void check_title(const TableView& scene, Scene& result) {
 Scene scene_from(const toml::table& tree, const std::string& name, const std::filesystem::path& folder,
                  const std::vector<Override>& overrides) {
   Problems problems(name);
-  const TableView scene(tree, "", problems);
+  const Units units = read_units(TableView(tree, "", problems));
+  const TableView scene(tree, "", problems, &scene_keys(), units);
   if (tree.empty())
     throw SceneError(name + ": found an empty file, allowed a scene with [crank] and [[dyad]], or [hill]");
   check_keys(tree, problems);
@@ -158,8 +156,9 @@ Scene scene_from(const toml::table& tree, const std::string& name, const std::fi
   Scene result;
   result.file = name;
   check_title(scene, result);
-  SceneContext context{read_units(scene), folder};
-  result.units = context.units;
+  std::vector<Remark> remarks;
+  const SceneContext context{units, folder, remarks};
+  result.units = units;
   int num_modes = 0;
   if (scene.has("hill")) {
     for (const char* key : {"crank", "dyad", "gravity"}) {
@@ -173,13 +172,19 @@ Scene scene_from(const toml::table& tree, const std::string& name, const std::fi
   } else if (!scene.has("crank") && !scene.has("dyad")) {
     problems.add(tree, "", "found neither [crank] nor [hill], allowed [crank] and [[dyad]], or [hill]");
   } else {
-    result.model = read_linkage(scene, context, result.warnings);
+    result.model = read_linkage(scene, context);
   }
-  if (const auto analysis = scene.table("analysis")) result.analysis = read_analysis(*analysis, num_modes);
+  const auto analysis = scene.table("analysis");
+  if (analysis) result.analysis = read_analysis(*analysis, num_modes);
   if (num_modes > 0) result.analysis.modes = num_modes;
   problems.throw_if_any();
-  if (const Linkage* linkage = std::get_if<Linkage>(&result.model))
+  if (const Linkage* linkage = std::get_if<Linkage>(&result.model)) {
+    remark_on_linkage(scene, *linkage, context);
+    if (analysis) remark_on_speed(*analysis, result.analysis, *linkage, context);
     refuse_obstruction(*linkage, tree, problems, overrides);
+  }
+  result.warnings = warnings(remarks);
+  result.notes = notes(remarks);
   return result;
 }
 
@@ -205,12 +210,24 @@ Scene SceneSource::with(const std::vector<Override>& overrides) const {
 
 std::vector<std::string> SceneSource::numeric_paths() const { return hb::numeric_paths(parse_toml(text_, name_)); }
 
+std::vector<std::string> SceneSource::damping_paths() const {
+  std::vector<std::string> paths = numeric_paths();
+  std::erase_if(paths, [](const std::string& path) {
+    return !path.ends_with(".damping_internal") && !path.ends_with(".damping_ratio") &&
+           !path.ends_with(".damping_ratio.ratio");
+  });
+  return paths;
+}
+
 double SceneSource::value(const std::string& path) const {
   toml::table tree = parse_toml(text_, name_);
+  Problems problems(name_);
+  const Units units = read_units(TableView(tree, "", problems));
+  problems.throw_if_any();
   std::optional<double> common;
   for (const Slot& slot : resolve(tree, path)) {
     const toml::node* node = slot.value();
-    const std::optional<double> number = node && node->is_number() ? node->value<double>() : std::nullopt;
+    const std::optional<double> number = number_at(slot, units);
     if (!number) {
       throw SceneError(fmt::format("{}: {}: found {}, allowed the path of a number", name_, path,
                                    node ? describe(*node) : "nothing given"));

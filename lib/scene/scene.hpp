@@ -42,12 +42,13 @@ struct AutoModes {};  // modes = "auto"
 
 struct Speeds {  // rpm = number, or [from, to, step]
   double from = 0, to = 0, step = 0;  // step == 0: the single speed `from`
+  int count = 0;  // > 0: so many speeds, both ends included; `step` is then what comes of it
 };
 
 struct AnalysisDefaults {
   std::variant<int, AutoModes> modes = 5;
   std::optional<Speeds> rpm;
-  std::optional<double> omega;  // rad per unit time, instead of rpm
+  std::optional<Speeds> omega;  // rad per unit time, instead of rpm
   double tolerance = 1e-10;
 };
 
@@ -57,7 +58,8 @@ struct Scene {
   Units units;
   std::variant<Linkage, HillSystem> model;
   AnalysisDefaults analysis;
-  std::vector<std::string> warnings;  // "file:line: key: found ..., allowed ...; what was done": odd, but usable
+  // "file:line: key: found ..., allowed ...": odd, but usable. The gravest first; notes do not touch the answer.
+  std::vector<std::string> warnings, notes;
 };
 
 // A scene number replaced from outside. Paths: "AB.J" (a key of the link named AB or of its `elastic`), "*.J" (all
@@ -83,6 +85,8 @@ class SceneSource {
   [[nodiscard]] Scene with(const std::vector<Override>& overrides = {}) const;
   // Paths of all numbers that the scene gives, in a form that `with` and `value` take.
   [[nodiscard]] std::vector<std::string> numeric_paths() const;
+  // Those of them that internal damping is proportional to: "AB.damping_internal", "CD.damping_ratio".
+  [[nodiscard]] std::vector<std::string> damping_paths() const;
   // The number at a path, in the scene's units (angles too). A path with * needs equal numbers.
   [[nodiscard]] double value(const std::string& path) const;
   // The scene's text with numbers replaced, comments and order kept where the text allows it.

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "lib/fourier/periodic_samples.hpp"
+#include "lib/scene/sample_file.hpp"
 #include "lib/scene/scene_parts.hpp"
-#include "lib/scene/table_file.hpp"
 
 namespace hb {
 
@@ -69,12 +68,12 @@ class TermsReader {
     if (!node) return {};
     const toml::array* list = node->as_array();
     if (node->is_table()) {
-      read_term(TableView(*node->as_table(), hill_.path_of(key), hill_.problems()));
+      read_term(hill_.inside(*node->as_table(), hill_.path_of(key), key));
     } else if (list && !list->empty()) {
       for (std::size_t i = 0; i < list->size(); ++i) {
         const std::string path = fmt::format("{}.{}", hill_.path_of(key), i);
         if (const toml::table* term = list->get(i)->as_table()) {
-          read_term(TableView(*term, path, hill_.problems()));
+          read_term(hill_.inside(*term, path, key));
         } else {
           hill_.problems().add(*list->get(i), path,
                                fmt::format("found {}, allowed {}", describe(*list->get(i)), words));
@@ -131,6 +130,7 @@ class TermsReader {
 
   void read_harmonic(const TableView& term, int power) {
     const int k = term.need_integer("harmonic", 0, max_harmonic);
+    const double scale = term.number("scale", any_number).value_or(1);
     if (!term.has("cos") && !term.has("sin")) term.missing("cos", "cos or sin or both");
     const auto cos = read_components(term, "cos"), sin = read_components(term, "sin");
     if (!small_enough(term, "harmonic", k)) return;
@@ -139,25 +139,31 @@ class TermsReader {
     for (Eigen::Index i = 0; i < components(); ++i) {
       series.c(i, k) = harmonic_coefficient(k, cos ? (*cos)(i) : 0, sin ? (*sin)(i) : 0);
     }
+    if (scale != 1) series.c *= scale;
     add(power, series);
   }
 
-  // Equally spaced samples over one period, a row each: components, matrices row by row.
+  // Samples over one period (see sample_file.hpp).
   void read_file(const TableView& term, int power) {
-    const std::string file = term.need_text("file");
+    const std::string file = term.need_file("file");
+    const double scale = term.number("scale", any_number).value_or(1);
     if (file.empty()) return;
     try {
-      const NumberTable table = read_table(context_.folder / file, components(), 3);
+      const std::filesystem::path path = context_.folder / file;
+      const NumberTable table = parse_table(read_text_file(path), path.string(), 0, 3);
+      const SampleColumns columns = sample_columns(table, size_, matrices_);
       if (!small_enough(term, "file", table.values.rows() / 2)) return;
-      Eigen::MatrixXd samples = table.values.transpose();
-      if (matrices_) {
-        for (Eigen::Index i = 0; i < size_; ++i) {
-          for (Eigen::Index k = 0; k < size_; ++k) samples.row(i + size_ * k) = table.values.col(size_ * i + k);
-        }
-      }
-      add(power, interpolate(samples));
+      FourierSeries series = sampled_series(
+          table, columns.angle, columns.components, angle_unit_of(table, columns.angle, context_.angle_unit()),
+          matrices_ ? "stiffness" : "load", [&](const std::string& remark) {
+            context_.remarks.push_back(
+                {Concern::seam,
+                 fmt::format("{}: {}: {}", term.problems().place(*term.node("file")), term.path_of("file"), remark)});
+          });
+      if (scale != 1) series.c *= scale;
+      add(power, series);
     } catch (const SceneError& error) {
-      term.problem("file", fmt::format("found \"{}\" with {}", file, error.what()));
+      term.problem("file", fmt::format("found \"{}\" with {}", printable(file, 100), error.what()));
     }
   }
 

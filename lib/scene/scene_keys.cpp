@@ -8,57 +8,112 @@ namespace hb {
 
 namespace {
 
-constexpr Key unit_keys[] = {{"length"}, {"mass"}, {"time"}, {"angle"}};
+constexpr Key sub(std::string_view name, const TableKind* kind) { return {name, kind, {}, {}}; }
+constexpr Key plain(std::string_view name) { return {name, nullptr, {}, {}}; }
+constexpr Key number(std::string_view name, Dimension dimension) { return {name, nullptr, Measure{dimension}, {}}; }
+constexpr Key polar(std::string_view name) {
+  return {name, nullptr, Measure{dimension::length}, Measure{dimension::angle}};
+}
+constexpr Key position(std::string_view name) { return number(name, dimension::length); }
+
+constexpr Key unit_keys[] = {plain("length"), plain("mass"), plain("time"), plain("angle")};
 constexpr TableKind units{"units", unit_keys};
 
-constexpr TableKind points{"points", {}};
+constexpr Key point_key = polar("");
+constexpr TableKind points{"points", {}, &point_key};
 
-constexpr Key crank_key_list[] = {{"name"}, {"pivot"},   {"length"},        {"mass"},
-                                  {"com"},  {"inertia"}, {"inertia_pivot"}, {"points", &points}};
+constexpr Key name_key = plain("name"), length_key = number("length", dimension::length),
+              mass_key = number("mass", dimension::mass), com_key = polar("com"),
+              inertia_key = number("inertia", dimension::inertia),
+              inertia_pivot_key = number("inertia_pivot", dimension::inertia), points_key = sub("points", &points),
+              pivot_key = position("pivot");
+
+constexpr Key crank_key_list[] = {name_key, pivot_key,   length_key,        mass_key,
+                                  com_key,  inertia_key, inertia_pivot_key, points_key};
 constexpr TableKind crank{"crank", crank_key_list};
 
-constexpr Key section_keys[] = {{"shape"}, {"width"}, {"height"}, {"diameter"}, {"wall"}};
+constexpr Key section_keys[] = {plain("shape"),
+                                number("width", dimension::length),
+                                number("height", dimension::length),
+                                number("diameter", dimension::length),
+                                number("wall", dimension::length),
+                                number("outer", dimension::length),
+                                number("inner", dimension::length),
+                                number("web", dimension::length),
+                                number("flange", dimension::length)};
 constexpr TableKind section{"section", section_keys};
 
-constexpr Key elastic_keys[] = {
-    {"E"}, {"area"}, {"J"}, {"section", &section}, {"density"}, {"damping_internal"}, {"damping_x"}, {"damping_y"}};
+constexpr Key shear_keys[] = {number("G", dimension::pressure), number("k", dimension::none)};
+constexpr TableKind shear{"shear", shear_keys};
+
+constexpr Key ratio_keys[] = {plain("mode"), number("ratio", dimension::none)};
+constexpr TableKind damping_ratio{"damping_ratio", ratio_keys};
+
+constexpr Key elastic_keys[] = {plain("material"),
+                                number("E", dimension::pressure),
+                                number("area", dimension::area),
+                                number("J", dimension::second_moment),
+                                sub("section", &section),
+                                number("density", dimension::density),
+                                number("damping_internal", dimension::time),
+                                {"damping_ratio", &damping_ratio, Measure{dimension::none}, {}},
+                                number("damping_x", dimension::damping_per_length),
+                                number("damping_y", dimension::damping_per_length),
+                                sub("shear", &shear)};
 constexpr TableKind elastic{"elastic", elastic_keys};
 
-constexpr Key coupler_keys[] = {{"name"},
-                                {"length"},
-                                {"mass"},
-                                {"com"},
-                                {"inertia"},
-                                {"inertia_pivot"},
-                                {"points", &points},
-                                {"elastic", &elastic}};
+constexpr Key coupler_keys[] = {name_key,    length_key,        mass_key,   com_key,
+                                inertia_key, inertia_pivot_key, points_key, sub("elastic", &elastic)};
 constexpr TableKind coupler{"coupler", coupler_keys};
 
-constexpr Key rocker_keys[] = {
-    {"name"},          {"pivot"},           {"length"},           {"mass"}, {"com"}, {"inertia"},
-    {"inertia_pivot"}, {"points", &points}, {"elastic", &elastic}};
+constexpr Key rocker_keys[] = {name_key,          pivot_key,  length_key,
+                               mass_key,          com_key,    inertia_key,
+                               inertia_pivot_key, points_key, sub("elastic", &elastic)};
 constexpr TableKind rocker{"rocker", rocker_keys};
 
-constexpr Key force_keys[] = {{"cos"}, {"sin"}, {"file"}};
+constexpr Key file_key = plain("file"), column_key = plain("column"), unit_key = plain("unit"),
+              scale_key = number("scale", dimension::none);
+
+constexpr Key force_keys[] = {
+    number("cos", dimension::force), number("sin", dimension::force), file_key, column_key, unit_key, scale_key};
 constexpr TableKind force{"force", force_keys};
 
-constexpr Key slider_keys[] = {{"name"}, {"mass"}, {"guide"}, {"direction"}, {"force", &force}, {"points", &points}};
+constexpr Key pressure_keys[] = {
+    file_key, column_key, unit_key, scale_key, number("bore", dimension::length), number("mean", dimension::pressure)};
+constexpr TableKind pressure{"pressure", pressure_keys};
+
+constexpr Key slider_keys[] = {name_key,
+                               mass_key,
+                               position("guide"),
+                               number("direction", dimension::angle),
+                               {"force", &force, Measure{dimension::force}, {}},
+                               sub("pressure", &pressure),
+                               points_key};
 constexpr TableKind slider{"slider", slider_keys};
 
-constexpr Key dyad_keys[] = {{"on"}, {"coupler", &coupler}, {"rocker", &rocker}, {"slider", &slider}, {"branch"}};
+constexpr Key dyad_keys[] = {plain("on"), sub("coupler", &coupler), sub("rocker", &rocker), sub("slider", &slider),
+                             plain("branch")};
 constexpr TableKind dyad{"dyad", dyad_keys};
 
-constexpr Key term_keys[] = {{"harmonic"}, {"cos"}, {"sin"}, {"omega_power"}, {"file"}};
+constexpr Key term_keys[] = {plain("harmonic"), plain("cos"), plain("sin"), plain("omega_power"), file_key, scale_key};
 constexpr TableKind term{"term", term_keys};
 
-constexpr Key hill_keys[] = {{"mass"}, {"damping"}, {"stiffness", &term}, {"load", &term}};
+constexpr Key hill_keys[] = {plain("mass"), plain("damping"), sub("stiffness", &term), sub("load", &term)};
 constexpr TableKind hill{"hill", hill_keys};
 
-constexpr Key analysis_keys[] = {{"modes"}, {"rpm"}, {"omega"}, {"tolerance"}};
+constexpr Key analysis_keys[] = {plain("modes"),
+                                 {"rpm", nullptr, Measure{dimension::speed, Measure::Base::rpm}, {}},
+                                 {"omega", nullptr, Measure{dimension::speed, Measure::Base::radian}, {}},
+                                 plain("tolerance")};
 constexpr TableKind analysis{"analysis", analysis_keys};
 
-constexpr Key top_keys[] = {{"title"},       {"gravity"},     {"units", &units},      {"crank", &crank},
-                            {"dyad", &dyad}, {"hill", &hill}, {"analysis", &analysis}};
+constexpr Key top_keys[] = {plain("title"),
+                            number("gravity", dimension::acceleration),
+                            sub("units", &units),
+                            sub("crank", &crank),
+                            sub("dyad", &dyad),
+                            sub("hill", &hill),
+                            sub("analysis", &analysis)};
 constexpr TableKind top{"scene", top_keys};
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; }
@@ -91,6 +146,7 @@ std::vector<std::string> names_of(const TableKind& kind) {
 const TableKind& scene_keys() { return top; }
 
 const Key* find_key(const TableKind& kind, std::string_view name) {
+  if (kind.any != nullptr) return kind.any;
   const auto found = std::ranges::find(kind.keys, name, &Key::name);
   return found == kind.keys.end() ? nullptr : &*found;
 }

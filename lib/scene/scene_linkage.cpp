@@ -2,16 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "lib/fourier/periodic_samples.hpp"
 #include "lib/scene/scene_parts.hpp"
-#include "lib/rod/section.hpp"
-#include "lib/scene/table_file.hpp"
 
 namespace hb {
-
-using std::numbers::pi;
 
 namespace {
 
@@ -31,8 +25,8 @@ constexpr const char* name_words =
 
 class LinkageReader {
  public:
-  LinkageReader(const TableView& scene, const SceneContext& context, std::vector<std::string>& warnings)
-      : scene_(scene), context_(context), problems_(scene.problems()), warnings_(warnings) {}
+  LinkageReader(const TableView& scene, const SceneContext& context)
+      : scene_(scene), context_(context), problems_(scene.problems()) {}
 
   Linkage read() {
     Linkage linkage;
@@ -40,6 +34,14 @@ class LinkageReader {
     linkage.gravity = scene_.number("gravity", any_number).value_or(9.80665 * metre_per_second2);
     if (const auto crank = scene_.need_table("crank")) linkage.crank = read_crank(*crank);
     read_dyads(linkage);
+    if (!small_inertias_.empty()) {
+      context_.remarks.push_back(
+          {Concern::note,
+           fmt::format(
+               "{}: found {} below mass * radius^2 of com, which no body has, allowed where a link turns about a "
+               "fixed pivot: there only inertia_pivot counts, taken as given",
+               small_inertia_place_, fmt::join(small_inertias_, ", "))});
+    }
     return linkage;
   }
 
@@ -102,7 +104,7 @@ class LinkageReader {
   TableView named(const TableView& table) const {
     const toml::node* name = table.node("name");
     const std::string text = name && name->is_string() ? name->as_string()->get() : "";
-    return good_name(text) ? TableView(table.table(), text, problems_) : table;
+    return good_name(text) ? table.renamed(text) : table;
   }
 
   std::string name_of(const TableView& body) {
@@ -147,82 +149,14 @@ class LinkageReader {
       body.inertia = 0;
       return;
     }
-    const std::string message =
-        fmt::format("found {}, allowed at least mass * radius^2 of com = {}", *about_joint, steiner);
     if (!table.has("pivot")) {
-      table.problem("inertia_pivot", message);
+      table.problem("inertia_pivot",
+                    fmt::format("found {}, allowed at least mass * radius^2 of com = {}", *about_joint, steiner));
     } else {
-      warnings_.push_back(fmt::format("{}: {}: {}; taken as given, the link turns about a fixed pivot",
-                                      problems_.place(*table.node("inertia_pivot")), table.path_of("inertia_pivot"),
-                                      message));
+      if (small_inertias_.empty()) small_inertia_place_ = problems_.place(*table.node("inertia_pivot"));
+      small_inertias_.push_back(
+          fmt::format("{} = {:.6g} ({:.6g})", table.path_of("inertia_pivot"), *about_joint, steiner));
     }
-  }
-
-  // Area and J: given as such, or by the section's shape.
-  SectionValues read_section(const TableView& elastic) {
-    const auto section = elastic.table("section");
-    if (!section) {
-      if (elastic.has("section")) return {1, 1};
-      return {elastic.need_number("area", positive), elastic.need_number("J", positive)};
-    }
-    for (const char* key : {"area", "J"}) {
-      if (elastic.has(key)) elastic.problem(key, "found beside section, allowed either area and J or section");
-    }
-    struct Shape {
-      std::string_view name, first, second;
-    };
-    static constexpr Shape shapes[] = {
-        {"rectangle", "width", "height"}, {"tube", "diameter", "wall"}, {"round", "diameter", ""}};
-    const std::string name = section->need_text("shape");
-    const auto shape = std::ranges::find(shapes, name, &Shape::name);
-    if (shape == std::end(shapes)) {
-      if (section->has("shape") && section->node("shape")->is_string())
-        section->problem("shape",
-                         fmt::format("found {}, allowed rectangle, tube, round", describe(*section->node("shape"))));
-      return {1, 1};
-    }
-    for (const std::string_view key : {"width", "height", "diameter", "wall"}) {
-      if (section->has(key) && key != shape->first && key != shape->second)
-        section->problem(key, fmt::format("found on the shape {}, allowed {}{}{}", name, shape->first,
-                                          shape->second.empty() ? "" : " and ", shape->second));
-    }
-    const double first = section->need_number(shape->first, positive);
-    if (shape->second.empty()) return round_section(first);
-    const double second = section->need_number(shape->second, positive);
-    if (name == "rectangle") return rectangular_section(first, second);
-    if (!(second <= first / 2)) {
-      section->problem("wall", fmt::format("found {}, allowed at most half the diameter, {}", second, first / 2));
-      return {1, 1};
-    }
-    return tubular_section(first, second);
-  }
-
-  void read_elastic(const TableView& table, const TableView& elastic, Body& body) {
-    for (const char* key : {"com", "inertia", "inertia_pivot", "points"}) {
-      if (!table.has(key)) continue;
-      table.problem(key, std::string(key) == "points"
-                             ? "found points on an elastic link, allowed exactly two joints"
-                             : "found beside elastic, allowed on rigid links only (an elastic link is uniform)");
-    }
-    Elastic link;
-    link.youngs_modulus = elastic.need_number("E", positive);
-    const SectionValues section = read_section(elastic);
-    link.area = section.area;
-    link.second_moment = section.second_moment;
-    link.internal_damping = elastic.number("damping_internal", not_negative).value_or(0);
-    link.damping_x = elastic.number("damping_x", not_negative).value_or(0);
-    link.damping_y = elastic.number("damping_y", not_negative).value_or(0);
-    const double volume = link.area * body.length;
-    if (elastic.has("density") && !table.has("mass")) {
-      link.density = elastic.need_number("density", positive);
-      body.mass = link.density * volume;
-    } else {
-      body.mass = table.need_number("mass", positive);
-      link.density = elastic.number("density", positive).value_or(body.mass / volume);
-    }
-    body.com = body.length / 2;
-    body.inertia = body.mass * body.length * body.length / 12 + link.density * link.second_moment * body.length;
-    body.elastic = link;
   }
 
   Body read_body(const TableView& table, const std::string& name, bool is_crank) {
@@ -231,7 +165,7 @@ class LinkageReader {
     body.length = table.need_number("length", positive);
     const auto elastic = is_crank ? std::nullopt : table.table("elastic");
     if (elastic) {
-      read_elastic(table, *elastic, body);
+      read_elastic(table, *elastic, context_, body);
     } else {
       read_rigid_mass(table, body, is_crank);
       body.points = read_points(table);
@@ -253,101 +187,13 @@ class LinkageReader {
     return crank;
   }
 
-  FourierSeries read_force(const TableView& slider) {
-    const toml::node* node = slider.node("force");
-    if (!node) return {};
-    if (!node->is_table()) {
-      static constexpr Limits words{-largest_number, largest_number, true,
-                                    "a number, { cos = [...], sin = [...] } or { file = \"...\" }"};
-      FourierSeries force(1, 0);
-      force.c(0, 0) = slider.number("force", words).value_or(0);
-      return force.c(0, 0) == 0.0 ? FourierSeries() : force;
-    }
-    const TableView table = *slider.table("force");
-    const bool by_terms = table.has("cos") || table.has("sin");
-    if (by_terms == table.has("file")) {
-      slider.problem("force", fmt::format("found {}, allowed either cos and sin or file",
-                                          by_terms ? "cos or sin beside file" : "an empty table"));
-      return {};
-    }
-    if (!by_terms) return force_from_file(table);
-    const std::vector<double> cos = table.numbers("cos", any_number).value_or(std::vector<double>());
-    const std::vector<double> sin = table.numbers("sin", any_number).value_or(std::vector<double>());
-    const std::size_t count = std::max(cos.size(), sin.size());
-    if (count > max_harmonic + 1) {
-      slider.problem("force", fmt::format("found {} harmonics, allowed at most {}", count - 1, max_harmonic));
-      return {};
-    }
-    if (!sin.empty() && sin[0] != 0) {
-      table.problem("sin", fmt::format("found {} first, allowed 0 (it belongs to harmonic 0)", sin[0]));
-    }
-    FourierSeries force(1, std::max<Eigen::Index>(1, static_cast<Eigen::Index>(count)) - 1);
-    for (std::size_t k = 0; k < count; ++k) {
-      force.c(0, static_cast<Eigen::Index>(k)) =
-          harmonic_coefficient(int(k), k < cos.size() ? cos[k] : 0, k < sin.size() ? sin[k] : 0);
-    }
-    return force;
-  }
-
-  // Rows (crank angle, force) over one turn.
-  FourierSeries force_from_file(const TableView& force) {
-    const std::string file = force.need_text("file");
-    if (file.empty()) return {};
-    try {
-      return force_series(read_table(context_.folder / file, 2, 3));
-    } catch (const SceneError& error) {
-      force.problem("file", fmt::format("found \"{}\" with {}", file, error.what()));
-      return {};
-    }
-  }
-
-  FourierSeries force_series(const NumberTable& table) {
-    const auto fail = [&](Eigen::Index row, const std::string& message) {
-      throw SceneError(fmt::format("{}:{}: {}", table.name, table.lines[static_cast<std::size_t>(row)], message));
-    };
-    const Eigen::VectorXd angles = table.values.col(0) * context_.angle_unit();
-    const Eigen::VectorXd values = table.values.col(1);
-    Eigen::Index n = angles.size();
-    for (Eigen::Index j = 1; j < n; ++j) {
-      if (!(angles(j) - angles(j - 1) >= 1e-9)) {
-        fail(j, fmt::format("found crank angle {} after {}, allowed strictly increasing angles", table.values(j, 0),
-                            table.values(j - 1, 0)));
-      }
-    }
-    // Angles are often rounded to a few decimals: they are compared to a small part of the spacing.
-    constexpr double closing = 0.01, even = 0.005;
-    const double turn = 2 * pi, span = angles(n - 1) - angles(0);
-    if (std::abs(span - turn) <= closing * turn / double(n)) {  // the first row once more
-      const double largest = values.cwiseAbs().maxCoeff();
-      if (!(std::abs(values(n - 1) - values(0)) <= 1e-6 * largest)) {
-        fail(n - 1, fmt::format("found {} one turn after {}, allowed the same force", values(n - 1), values(0)));
-      }
-      --n;
-    } else if (!(span < turn)) {
-      fail(n - 1,
-           fmt::format("found crank angle {}, allowed angles less than one turn after the first, {}, or one last "
-                       "row a turn after it that repeats its force",
-                       table.values(n - 1, 0), table.values(0, 0)));
-    }
-    if (n < 3) fail(n - 1, fmt::format("found {} different angles, allowed at least 3", n));
-    double widest = angles(0) + turn - angles(n - 1);
-    for (Eigen::Index j = 1; j < n; ++j) widest = std::max(widest, angles(j) - angles(j - 1));
-    if (!(widest <= pi)) fail(n - 1, "found more than half a turn without a row, allowed rows all over one turn");
-
-    const double step = turn / double(n);
-    double uneven = 0;
-    for (Eigen::Index j = 0; j < n; ++j) uneven = std::max(uneven, std::abs(angles(j) - angles(0) - double(j) * step));
-    return uneven <= even * step ? interpolate(values.head(n).transpose(), angles(0))
-                                 : spline_series(angles.head(n), values.head(n));
-  }
-
-  Slider read_slider(const TableView& table) {
+  Slider read_slider(const TableView& table, int branch) {
     Slider slider;
     slider.name = name_of(table);
     slider.mass = table.number("mass", not_negative).value_or(0);
     slider.guide = table.need_pair("guide", position_words);
     slider.direction = table.number("direction", any_number).value_or(0) * context_.angle_unit();
-    slider.force = read_force(table);
+    slider.force = read_slider_force(table, branch, context_);
     slider.points = read_points(table);
     return slider;
   }
@@ -415,7 +261,7 @@ class LinkageReader {
         problems_.add(*list->get(d), path, fmt::format("found {}, allowed a table", describe(*list->get(d))));
         continue;
       }
-      const TableView table(*list->get(d)->as_table(), path, problems_);
+      const TableView table = scene_.inside(*list->get(d)->as_table(), path, "dyad");
       linkage.dyads.push_back(read_dyad(table, static_cast<int>(d), linkage.crank, all_names));
     }
   }
@@ -423,6 +269,7 @@ class LinkageReader {
   Dyad read_dyad(const TableView& table, int d, const Crank& crank, const std::vector<std::string>& all_names) {
     Dyad dyad;
     dyad.on = read_attachment(table, crank, all_names);
+    dyad.branch = read_branch(table);
     if (const auto coupler = table.need_table("coupler")) {
       const TableView body = named(*coupler);
       dyad.coupler = read_body(body, name_of(body), false);
@@ -440,35 +287,49 @@ class LinkageReader {
       known_.push_back({closing.body.name, closing_index(d), closing.body.points, closing.body.elastic.has_value()});
       dyad.closing = std::move(closing);
     } else if (const auto slider = table.table("slider")) {
-      Slider closing = read_slider(named(*slider));
+      Slider closing = read_slider(named(*slider), dyad.branch);
       known_.push_back({closing.name, closing_index(d), closing.points, false});
       dyad.closing = std::move(closing);
     }
-    dyad.branch = read_branch(table);
     return dyad;
   }
 
   int read_branch(const TableView& dyad) {
-    if (!dyad.has("branch")) dyad.missing("branch", "1 or -1");
     const toml::node* node = dyad.node("branch");
-    if (!node) return 1;
-    const auto* value = node->as_integer();
+    const auto* value = node ? node->as_integer() : nullptr;
     if (value && (value->get() == 1 || value->get() == -1)) return static_cast<int>(value->get());
-    dyad.problem("branch", fmt::format("found {}, allowed 1 or -1", describe(*node)));
+    const toml::node_view<const toml::node> table(dyad.table());
+    const std::string coupler = table["coupler"]["name"].value_or(std::string("coupler"));
+    const std::string meaning =
+        dyad.has("slider")
+            ? fmt::format(
+                  "the slider stands on the positive (1) or negative (-1) side, along its direction, of the foot "
+                  "of the perpendicular from joint 0 of {}",
+                  printable(coupler, 64))
+            : fmt::format(
+                  "seen from its pivot the rocker lies counter-clockwise (1) or clockwise (-1) of joint 0 of {}",
+                  printable(coupler, 64));
+    const std::string allowed = "1 or -1: " + meaning;
+    if (!node) {
+      dyad.missing("branch", allowed);
+    } else {
+      dyad.problem("branch", fmt::format("found {}, allowed {}", describe(*node), allowed));
+    }
     return 1;
   }
 
   const TableView& scene_;
   const SceneContext& context_;
   Problems& problems_;
-  std::vector<std::string>& warnings_;
   std::vector<Known> known_;
+  std::string small_inertia_place_;
+  std::vector<std::string> small_inertias_;  // "O2BC.inertia_pivot = 18300 (25620.2)"
 };
 
 }  // namespace
 
-Linkage read_linkage(const TableView& scene, const SceneContext& context, std::vector<std::string>& warnings) {
-  return LinkageReader(scene, context, warnings).read();
+Linkage read_linkage(const TableView& scene, const SceneContext& context) {
+  return LinkageReader(scene, context).read();
 }
 
 }  // namespace hb

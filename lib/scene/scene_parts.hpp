@@ -6,17 +6,31 @@
 
 namespace hb {
 
+// What is odd but usable, in growing order of how likely it spoils the answer. A note does not.
+enum class Concern { note, slenderness, seam, speed, gravity, section, size, material };
+struct Remark {
+  Concern concern;
+  std::string line;
+};
+
 struct SceneContext {
   Units units;
   std::filesystem::path folder;  // of further files
+  std::vector<Remark>& remarks;
   double angle_unit() const;  // rad per unit of angle
 };
 
 [[nodiscard]] Units read_units(const TableView& scene);
 
-// A linkage with every number checked; whether it turns through is not. `warnings` takes what is odd but usable.
-[[nodiscard]] Linkage read_linkage(const TableView& scene, const SceneContext& context,
-                                   std::vector<std::string>& warnings);
+// A linkage with every number checked; whether it turns through is not.
+[[nodiscard]] Linkage read_linkage(const TableView& scene, const SceneContext& context);
+
+// Elastic data of a link of known length, and the mass and inertia that follow.
+void read_elastic(const TableView& link, const TableView& elastic, const SceneContext& context, Body& body);
+
+// `force` and `pressure` of a slider along its direction, added up. Pressure pushes it toward the crank: against the
+// sign of its position, which is the dyad's `branch`.
+[[nodiscard]] FourierSeries read_slider_force(const TableView& slider, int branch, const SceneContext& context);
 
 [[nodiscard]] HillSystem read_hill(const TableView& hill, const SceneContext& context);
 

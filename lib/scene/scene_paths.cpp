@@ -69,6 +69,7 @@ std::vector<BodyTable> bodies_of(toml::table& scene) {
 // Follows the parts from a node of the given kind (nullptr: keys not listed, only what is there).
 std::optional<Slot> walk(toml::node& start, const TableKind* kind, std::span<const std::string_view> parts) {
   toml::node* node = &start;
+  const Key* holder = nullptr;  // of the list
   std::string created;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool last = i + 1 == parts.size();
@@ -76,7 +77,7 @@ std::optional<Slot> walk(toml::node& start, const TableKind* kind, std::span<con
     if (toml::array* list = node->as_array()) {
       const auto index = index_of(part);
       if (!index || *index >= list->size()) return std::nullopt;
-      if (last) return Slot{list, part, ""};
+      if (last) return Slot{list, part, "", holder ? holder->measure_at(*index) : std::nullopt};
       node = list->get(*index);  // the elements are of the list's kind
       continue;
     }
@@ -84,13 +85,16 @@ std::optional<Slot> walk(toml::node& start, const TableKind* kind, std::span<con
     if (!table) return std::nullopt;
     const Key* key = kind ? find_key(*kind, part) : nullptr;
     toml::node* found = table->get(part);
-    if (last && (found || key)) return Slot{table, part, created};
+    if (last && (found || (key && !kind->any))) {
+      return Slot{table, part, created, key ? key->measure : std::nullopt};
+    }
     if (!found && kind == &scene_keys() && (part == "analysis" || part == "units")) {
       found = &table->insert_or_assign(part, toml::table{}).first->second;
       created = part;
     }
     if (!found) return std::nullopt;
     kind = key ? key->table : nullptr;
+    holder = key;
     node = found;
   }
   return std::nullopt;
@@ -131,27 +135,44 @@ std::vector<Slot> resolve(toml::table& scene, std::string_view path) {
 
 namespace {
 
-void list_numbers(const toml::node& node, const std::string& path, std::vector<std::string>& paths) {
+// The numbers of a node that `key` holds (nullptr: a table of that kind itself).
+void list_numbers(const toml::node& node, const std::string& path, const Key* key, std::size_t index,
+                  std::vector<std::string>& paths) {
   if (node.is_integer() || node.is_floating_point()) {
     paths.push_back(path);
+  } else if (const auto* text = node.as_string()) {
+    const std::optional<Measure> measure = key ? key->measure_at(index) : std::nullopt;
+    if (measure && parse_quantity(text->get(), *measure, Units()).value) paths.push_back(path);
   } else if (const toml::array* list = node.as_array()) {
-    for (std::size_t i = 0; i < list->size(); ++i) list_numbers(*list->get(i), fmt::format("{}.{}", path, i), paths);
+    for (std::size_t i = 0; i < list->size(); ++i)
+      list_numbers(*list->get(i), fmt::format("{}.{}", path, i), key, i, paths);
   } else if (const toml::table* table = node.as_table()) {
-    for (const auto& [key, value] : *table) {
-      const bool elastic = key.str() == "elastic" && value.is_table();
-      list_numbers(value, elastic ? path : path + "." + std::string(key.str()), paths);
+    const TableKind* kind = key ? key->table : nullptr;
+    for (const auto& [name, value] : *table) {
+      const bool elastic = name.str() == "elastic" && value.is_table();
+      list_numbers(value, elastic ? path : path + "." + std::string(name.str()),
+                   kind ? find_key(*kind, name.str()) : nullptr, 0, paths);
     }
   }
 }
 
 }  // namespace
 
+std::optional<double> number_at(const Slot& slot, const Units& units) {
+  const toml::node* node = slot.value();
+  if (!node) return std::nullopt;
+  if (node->is_number()) return node->value<double>();
+  const auto* text = node->as_string();
+  return text && slot.measure ? parse_quantity(text->get(), *slot.measure, units).value : std::nullopt;
+}
+
 std::vector<std::string> numeric_paths(const toml::table& scene) {
   std::vector<std::string> paths;
   for (const auto& [key, value] : scene) {
+    const Key* known = find_key(scene_keys(), key.str());
     const toml::array* dyads = key.str() == "dyad" ? value.as_array() : nullptr;
     if (!dyads) {
-      list_numbers(value, std::string(key.str()), paths);
+      list_numbers(value, std::string(key.str()), known, 0, paths);
       continue;
     }
     for (std::size_t d = 0; d < dyads->size(); ++d) {
@@ -160,7 +181,8 @@ std::vector<std::string> numeric_paths(const toml::table& scene) {
       for (const auto& [part, body] : *dyad) {
         const toml::table* table = body.as_table();
         const auto* name = table ? table->get_as<std::string>("name") : nullptr;
-        list_numbers(body, name ? name->get() : fmt::format("dyad.{}.{}", d, part.str()), paths);
+        list_numbers(body, name ? name->get() : fmt::format("dyad.{}.{}", d, part.str()),
+                     find_key(*known->table, part.str()), 0, paths);
       }
     }
   }
@@ -171,11 +193,15 @@ namespace {
 
 std::string label(const Override& change) { return printable(change.path, 100) + "=" + printable(change.value, 100); }
 
-// A bare word gets its quotes.
+// Words ("auto", "stainless steel") and numbers with a unit ("210 GPa") get their quotes.
 std::string toml_value(const std::string& value) {
-  const bool bare_word = !value.empty() && value != "true" && value != "false" && value != "nan" && value != "inf" &&
-                         std::ranges::all_of(value, [](unsigned char c) { return std::isalpha(c); });
-  return bare_word ? "\"" + value + "\"" : value;
+  const bool words = !value.empty() && value != "true" && value != "false" && value != "nan" && value != "inf" &&
+                     value.front() != ' ' &&
+                     std::ranges::all_of(value, [](unsigned char c) { return std::isalpha(c) || c == ' '; });
+  const std::optional<NumberText> number = number_and_unit(value);
+  const bool quantity = number && !number->unit.empty() && !number->unit.starts_with('_') &&
+                        value.find_first_of("\"'\\=[]{}#\n\r\t") == std::string::npos && parse_unit(number->unit).unit;
+  return words || quantity ? "\"" + value + "\"" : value;
 }
 
 // The document "value = VALUE", whose source is the override itself.

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "lib/scene/scene.hpp"
+#include "lib/scene/toml_hint.hpp"
 
 namespace hb {
 
@@ -58,17 +59,34 @@ std::string describe(const toml::node& node) {
 }
 
 std::optional<double> read_number(const toml::node& node, const std::string& key, const Limits& limits,
-                                  Problems& problems) {
-  if (node.is_integer() || node.is_floating_point()) {
-    const double value =
-        node.is_integer() ? static_cast<double>(node.as_integer()->get()) : node.as_floating_point()->get();
-    if (std::isfinite(value) && value <= limits.most &&
-        (limits.least_allowed ? value >= limits.least : value > limits.least)) {
-      return value;
-    }
+                                  Problems& problems, const std::optional<Measure>& measure, const Units& units) {
+  std::optional<double> value;
+  std::string what, or_text;  // what is wrong with a text; what it may be
+  if (node.is_integer()) value = static_cast<double>(node.as_integer()->get());
+  if (node.is_floating_point()) value = node.as_floating_point()->get();
+  if (node.is_string() && measure) {
+    const Quantity quantity = parse_quantity(node.as_string()->get(), *measure, units);
+    value = quantity.value;
+    what = quantity.problem.empty() ? "" : ", " + quantity.problem;
+    const std::string example = example_of(measure->dimension);
+    or_text = example.empty() ? "" : " or " + example;
   }
-  problems.add(node, key, fmt::format("found {}, allowed {}", describe(node), limits.words));
+  if (value && std::isfinite(*value) && *value <= limits.most &&
+      (limits.least_allowed ? *value >= limits.least : *value > limits.least)) {
+    return value;
+  }
+  problems.add(node, key, fmt::format("found {}{}, allowed {}{}", describe(node), what, limits.words, or_text));
   return std::nullopt;
+}
+
+TableView TableView::inside(const toml::table& table, std::string path, std::string_view key) const {
+  const Key* known = kind_ ? find_key(*kind_, key) : nullptr;
+  return {table, std::move(path), *problems_, known ? known->table : nullptr, units_};
+}
+
+std::optional<Measure> TableView::measure_of(std::string_view key, std::size_t index) const {
+  const Key* known = kind_ ? find_key(*kind_, key) : nullptr;
+  return known ? known->measure_at(index) : std::nullopt;
 }
 
 std::string TableView::path_of(std::string_view key) const {
@@ -87,7 +105,7 @@ void TableView::missing(std::string_view key, std::string_view allowed) const {
 std::optional<double> TableView::number(std::string_view key, const Limits& limits) const {
   const toml::node* found = node(key);
   if (!found) return std::nullopt;
-  return read_number(*found, path_of(key), limits, *problems_);
+  return read_number(*found, path_of(key), limits, *problems_, measure_of(key, 0), units_);
 }
 
 std::optional<int> TableView::integer(std::string_view key, int least, int most) const {
@@ -119,8 +137,8 @@ std::optional<std::vector<double>> TableView::numbers(std::string_view key, cons
   std::vector<double> values;
   values.reserve(list->size());
   for (std::size_t i = 0; i < list->size(); ++i) {
-    const std::optional<double> value =
-        read_number(*list->get(i), fmt::format("{}.{}", path_of(key), i), limits, *problems_);
+    const std::optional<double> value = read_number(*list->get(i), fmt::format("{}.{}", path_of(key), i), limits,
+                                                    *problems_, measure_of(key, i), units_);
     if (!value) return std::nullopt;
     values.push_back(*value);
   }
@@ -143,7 +161,7 @@ std::optional<std::complex<double>> TableView::pair(std::string_view key, const 
 std::optional<TableView> TableView::table(std::string_view key) const {
   const toml::node* found = node(key);
   if (!found) return std::nullopt;
-  if (found->is_table()) return TableView(*found->as_table(), path_of(key), *problems_);
+  if (found->is_table()) return inside(*found->as_table(), path_of(key), key);
   problem(key, fmt::format("found {}, allowed a table", describe(*found)));
   return std::nullopt;
 }
@@ -161,6 +179,12 @@ int TableView::need_integer(std::string_view key, int least, int most) const {
 std::string TableView::need_text(std::string_view key) const {
   if (!has(key)) missing(key, "text in quotes");
   return text(key).value_or("");
+}
+
+std::string TableView::need_file(std::string_view key) const {
+  const std::string name = need_text(key);
+  if (name.empty() && has(key) && node(key)->is_string()) problem(key, "found \"\", allowed the name of a file");
+  return name;
 }
 
 std::complex<double> TableView::need_pair(std::string_view key, const char* words) const {
@@ -184,7 +208,7 @@ void check_keys(const toml::node& node, const TableKind& kind, const std::string
     return;
   }
   const toml::table* table = node.as_table();
-  if (!table || kind.keys.empty()) return;
+  if (!table || kind.any != nullptr) return;
   for (const auto& [key, value] : *table) {
     const std::string_view name = key.str();
     const std::string full = path.empty() ? printable(name, 100) : fmt::format("{}.{}", path, printable(name, 100));
@@ -229,6 +253,17 @@ namespace {
 
 int line_of(const std::string& text, std::size_t offset) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(offset), '\n'));
+}
+
+// The line of this number, from 1.
+std::string_view line_at(const std::string& text, toml::source_index number) {
+  std::size_t at = 0;
+  for (toml::source_index line = 1; line < number && at != std::string::npos; ++line) {
+    at = text.find('\n', at);
+    if (at != std::string::npos) ++at;
+  }
+  if (at == std::string::npos) return {};
+  return std::string_view(text).substr(at, text.find('\n', at) - at);
 }
 
 // Offset of the first byte that is no UTF-8 text (or is zero), or npos.
@@ -280,9 +315,10 @@ toml::table parse_toml(const std::string& text, const std::string& name) {
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    throw SceneError(fmt::format("{}:{}: column {}: found broken TOML ({}), allowed TOML 1.0", name,
-                                 error.source().begin.line, error.source().begin.column,
-                                 printable(error.description())));
+    const toml::source_position at = error.source().begin;
+    const std::string hint = toml_hint(line_at(text, at.line), at.column);
+    throw SceneError(fmt::format("{}:{}: column {}: found broken TOML ({}), allowed TOML 1.0{}", name, at.line,
+                                 at.column, printable(error.description()), hint.empty() ? "" : "; " + hint));
   }
 }
 

@@ -59,16 +59,23 @@ inline constexpr Limits finite_number{-1.7e308, 1.7e308, true, "a finite number"
 // What was found, in words: 3.5, "text", a table, a list of 3.
 [[nodiscard]] std::string describe(const toml::node& node);
 
-// A finite number within the limits from an integer or floating-point node; notes the problem otherwise.
+// A finite number within the limits from an integer or floating-point node or, where a measure is given, from a text
+// with a unit; notes the problem otherwise.
 [[nodiscard]] std::optional<double> read_number(const toml::node& node, const std::string& key, const Limits& limits,
-                                                Problems& problems);
+                                                Problems& problems, const std::optional<Measure>& measure = {},
+                                                const Units& units = {});
 
-// A table of the scene, its path ("AB.elastic") and where to note problems. Readers return nothing if the key is
-// missing or wrong; `need_...` note a missing key as a problem.
+// A table of the scene, its path ("AB.elastic"), the keys it may hold, the units that its numbers are written in, and
+// where to note problems. Readers return nothing if the key is missing or wrong; `need_...` note a missing key as a
+// problem.
 class TableView {
  public:
-  TableView(const toml::table& table, std::string path, Problems& problems)
-      : table_(&table), path_(std::move(path)), problems_(&problems) {}
+  TableView(const toml::table& table, std::string path, Problems& problems, const TableKind* kind = nullptr,
+            Units units = {})
+      : table_(&table), path_(std::move(path)), problems_(&problems), kind_(kind), units_(std::move(units)) {}
+  // The same table under another path, or one inside that `key` holds.
+  TableView renamed(std::string path) const { return {*table_, std::move(path), *problems_, kind_, units_}; }
+  TableView inside(const toml::table& table, std::string path, std::string_view key) const;
 
   bool has(std::string_view key) const { return table_->contains(key); }
   const toml::node* node(std::string_view key) const { return table_->get(key); }
@@ -87,6 +94,7 @@ class TableView {
   double need_number(std::string_view key, const Limits& limits) const;
   int need_integer(std::string_view key, int least, int most) const;
   std::string need_text(std::string_view key) const;
+  std::string need_file(std::string_view key) const;  // a name that is not empty
   std::complex<double> need_pair(std::string_view key, const char* words) const;
   std::optional<TableView> need_table(std::string_view key) const;
 
@@ -95,9 +103,13 @@ class TableView {
   void missing(std::string_view key, std::string_view allowed) const;
 
  private:
+  std::optional<Measure> measure_of(std::string_view key, std::size_t index) const;
+
   const toml::table* table_;
   std::string path_;
   Problems* problems_;
+  const TableKind* kind_;  // nullptr: no key has a unit
+  Units units_;
 };
 
 // Notes every key of the tree that the scene's key lists do not know.

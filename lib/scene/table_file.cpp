@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "lib/scene/scene.hpp"
 #include "lib/scene/scene_reader.hpp"
@@ -45,51 +47,97 @@ std::optional<double> number_of(std::string_view field) {
   return value;
 }
 
+std::string_view unquoted(std::string_view field) {
+  if (field.size() >= 2 && (field.front() == '"' || field.front() == '\'') && field.back() == field.front()) {
+    field.remove_prefix(1);
+    field.remove_suffix(1);
+  }
+  return trimmed(field);
+}
+
+// "force [kN]", "force (kN)", "force / kN": name and unit.
+ColumnName column_name(std::string_view field) {
+  field = unquoted(field);
+  for (const auto& [open, close] : {std::pair('[', ']'), std::pair('(', ')')}) {
+    const std::size_t at = field.find(open);
+    if (at == std::string_view::npos || at == 0 || field.back() != close) continue;
+    return {std::string(trimmed(field.substr(0, at))),
+            std::string(trimmed(field.substr(at + 1, field.size() - at - 2)))};
+  }
+  const std::size_t at = field.find('/');
+  if (at == std::string_view::npos || at == 0) return {std::string(field), ""};
+  return {std::string(trimmed(field.substr(0, at))), std::string(trimmed(field.substr(at + 1)))};
+}
+
+// Lines of a table that are not blank, without comments and byte order mark.
+class TableLines {
+ public:
+  explicit TableLines(std::string_view text) : rest_(text) {
+    if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
+  }
+  // The next line with anything in it, or an empty one at the end.
+  std::string_view next() {
+    while (!rest_.empty()) {
+      const std::size_t end = rest_.find('\n');
+      std::string_view line = rest_.substr(0, end);
+      rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
+      ++number_;
+      line = trimmed(line.substr(0, line.find('#')));
+      if (!line.empty()) return line;
+    }
+    return {};
+  }
+  int number() const { return number_; }
+
+ private:
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+bool is_header(const std::vector<std::string_view>& fields) {
+  return std::ranges::none_of(fields, [](std::string_view field) { return number_of(field).has_value(); });
+}
+
 }  // namespace
 
-NumberTable parse_table(const std::string& text, const std::string& name, Eigen::Index num_columns,
-                        Eigen::Index min_rows) {
-  NumberTable table{name, {}, {}};
-  std::vector<double> numbers;
-  std::string_view rest = text;
-  if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
-  bool header_allowed = true;
-  for (int line_number = 1; !rest.empty(); ++line_number) {
-    const std::size_t end = rest.find('\n');
-    std::string_view line = rest.substr(0, end);
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-    line = trimmed(line.substr(0, line.find('#')));
-    if (line.empty()) continue;
+std::vector<ColumnName> table_header(const std::string& text) {
+  TableLines lines(text);
+  const std::vector<std::string_view> fields = fields_of(lines.next());
+  std::vector<ColumnName> names;
+  if (!is_header(fields)) return names;
+  for (const std::string_view field : fields) names.push_back(column_name(field));
+  return names;
+}
 
+NumberTable parse_table(const std::string& text, const std::string& name, Eigen::Index num_columns,
+                        Eigen::Index min_rows, std::string_view explanation) {
+  NumberTable table{name, table_header(text), {}, {}};
+  std::vector<double> numbers;
+  TableLines lines(text);
+  bool first = true;
+  for (std::string_view line = lines.next(); !line.empty(); line = lines.next(), first = false) {
     const std::vector<std::string_view> fields = fields_of(line);
     const auto fail = [&](const std::string& found, const std::string& allowed) {
-      throw SceneError(fmt::format("{}:{}: found {}, allowed {}", name, line_number, found, allowed));
+      throw SceneError(fmt::format("{}:{}: found {}, allowed {}", name, lines.number(), found, allowed));
     };
-    std::vector<std::optional<double>> row;
-    bool any = false;
-    for (const std::string_view field : fields) {
-      row.push_back(number_of(field));
-      any = any || row.back();
-    }
-    const bool header = header_allowed && !any;
-    header_allowed = false;
-    if (header) continue;
+    if (first && is_header(fields)) continue;
+    if (num_columns == 0) num_columns = static_cast<Eigen::Index>(fields.size());
     if (static_cast<Eigen::Index>(fields.size()) != num_columns) {
-      fail(counted(static_cast<std::ptrdiff_t>(fields.size()), "field"), counted(num_columns, "number") + " in a row");
+      fail(counted(static_cast<std::ptrdiff_t>(fields.size()), "field"),
+           fmt::format("{} in a row{}", counted(num_columns, "number"), explanation));
     }
     if (static_cast<Eigen::Index>(table.lines.size()) == max_rows) {
       fail("more rows", fmt::format("at most {} rows", max_rows));
     }
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (row[i] && std::abs(*row[i]) <= largest_number) {
-        numbers.push_back(*row[i]);
+    for (const std::string_view field : fields) {
+      const std::optional<double> value = number_of(field);
+      if (value && std::abs(*value) <= largest_number) {
+        numbers.push_back(*value);
         continue;
       }
-      std::string found;
-      for (const char c : fields[i].substr(0, 40)) found += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-      fail("\"" + found + "\"", std::string(any_number.words));
+      fail("\"" + printable(field, 40) + "\"", std::string(any_number.words));
     }
-    table.lines.push_back(line_number);
+    table.lines.push_back(lines.number());
   }
   const auto num_rows = static_cast<Eigen::Index>(table.lines.size());
   if (num_rows < min_rows) {
@@ -97,11 +145,8 @@ NumberTable parse_table(const std::string& text, const std::string& name, Eigen:
   }
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   table.values = Eigen::Map<const RowMajor>(numbers.data(), num_rows, num_columns);
+  if (static_cast<Eigen::Index>(table.header.size()) != num_columns) table.header.clear();
   return table;
-}
-
-NumberTable read_table(const std::filesystem::path& file, Eigen::Index num_columns, Eigen::Index min_rows) {
-  return parse_table(read_text_file(file), file.string(), num_columns, min_rows);
 }
 
 }  // namespace hb

@@ -7,7 +7,6 @@
 namespace {
 
 using namespace hb;
-using namespace hb::tools;
 
 struct Case {
   const char* scene;

@@ -5,16 +5,16 @@
 
 namespace {
 
-using hb::tools::RodResult;
+using hb::RodResult;
 
-hb::tools::SpeedResult solve(const char* scene, int num_modes, double speed) {
-  hb::tools::Settings settings;
+hb::SpeedResult solve(const char* scene, int num_modes, double speed) {
+  hb::Settings settings;
   settings.modes = num_modes;
   settings.tolerance = 1e-12;
   settings.only = {.steady = true, .stability = false, .reactions = false, .shape = false};
   const auto model =
-      hb::tools::make_model(hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene), settings);
-  return hb::tools::analyse(model, speed, settings);
+      hb::make_model(hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene), settings);
+  return hb::analyse(model, speed, settings);
 }
 
 // max |w - w_60| / max |w_60| over rod and turn.
@@ -62,11 +62,11 @@ TEST_P(ModesError, AutomaticModesAreEnoughForDeflectionAndGrowth) {
   const auto& linkage = std::get<hb::Linkage>(read.model);
   const hb::LinkageCoefficients coefficients = hb::linkage_coefficients(linkage);
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
-    hb::tools::Settings settings;
+    hb::Settings settings;
     settings.modes = hb::AutoModes{};
     settings.tolerance = tolerance;
     settings.only = {.steady = true, .stability = true, .reactions = false, .shape = false};
-    const auto result = hb::tools::analyse(hb::tools::make_model(read, settings), speed, settings);
+    const auto result = hb::analyse(hb::make_model(read, settings), speed, settings);
     for (std::size_t r = 0; r < result.rods.size(); ++r) {
       const RodResult& rod = result.rods[r];
       const hb::Stability exact = hb::analyse_stability(

@@ -12,7 +12,6 @@
 namespace {
 
 using namespace hb;
-using namespace hb::tools;
 
 struct Question {
   SceneSource source;
@@ -28,7 +27,8 @@ struct Question {
   std::vector<MetricValue> values(const std::vector<double>& x, const std::vector<Metric>& metrics) const {
     const SceneModel scene = model(x);
     const double unit = speed_from_rpm(1, scene.scene.units);
-    DesignAnalysis analysis(scene, settings, {from * unit, to * unit, 8}, heights(scene));
+    const Work work;
+    DesignAnalysis analysis(scene, settings, {from * unit, to * unit, 8}, heights(scene), work);
     std::vector<MetricValue> values;
     for (const Metric& metric : metrics) values.push_back(analysis.value(metric));
     return values;

@@ -24,7 +24,7 @@ class Bench : public CommandTest {
 
 // x'' + 0.1 x' + (1.2 + 0.4 cos t) x = cos t.
 TEST_F(Bench, EveryMethodConvergesOnTheForcedMathieuEquation) {
-  const Json found = rows(scene("mathieu") + " --omega 1 --time-limit 2", "system");
+  const Json found = rows(scene("mathieu") + " --omega 1 --case-limit 2", "system");
   EXPECT_EQ(found["verdict"], "stable");
   EXPECT_LE(found["reference_error"].get<double>(), 1e-11);
   std::map<std::string, double> best;
@@ -49,13 +49,13 @@ TEST_F(Bench, EveryMethodConvergesOnTheForcedMathieuEquation) {
 
 TEST_F(Bench, WritesTheTableAndAPicture) {
   const CommandResult result =
-      hb("bench " + scene("six_link") + " --rpm 300 --modes 1 --rods AB --time-limit 0.05 --out out");
+      hb("bench " + scene("six_link") + " --rpm 300 --modes 1 --rods AB --case-limit 0.05 --out out");
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("error"), std::string::npos);
   for (const char* name : {"bench.csv", "bench_AB.svg", "bench_AB.png"}) {
     EXPECT_GT(fs::file_size(folder_ / "out" / name), 1000u) << name;
   }
-  EXPECT_EQ(num_entries(folder_ / "out"), 5u);  // bench.json and plots.gp beside
+  EXPECT_EQ(num_entries(folder_ / "out"), 6u);  // bench.json, bench.gp and the list of all beside
   // Every method's points are joined by a line.
   const std::string picture = read(folder_ / "out" / "bench_AB.svg");
   for (const char* method : {"harmonic balance, automatic", "shooting, CVODE BDF", "marching, Newmark", "reference"})
@@ -64,7 +64,7 @@ TEST_F(Bench, WritesTheTableAndAPicture) {
 
 // What is not known to an accuracy is not said to be reached.
 TEST(RatioSentence, CountsTheErrorOfTheReference) {
-  using namespace hb::tools;
+  using namespace hb;
   RodBench bench;
   bench.reference_error = 6e-7;
   bench.rows = {{"rod", "harmonic balance, automatic", 1e-6, 8, 5e-7, 1e-4, 1e-4, true},
@@ -86,7 +86,7 @@ TEST_F(Bench, LeavesNothingBehindWhenInterrupted) {
 }
 
 TEST_F(Bench, WrongFlagsEndWithStatus2) {
-  for (const char* flags : {"--rpm 100:200:10", "--rpm 0", "--rpm 300 --time-limit 0", "--rpm 300 --time-limit nan"}) {
+  for (const char* flags : {"--rpm 100:200:10", "--rpm 0", "--rpm 300 --case-limit 0", "--rpm 300 --case-limit nan"}) {
     const CommandResult result = hb("bench " + scene("six_link") + " " + flags);
     EXPECT_EQ(result.status, 2) << flags;
     EXPECT_TRUE(result.out.empty()) << flags;

@@ -89,7 +89,7 @@ TEST_F(Check, ARangeNamesItsWorstCase) {
 }
 
 TEST(CheckReport, WorstCaseIsTheOneThatUsesMostOfItsAllowance) {
-  using namespace hb::tools;
+  using namespace hb;
   std::vector<SpeedCheck> checks(2);
   for (double speed : {1.0, 2.0}) {
     SpeedCheck& check = checks[speed > 1.5];
@@ -100,16 +100,16 @@ TEST(CheckReport, WorstCaseIsTheOneThatUsesMostOfItsAllowance) {
     rod.q1 = {"q'", 0.1 / speed, 1};
     check.rods.push_back(rod);
   }
-  EXPECT_EQ(worst_case(checks)->comparison.what, "q'");
-  EXPECT_EQ(worst_case(checks)->speed, 1.0);
+  EXPECT_EQ(worst_comparison(checks)->comparison.what, "q'");
+  EXPECT_EQ(worst_comparison(checks)->speed, 1.0);
   checks[1].joints = JointCheck{{"forces", 1e-9, 2e-9}, {"torque", NAN, 1}, "A"};
-  EXPECT_EQ(worst_case(checks)->comparison.what, "torque");
+  EXPECT_EQ(worst_comparison(checks)->comparison.what, "torque");
   EXPECT_FALSE(checks[1].agrees());
   EXPECT_TRUE(checks[0].agrees());
 }
 
 TEST_F(Check, TooLittleTimeIsSaidInWordsWithStatus3) {
-  const CommandResult result = hb("check " + scene("six_link_4500") + " --rpm 300 --integrator bdf --time-limit 0.01");
+  const CommandResult result = hb("check " + scene("six_link_4500") + " --rpm 300 --integrator bdf --case-limit 0.01");
   EXPECT_EQ(result.status, 3) << result.out << result.err;
   EXPECT_NE(result.out.find("more than the time limit"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("harmonic balance"), std::string::npos);
@@ -117,15 +117,14 @@ TEST_F(Check, TooLittleTimeIsSaidInWordsWithStatus3) {
 
 TEST_F(Check, WrongFlagsEndWithStatus2) {
   EXPECT_EQ(hb("check " + scene("six_link") + " --rpm 300 --integrator euler").status, 2);
-  EXPECT_EQ(hb("check " + scene("six_link") + " --rpm 300 --time-limit -1").status, 2);
-  EXPECT_EQ(hb("check " + scene("six_link") + " --rpm 300 --time-limit nan").status, 2);
+  EXPECT_EQ(hb("check " + scene("six_link") + " --rpm 300 --case-limit -1").status, 2);
+  EXPECT_EQ(hb("check " + scene("six_link") + " --rpm 300 --case-limit nan").status, 2);
   EXPECT_EQ(hb("check " + scene("six_link") + " --rpm 300:100:10").status, 2);
 }
 
 // ---- injected errors ----
 
 using namespace hb;
-using namespace hb::tools;
 
 Scene damped_six_link() {
   std::vector<Override> overrides;

@@ -285,14 +285,19 @@ branch = -1
   EXPECT_EQ(hb("scene near.toml").status, 0);
 }
 
-TEST_F(Steady, ASingleSpeedIsNeeded) {
+// One scene could not serve steady and sweep: each refused what the other needs.
+TEST_F(Steady, OfARangeInTheSceneTheFirstSpeedIsTaken) {
   std::ofstream(folder_ / "range.toml") << read(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
-  const CommandResult range = hb("steady range.toml --set 'analysis.rpm=[200, 6000, 20]'");
-  EXPECT_EQ(range.status, 2);
-  EXPECT_NE(range.err.find("give one with --rpm"), std::string::npos) << range.err;
+  const Json found = document("steady range.toml --modes 1 --only steady --set 'analysis.rpm=[200, 6000, 20]'");
+  EXPECT_EQ(found["rpm"], 200);
   const CommandResult flag = hb("steady range.toml --rpm 200:6000:20");
   EXPECT_EQ(flag.status, 2);
   EXPECT_NE(flag.err.find("one speed"), std::string::npos) << flag.err;
+  const CommandResult bad = hb("steady range.toml --rpm 3o0");
+  EXPECT_EQ(bad.err.find("FROM:TO"), std::string::npos) << bad.err;
+  const CommandResult backwards = hb("steady range.toml --rpm -300");
+  EXPECT_EQ(backwards.status, 2);
+  EXPECT_NE(backwards.err.find("mirror the scene"), std::string::npos) << backwards.err;
 }
 
 TEST_F(Steady, ListsEveryExponentOrSaysHowManyAreMissing) {

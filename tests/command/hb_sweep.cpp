@@ -157,9 +157,9 @@ TEST_F(Sweep, MarksPointsWhereTheLinkageDoesNotClose) {
 
 TEST_F(Sweep, RefusesWrongRanges) {
   const std::string six = scene("six_link");
-  for (const char* range :
-       {"300", "300:300:10", "600:300:10", "300:600:0", "300:600:-10", "300:600:1e-9", "300:600:nan", "300:inf:10",
-        "300:600", "300:600:10:10", "a:b:c", "300:600:500", "-600:600:10", "0:600:10"}) {
+  for (const char* range : {"300", "300:300:10", "600:300:10", "300:600:0", "300:600:-10", "300:600:1e-9",
+                            "300:600:nan", "300:inf:10", "300:600", "300:600:10:10", "300:600:x1", "300:600:x",
+                            "300:600:x2.5", "300:600:x2000000", "a:b:c", "300:600:500", "-600:600:10", "0:600:10"}) {
     const CommandResult result = hb("sweep " + six + " --json --rpm=" + range);
     EXPECT_EQ(result.status, 2) << range;
     EXPECT_NE(result.err.find("--rpm"), std::string::npos) << range << ": " << result.err;
@@ -171,6 +171,21 @@ TEST_F(Sweep, RefusesWrongRanges) {
     EXPECT_EQ(result.status, 2) << x;
     EXPECT_NE(result.err.find("--x"), std::string::npos) << x << ": " << result.err;
   }
+}
+
+TEST_F(Sweep, TakesANumberOfPointsAndTheScenesRange) {
+  const std::string only = " --only steady --modes 1";
+  const Json counted = document(scene("six_link") + only + " --rpm 300:900:x4");
+  const Json stepped = document(scene("six_link") + only + " --rpm 300:900:200");
+  EXPECT_EQ(counted["rpm"], stepped["rpm"]);
+  EXPECT_EQ(counted["rods"]["AB"]["max_abs"], stepped["rods"]["AB"]["max_abs"]);
+  const Json parameter = document(scene("six_link") + only + " --rpm 300 --x AB.J=40:60:x3");
+  EXPECT_EQ(parameter["x"]["values"], Json::parse("[40.0, 50.0, 60.0]")) << parameter["x"];
+  const Json from_scene = document(scene("six_link") + only + " --set 'analysis.rpm=[300, 900, 200]'");
+  EXPECT_EQ(from_scene["rpm"], stepped["rpm"]);
+  const CommandResult single = hb("sweep " + scene("six_link"));
+  EXPECT_EQ(single.status, 2);
+  EXPECT_NE(single.err.find("rpm = [from, to, step] in the scene"), std::string::npos) << single.err;
 }
 
 TEST_F(Sweep, RefusesUnknownPathsWithTheNearestAndImpossibleValues) {
@@ -191,7 +206,7 @@ TEST_F(Sweep, WritesTablesAndPictures) {
   ASSERT_EQ(result.status, 0) << result.err;
   for (const char* name :
        {"sweep.json", "sweep_rod.csv", "critical.csv", "unstable_bands.csv", "sweep_joint_forces.csv",
-        "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png", "growth_rod.png", "plots.gp"}) {
+        "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png", "growth_rod.png", "sweep.gp"}) {
     EXPECT_TRUE(fs::is_regular_file(folder_ / "out" / name)) << name;
   }
   EXPECT_EQ(num_entries(folder_), 1u);

@@ -177,12 +177,14 @@ TEST_F(Map, AFullDiskIsAnErrorThatLeavesNoPartOfAResultAndLosesNoWork) {
       "map " + scene("mathieu") + " --x omega=1:3:61 --y " + swing + "=0:0.4:41 --out out --no-plots";
   // A limit on the size of files acts on a write like a full disk; kilobytes.
   for (const char* limit : {"ulimit -f 1;", "ulimit -f 40;"}) {
-    const CommandResult result = hb(arguments, limit);
+    const CommandResult result = hb(arguments + " --restart", limit);
     EXPECT_EQ(result.status, 2) << result.err;
     EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
     for (const char* file : {"map_grid.csv", "map_boundaries.csv"}) EXPECT_FALSE(fs::exists(folder_ / "out" / file));
   }
-  EXPECT_EQ(hb(arguments).status, 0);
+  // What was finished is still there.
+  EXPECT_EQ(hb(arguments).status, 2);
+  EXPECT_EQ(hb(arguments + " --resume").status, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out" / "map_grid.csv"));
 }
 

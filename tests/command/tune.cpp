@@ -14,6 +14,7 @@
 namespace {
 
 using Json = nlohmann::json;
+using namespace hb;
 using namespace hb::tools;
 namespace fs = std::filesystem;
 
@@ -228,8 +229,8 @@ TEST_F(Tune, StartsWhereTheLinkageClosesIfItsSceneDoesNot) {
 TEST_F(Tune, UsesDerivativesWhereThereAreAny) {
   const Json found = document(least_mass + "--algorithm slsqp --stats");
   EXPECT_GT(found["gradients"], 0);
-  // Differences would take two analyses more for each gradient.
-  EXPECT_LT(found["analyses"], 40);
+  // About three for each gradient; differences would take two more for each.
+  EXPECT_LT(found["analyses"], 4 * found["gradients"].get<int>());
   std::string stages;
   for (const Json& stage : found["stats"]) stages += stage.dump();
   EXPECT_NE(stages.find("0 by differences"), std::string::npos) << stages;
@@ -276,7 +277,7 @@ TEST_F(Tune, SaysWhichConditionCannotBeMet) {
   EXPECT_NE(result.out.find("at its upper bound"), std::string::npos) << result.out;  // the nearest design
   // ... in a file that says so.
   EXPECT_FALSE(fs::exists(folder_ / "tuned" / "tuned.toml"));
-  EXPECT_EQ(read(folder_ / "tuned" / "nearest.toml").find("# NOT REACHED: "), 0u);
+  EXPECT_NE(read(folder_ / "tuned" / "nearest.toml").find("\n# NOT REACHED: "), std::string::npos);
   EXPECT_NE(result.out.find("nearest.toml"), std::string::npos) << result.out;
   EXPECT_EQ(hb("steady tuned/nearest.toml --rpm 1000 --no-plots").status, 0);
 }
@@ -559,7 +560,8 @@ TEST(WorstCaseOfADesign, IsNotBelowAnySpeedSampled) {
     settings.modes = 3;
     const SceneModel model = make_model(std::move(scene), settings);
     const SpeedSpan span{300 * unit, 1600 * unit, 16};
-    DesignAnalysis design(model, settings, span, {});
+    const hb::Work work;
+    DesignAnalysis design(model, settings, span, {}, work);
     const Brute dense = brute(model, settings, span.from, span.to, 250);
     const double deflection = design.value(parse_goal("deflection").terms[0].metric).value;
     const double margin = design.value(parse_keep("stable").metric).value;
@@ -580,7 +582,8 @@ TEST(ErrorOfAMetric, CoversTheModesLeftOut) {
     many.modes = 20;
     few.tolerance = many.tolerance = 1e-12;
     const SceneModel cut = make_model(scene, few), full = make_model(scene, many);
-    DesignAnalysis cut_design(cut, few, span, {{"*", 8}}), full_design(full, many, span, {{"*", 8}});
+    const hb::Work work;
+    DesignAnalysis cut_design(cut, few, span, {{"*", 8}}, work), full_design(full, many, span, {{"*", 8}}, work);
     for (const char* goal : {"deflection", "stress", "force", "torque-ripple", "stable", "frequency", "clearance"}) {
       SCOPED_TRACE(std::string(name) + ", " + goal);
       const bool large = std::string_view("stable frequency clearance").find(goal) != std::string_view::npos;
@@ -608,9 +611,9 @@ TEST(TuneNotation, ReadsGoalsAndConditions) {
   EXPECT_EQ(parse_keep("clearance:3>=0.2").metric.orders, 3);
   for (const char* wrong :
        {"", "stable>=x", "mass", "mass<=0", "frequency<=3", "force<=", "mass<=nan", "clearance:0>=1"})
-    EXPECT_THROW((void)parse_keep(wrong), UsageError) << wrong;
+    EXPECT_THROW((void)parse_keep(wrong), RequestError) << wrong;
   for (const char* wrong : {"", "mass+", "-1*mass", "frequency", "stable", "deflection:", "torque-ripple:AB"})
-    EXPECT_THROW((void)parse_goal(wrong), UsageError) << wrong;
+    EXPECT_THROW((void)parse_goal(wrong), RequestError) << wrong;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "hb/engine/nonlinear/harmonic_balance.hpp"
+#include "hb/engine/nonlinear/motion_search.hpp"
 #include "hb/engine/nonlinear/periodic_motion.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "tests/support/nonlinear_systems.hpp"
@@ -192,6 +193,22 @@ TEST(PeriodicMotion, SaysWhereTheEquationsEnd) {
   ASSERT_TRUE(motion.failure);
   EXPECT_EQ(motion.failure->reason, "too far");
   EXPECT_LE(motion.q.c.cwiseAbs().maxCoeff(), 0.5);
+}
+
+// Newton's method from rest, damped, comes to a singular matrix there.
+TEST(PeriodicMotion, IsFoundAlongAHomotopyWhereNewtonsMethodFails) {
+  const test::Duffing d{0.1, 1, 0.3};
+  const NonlinearSystem system = test::duffing(d);
+  ASSERT_EQ(solve_periodic_motion(system, 1.1, {}).status, MotionStatus::no_motion);
+  const PeriodicMotion motion = find_periodic_motion(system, 1.1, {}, {.tolerance = 1e-10});
+  ASSERT_EQ(motion.status, MotionStatus::converged);
+  const Index N = 4 * motion.num_harmonics + 2;
+  const MatrixXd q = fourier::synthesise(motion.q, N), v = 1.1 * fourier::synthesise(fourier::derivative(motion.q), N),
+                 a = 1.21 * fourier::synthesise(fourier::derivative(motion.q, 2), N);
+  for (Index j = 0; j < N; ++j) {
+    const double x = q(0, j), load = d.force * std::cos(2 * pi * double(j) / double(N));
+    EXPECT_NEAR(a(0, j) + d.damping * v(0, j) + x + d.cubic * x * x * x, load, 1e-8);
+  }
 }
 
 TEST(PeriodicMotion, StopsWhenAsked) {

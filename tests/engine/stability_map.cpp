@@ -286,15 +286,18 @@ TEST(StabilityMap, SameBitsInWhateverOrderAndThreadTheWorkIsDone) {
   MapOptions options;
   options.sag = 0.01;
   const StabilityMap plain = stability_map(coupled_map(0.06), x, y, options);
-  options.parts = [](std::size_t count, const std::function<Part(std::size_t)>& part) {
-    std::vector<Part> parts(count);
+  // As numbers from another process, too.
+  options.parts = [](const Parts& parts) {
+    const auto part = [&](std::size_t k) {
+      parts.compute(k);
+      if (k % 3 == 0) parts.take(k, parts.numbers(k));
+    };
     std::jthread even([&] {
-      for (std::size_t k = 0; k < count; k += 2) parts[k] = part(k);
+      for (std::size_t k = 0; k < parts.count; k += 2) part(k);
     });
-    for (std::size_t k = count; k-- > 0;) {
-      if (k % 2 == 1) parts[k] = part(k);
+    for (std::size_t k = parts.count; k-- > 0;) {
+      if (k % 2 == 1) part(k);
     }
-    return parts;
   };
   const StabilityMap other = stability_map(coupled_map(0.06), x, y, options);
   ASSERT_EQ(plain.points.size(), other.points.size());

@@ -32,7 +32,7 @@ std::vector<Case> cases(int num_modes) {
   for (const auto& file : files) {
     const Scene scene = read_scene(file);
     const std::string name = file.parent_path().filename().string() + "/" + file.stem().string();
-    double speed = scene.analysis.omega.value_or(1);
+    double speed = scene.analysis.omega ? scene.analysis.omega->from : 1;
     if (scene.analysis.rpm) speed = speed_from_rpm(scene.analysis.rpm->from, scene.units);
     if (const auto* hill = std::get_if<HillSystem>(&scene.model)) {
       result.push_back({name, *hill, speed});

@@ -22,8 +22,8 @@ std::string text_of(const std::filesystem::path& file) {
 
 std::vector<std::string> good_scenes() {
   std::vector<std::string> texts;
-  for (const char* name :
-       {"six_link", "four_bar", "slider_crank", "eight_link", "mathieu", "two_oscillators", "sampled_stiffness"}) {
+  for (const char* name : {"six_link", "four_bar", "slider_crank", "eight_link", "mathieu", "two_oscillators",
+                           "sampled_stiffness", "slider_crank_units"}) {
     texts.push_back(text_of(folder / (std::string(name) + ".toml")));
   }
   return texts;
@@ -84,7 +84,31 @@ constexpr std::array words = {"nan",
                               "inertia_pivot = 1",
                               "density = 1",
                               "omega_power = 2",
-                              "harmonic = 9999"};
+                              "harmonic = 9999",
+                              "\"210 GPa\"",
+                              "\"55 mm\"",
+                              "\"1,5 m\"",
+                              "\"3 kg/(m s^2)\"",
+                              "\"-1e400 mm^2\"",
+                              "\"((((1 m\"",
+                              "\"90 deg\"",
+                              "\"3000 rpm\"",
+                              "\"1 %\"",
+                              " mm",
+                              "/",
+                              "^",
+                              "material = \"steel\"",
+                              "material = \"cheese\"",
+                              "damping_ratio = 0.01",
+                              "damping_ratio = { mode = 2, ratio = 0.1 }",
+                              "section = { shape = \"I\", width = 3, height = 4, web = 1, flange = 1 }",
+                              "section = { shape = \"tube\", outer = 4, inner = 2 }",
+                              "shear = { G = 1, k = 0.8 }",
+                              "force = { file = \"gas_force.csv\", column = 2, unit = \"kN\", scale = -1 }",
+                              "pressure = { file = \"gas_force.csv\", unit = \"bar\", bore = 3, mean = 1 }",
+                              "column = \"force\"",
+                              "unit = \"N\"",
+                              "scale = 2"};
 
 class Mutator {
  public:

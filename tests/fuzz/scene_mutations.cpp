@@ -62,7 +62,7 @@ std::string wrong_scene(const Scene& scene) {
   const AnalysisDefaults& analysis = scene.analysis;
   if (!(analysis.tolerance >= 1e-14 && analysis.tolerance <= 0.1)) return "tolerance";
   if (analysis.rpm && !(analysis.rpm->from > 0 && analysis.rpm->from <= analysis.rpm->to)) return "rpm";
-  if (analysis.omega && !positive(*analysis.omega)) return "omega";
+  if (analysis.omega && !(positive(analysis.omega->from) && analysis.omega->from <= analysis.omega->to)) return "omega";
   if (!positive(scene.units.length_in_m) || !positive(scene.units.time_in_s)) return "units";
   if (const Linkage* linkage = std::get_if<Linkage>(&scene.model)) return wrong_linkage(*linkage);
   try {

@@ -100,22 +100,24 @@ TEST(SceneErrors, UnknownKeysAreNamedWithTheNearestOne) {
 }
 
 TEST(SceneErrors, MissingKeysAreNamed) {
-  expect_refused(linkage_text, {
-                                   {"length = 55\n", "", "6: crank.length: found nothing", {}},
-                                   {"pivot = [0, 0]\n", "", "6: crank.pivot", {"[x, y]"}},
-                                   {"on = \"crank\"\n", "", "9: dyad.0.on", {}},
-                                   {"name = \"AB\", ", "", "11: dyad.0.coupler.name", {}},
-                                   {"length = 259, ", "", "11: AB.length", {}},
-                                   {"mass = 0.165, ", "", "11: AB.mass", {}},
-                                   {"E = 21e7, ", "", "11: AB.elastic.E", {}},
-                                   {"area = 10, ", "", "11: AB.elastic.area", {}},
-                                   {", J = 45", "", "11: AB.elastic.J", {}},
-                                   {"pivot = [270, 0], ", "", "12: OB.pivot", {}},
-                                   {"inertia = 1800, ", "", "12: OB.inertia", {"inertia_pivot"}},
-                                   {"com = [118, 0], ", "", "12: OB.com", {"[radius, angle]"}},
-                                   {"branch = -1\n", "", "9: dyad.0.branch", {"1 or -1"}},
-                                   {"guide = [0, 50], ", "", "17: S.guide", {}},
-                               });
+  expect_refused(linkage_text,
+                 {
+                     {"length = 55\n", "", "6: crank.length: found nothing", {}},
+                     {"pivot = [0, 0]\n", "", "6: crank.pivot", {"[x, y]"}},
+                     {"on = \"crank\"\n", "", "9: dyad.0.on", {}},
+                     {"name = \"AB\", ", "", "11: dyad.0.coupler.name", {}},
+                     {"length = 259, ", "", "11: AB.length", {}},
+                     {"mass = 0.165, ", "", "11: AB.mass", {}},
+                     {"E = 21e7, ", "", "11: AB.elastic.E", {}},
+                     {"area = 10, ", "", "11: AB.elastic.area", {}},
+                     {", J = 45", "", "11: AB.elastic.J", {}},
+                     {"pivot = [270, 0], ", "", "12: OB.pivot", {}},
+                     {"inertia = 1800, ", "", "12: OB.inertia", {"inertia_pivot"}},
+                     {"com = [118, 0], ", "", "12: OB.com", {"[radius, angle]"}},
+                     {"branch = -1\n", "", "9: dyad.0.branch", {"1 or -1", "counter-clockwise (1)", "of AB"}},
+                     {"branch = 1\n", "", "14: dyad.1.branch", {"1 or -1", "the slider", "of CD"}},
+                     {"guide = [0, 50], ", "", "17: S.guide", {}},
+                 });
   expect_refused(hill_text,
                  {{"mass = [[1, 0], [0, 1]]\n", "", "1: hill.mass", {}},
                   {"harmonic = 0, ", "", "4: hill.stiffness.0.harmonic", {}},
@@ -341,6 +343,20 @@ TEST(SceneErrors, WhatIsNotTomlIsRefusedWithLineAndColumn) {
     const std::string message = message_of(text);
     EXPECT_TRUE(message.starts_with(place)) << message;
   }
+  // What was meant is said where it shows.
+  for (const auto& [text, hint] : std::vector<std::pair<std::string, std::string>>{
+           {"length = 0,055\n", "; a decimal comma? The decimal point is a point: length = 0.055"},
+           {"crank = { length = -1,5, mass = 2 }\n", "a point: length = -1.5"},
+           {"a = { material = steel, area = 3 }\n", "; text needs quotes: material = \"steel\""},
+           {"a = { E = 210 GPa, area = 3 }\n", "; text needs quotes: E = \"210 GPa\""},
+           {"\nE = 210GPa # steel\n", "; text needs quotes: E = \"210GPa\""},
+           {"on = crank\n", "; text needs quotes: on = \"crank\""},
+       }) {
+    const std::string message = message_of(text);
+    EXPECT_NE(message.find("found broken TOML"), std::string::npos) << message;
+    EXPECT_TRUE(message.ends_with(hint)) << message;
+  }
+  EXPECT_TRUE(message_of("a = [1, 2\n").ends_with("allowed TOML 1.0")) << message_of("a = [1, 2\n");
   std::string deep = "\n\na";
   for (int i = 0; i < 300000; ++i) deep += ".a";
   EXPECT_TRUE(message_of(deep + " = 1\n").starts_with("file.toml:3: found a key of more than 100 parts"));
@@ -396,7 +412,7 @@ TEST(SceneErrors, LinkagesThatDoNotTurnThroughSayWhere) {
 
   std::string second = linkage_text;
   second.replace(second.find("length = 400"), 12, "length = 40");
-  EXPECT_TRUE(message_of(second).starts_with("file.toml:14: dyad.1: found ")) << message_of(second);
+  EXPECT_TRUE(message_of(second).starts_with("file.toml:14: dyad.1: found the dyad (CD, S) ")) << message_of(second);
 
   // A parallelogram passes its dead centres at 0 and 180 degrees.
   const std::string parallelogram = message_of(R"(crank = { pivot = [0, 0], length = 1 }

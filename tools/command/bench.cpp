@@ -16,6 +16,8 @@
 #include "hb/analysis/bench_rod.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
+#include "tools/command/delivery.hpp"
+#include "tools/command/scene_input.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
@@ -52,7 +54,7 @@ std::string bench_text(const SceneModel& model, double speed, const std::vector<
                    to_string(bench.verdict), bench.reference_error);
     fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10} {:>11} {:>11}\n", "method", "asked", "harm/steps", "error",
                    "min [s]", "median [s]");
-    for (const Row& row : bench.rows)
+    for (const BenchRow& row : bench.rows)
       fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10.2e} {:>11.3e} {:>11.3e}\n", row.method,
                      row.asked > 0 ? fmt::format("{:.0e}", row.asked) : "", row.size, row.error, row.seconds,
                      row.median_seconds);
@@ -77,7 +79,7 @@ std::string bench_csv(const SceneModel& model, double speed, const std::vector<R
       model.scene.units.time);
   const std::string scene = csv_name(scene_name(model.scene));
   for (const RodBench& bench : benches)
-    for (const Row& row : bench.rows)
+    for (const BenchRow& row : bench.rows)
       text += fmt::format("\"{}\",{},\"{}\",\"{}\",{},{},{},{},{}\n", scene, speed, csv_name(row.rod), row.method,
                           row.asked, row.size, row.error, row.seconds, row.median_seconds);
   return text;
@@ -96,7 +98,7 @@ Json bench_json(const SceneModel& model, double speed, const std::vector<RodBenc
     rod["reference_error"] = bench.reference_error;
     rod["verdict"] = to_string(bench.verdict);
     rod["rows"] = Json::array();
-    for (const Row& row : bench.rows)
+    for (const BenchRow& row : bench.rows)
       rod["rows"].push_back({{"method", row.method},
                              {"asked", row.asked > 0 ? Json(row.asked) : Json()},
                              {"harmonics_or_steps", row.size},
@@ -140,19 +142,21 @@ Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench
 
 struct BenchFlags {
   CommonFlags common;
-  std::string time_limit;
+  std::string case_limit;
 };
 
 int run_bench(const BenchFlags& flags) {
-  Scene scene = read_scene(flags.common.scene_file, overrides(flags.common));
+  const SceneInput input = scene_input(flags.common.scene_file);
+  Scene scene = input.source.with(overrides(flags.common));
   Settings options = settings(flags.common, scene);
+  const Output out = output(flags.common);
   options.only = {true, false, false, false};
   const double speed = single_speed(flags.common, scene);
-  const double time_limit = flags.time_limit.empty() ? 5
-                                                     : number_flag("--time-limit", flags.time_limit, 1e-3, 1e6,
+  const double time_limit = flags.case_limit.empty() ? 5
+                                                     : number_flag("--case-limit", flags.case_limit, 1e-3, 1e6,
                                                                    "seconds from 0.001 to 1000000");
   std::optional<OutputFolder> folder;
-  if (options.out) folder.emplace(*options.out);
+  if (out.folder) folder.emplace(*out.folder, "bench", provenance(flags.common.line, input));
 
   const auto start = Clock::now();
   const SceneModel model = make_model(std::move(scene), options);
@@ -166,28 +170,25 @@ int run_bench(const BenchFlags& flags) {
     const TimeDomainSystem system = model.linkage() != nullptr
                                         ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
                                         : time_domain_system(rod.system, speed);
-    benches.push_back(bench_rod(rod, system, {options.steady_method, time_limit}, *progress));
+    benches.push_back(bench_rod(rod, system, {options.steady_method, time_limit, [&] { progress->advance(); }}));
   }
   progress.reset();
   const Json document = bench_json(model, speed, benches, geometry);
-  if (folder) {
-    folder->write("bench.json", document.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-    folder->write("bench.csv", bench_csv(model, speed, benches));
+  const bool complete = std::none_of(benches.begin(), benches.end(), [](const RodBench& b) { return b.rows.empty(); });
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(document) : bench_text(model, speed, benches, geometry);
+  delivery.write_data = [&](OutputFolder& place) {
+    place.write("bench.json", json_file_text(document));
+    place.write("bench.csv", bench_csv(model, speed, benches));
     std::vector<Figure> figures;
     std::size_t row = 0;
     for (const RodBench& bench : benches) {
       if (!bench.rows.empty()) figures.push_back(bench_figure(model, speed, bench, row));
       row += bench.rows.size();
     }
-    draw_figures(figures, *folder, options.plots);
-    folder->commit();
-  }
-  if (options.json)
-    print_json(document);
-  else
-    fmt::print("{}", bench_text(model, speed, benches, geometry));
-  const bool complete = std::none_of(benches.begin(), benches.end(), [](const RodBench& b) { return b.rows.empty(); });
-  return complete ? exit_ok : exit_not_reached;
+    return figures;
+  };
+  return deliver(folder ? &*folder : nullptr, out.plots, complete ? exit_ok : exit_not_reached, delivery);
 }
 
 }  // namespace
@@ -197,8 +198,8 @@ void add_bench_command(CLI::App& app, int& status) {
       app.add_subcommand("bench", "error against run time: harmonic balance, shooting, marching, Newmark, Runge-Kutta");
   const auto flags = std::make_shared<BenchFlags>();
   add_scene_flags(*command, flags->common);
-  add_analysis_flags(*command, flags->common);
-  command->add_option("--time-limit", flags->time_limit, "seconds for each case; default 5")->type_name("SECONDS");
+  add_analysis_flags(*command, flags->common, SpeedsTaken::one);
+  command->add_option("--case-limit", flags->case_limit, "seconds for each case; default 5")->type_name("SECONDS");
   command->footer(
       "Every method runs on one thread at its own list of tolerances, on the periodic state: --tol, --only, "
       "--threads,\n"

@@ -17,6 +17,8 @@
 #include "tools/output/check_report.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
+#include "tools/command/delivery.hpp"
+#include "tools/command/scene_input.hpp"
 #include "hb/analysis/cross_check.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
@@ -28,15 +30,15 @@ namespace {
 
 struct CheckFlags {
   CommonFlags common;
-  std::string integrator, time_limit;
+  std::string integrator, case_limit;
   bool march = false;
 };
 
 CheckOptions check_options(const CheckFlags& flags) {
   CheckOptions options;
   options.march = flags.march;
-  if (!flags.time_limit.empty())
-    options.time_limit = number_flag("--time-limit", flags.time_limit, 1e-3, 1e6, "seconds from 0.001 to 1000000");
+  if (!flags.case_limit.empty())
+    options.time_limit = number_flag("--case-limit", flags.case_limit, 1e-3, 1e6, "seconds from 0.001 to 1000000");
   const std::string& name = flags.integrator;
   if (name.empty() || name == "automatic")
     options.integrator = Integrator::automatic;
@@ -96,18 +98,20 @@ class CheckProgress {
 };
 
 int run_check(const CheckFlags& flags) {
-  Scene scene = read_scene(flags.common.scene_file, overrides(flags.common));
+  const SceneInput input = scene_input(flags.common.scene_file);
+  Scene scene = input.source.with(overrides(flags.common));
   const Settings options = settings(flags.common, scene);
+  const Output out = output(flags.common);
   const CheckOptions check_with = check_options(flags);
   const std::vector<double> speeds = speeds_of(speed_range(flags.common, scene), scene.units);
   std::optional<OutputFolder> folder;
-  if (options.out) folder.emplace(*options.out);
+  if (out.folder) folder.emplace(*out.folder, "check", provenance(flags.common.line, input));
 
   const SceneModel model = make_model(std::move(scene), options);
   std::vector<SpeedCheck> checks(speeds.size());
   {
     CheckProgress progress(speeds.size());
-    parallel_for(speeds.size(), options.threads, [&](std::size_t k) {
+    parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
       CheckOptions here = check_with;
       here.begin = [&](const std::string& rod, Integrator integrator, double seconds) {
         progress.begin(rod, speed_text(speeds[k], model.scene), integrator, seconds);
@@ -118,19 +122,20 @@ int run_check(const CheckFlags& flags) {
   }
 
   const nlohmann::ordered_json document = check_json(model, checks, options);
-  if (folder) {
-    folder->write("check.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    write_check_pictures(model, checks, *folder, options.plots);
-    folder->commit();
-  }
-  if (options.json)
-    print_json(document);
-  else
-    fmt::print("{}", check_report(model, checks, options));
   const bool agree = std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.agrees(); });
   const bool reached =
       std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.shortfalls.empty(); });
-  return !agree ? exit_failed : reached ? exit_ok : exit_not_reached;
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(document) : check_report(model, checks, options, out.stats);
+  delivery.write_data = [&](OutputFolder& place) {
+    place.write("check.json", json_file_text(document));
+    return write_check_tables(model, checks, place);
+  };
+  return deliver(folder ? &*folder : nullptr, out.plots,
+                 !agree    ? exit_failed
+                 : reached ? exit_ok
+                           : exit_not_reached,
+                 delivery);
 }
 
 }  // namespace
@@ -143,7 +148,7 @@ void add_check_command(CLI::App& app, int& status) {
   add_analysis_flags(*command, flags->common);
   command->add_option("--integrator", flags->integrator, "automatic, adams, bdf (CVODE) or collocation (Radau)")
       ->type_name("NAME");
-  command->add_option("--time-limit", flags->time_limit, "seconds for each rod and speed; default 60")
+  command->add_option("--case-limit", flags->case_limit, "seconds for each rod and speed; default 60")
       ->type_name("SECONDS");
   command->add_flag("--march", flags->march, "also march from rest until the transient has died out");
   command->callback([flags, &status] { status = run_check(*flags); });

@@ -4,15 +4,20 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <thread>
 
 #include "tools/command/command.hpp"
+#include "tools/report/report_page.hpp"
+#include "tools/command/parameter_range.hpp"
+#include "tools/command/scene_input.hpp"
 
 namespace hb::tools {
 namespace {
 
-constexpr int max_modes = 60;  // what the Ritz matrices are made for
 constexpr int max_threads = 1024;
 
 [[noreturn]] void refuse(const std::string& flag, const std::string& found, const std::string& allowed) {
@@ -70,10 +75,15 @@ Only only_flag(const std::string& text, bool verdict_allowed) {
   return only;
 }
 
-// "A:B:STEP" or "N", positive.
-Speeds speeds_flag(const std::string& flag, const std::string& text) {
-  const std::string allowed =
-      fmt::format("a positive number, {:g} to {:g}, or FROM:TO:STEP with FROM <= TO and STEP > 0", slowest, fastest);
+// "A:B:STEP", "A:B:xN" or "N", positive; `single`: only the last.
+Speeds speeds_flag(const std::string& flag, const std::string& text, bool single) {
+  std::string allowed = fmt::format("a positive number, {:g} to {:g}{}", slowest, fastest,
+                                    single ? "" : ", FROM:TO:STEP or FROM:TO:xN with FROM <= TO, STEP > 0, N points");
+  if (text.starts_with('-')) {
+    allowed +=
+        "; a crank turns counter-clockwise: for the other way mirror the scene about the x axis (the signs of "
+        "gravity, of every y, angle and branch)";
+  }
   std::vector<std::string> parts(1);
   for (const char c : text) {
     if (c == ':') {
@@ -82,7 +92,10 @@ Speeds speeds_flag(const std::string& flag, const std::string& text) {
       parts.back() += c;
     }
   }
+  if (parts.size() == 3 && single) refuse(flag, text, "one speed, " + allowed);
   if (parts.size() != 1 && parts.size() != 3) refuse(flag, text, allowed);
+  const std::optional<std::size_t> count = parts.size() == 3 ? point_count(flag, text, parts[2]) : std::nullopt;
+  if (count) parts.pop_back();
   std::vector<double> numbers;
   for (const std::string& part : parts) {
     const std::optional<double> value = parse<double>(part);
@@ -91,7 +104,23 @@ Speeds speeds_flag(const std::string& flag, const std::string& text) {
   }
   if (numbers.size() == 1) return {numbers[0], numbers[0], 0};
   if (!(numbers[0] <= numbers[1])) refuse(flag, text, allowed);
-  return {numbers[0], numbers[1], numbers[2]};
+  if (!count) return {numbers[0], numbers[1], numbers[2]};
+  const int N = static_cast<int>(*count);
+  return {numbers[0], numbers[1], (numbers[1] - numbers[0]) / (N - 1), N};
+}
+
+SpeedRange speeds_of_flags(const CommonFlags& flags, const Scene& scene, bool single) {
+  if (!flags.rpm.empty() && !flags.omega.empty()) {
+    throw UsageError(
+        fmt::format("--omega: found \"{}\" beside --rpm {}, allowed: one of the two", flags.omega, flags.rpm));
+  }
+  if (!flags.rpm.empty()) return {speeds_flag("--rpm", flags.rpm, single), true};
+  if (!flags.omega.empty()) return {speeds_flag("--omega", flags.omega, single), false};
+  if (scene.analysis.rpm) return {*scene.analysis.rpm, true};
+  if (scene.analysis.omega) return {*scene.analysis.omega, false};
+  throw UsageError(fmt::format(
+      "--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm N, or --omega W (rad per {})",
+      scene.file.string(), scene.units.time));
 }
 
 // An empty text stands for a flag that was not given: one that is given has something to say.
@@ -133,7 +162,8 @@ std::vector<std::string> list_flag(const std::string& flag, const std::string& t
 }
 
 void add_scene_flags(CLI::App& app, CommonFlags& flags) {
-  app.add_option("SCENE", flags.scene_file, "scene file (TOML)")->required();
+  app.add_option("SCENE", flags.scene_file, "scene file (TOML), - for standard input")->required();
+  app.parse_complete_callback([&app, &flags] { flags.line = command_line(app); });
   app.add_option("--set", flags.set, "replace a scene number for this run, as in AB.J=60 or *.J=60; repeatable")
       ->type_name("PATH=VALUE")
       ->expected(1)
@@ -144,12 +174,16 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
   app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
 }
 
+void add_html_flag(CLI::App& app, CommonFlags& flags) {
+  app.add_flag("--html", flags.html, "write DIR/report.html, one page that moves, beside --out DIR");
+}
+
 void add_single_speed_flags(CLI::App& app, CommonFlags& flags) {
   flags.single_speed = true;
   add_value(app, "--bound", flags.bound, "error bound: estimated, or proved where a proof is found", "KIND");
 }
 
-void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
+void add_analysis_flags(CLI::App& app, CommonFlags& flags, SpeedsTaken taken) {
   const auto add = [&](const char* name, std::string& text, const char* meaning, const char* type) {
     add_value(app, name, text, meaning, type);
   };
@@ -157,12 +191,31 @@ void add_analysis_flags(CLI::App& app, CommonFlags& flags) {
   add("--tol", flags.tolerance, "relative error wanted, 1e-14 to 0.1", "T");
   add("--rods", flags.rods, "elastic links to look at, as in AB,CD; default all", "NAMES");
   add("--only", flags.only, "compute only these: steady,stability,reactions,shape", "LIST");
-  add("--rpm", flags.rpm, "speed of the crank in revolutions per minute", "N");
-  add("--omega", flags.omega, "speed in rad per the scene's unit of time, instead of --rpm", "W");
-  add("--threads", flags.threads, "number of threads, 1 or more", "N");
+  const bool one = taken == SpeedsTaken::one;
+  const char* speeds = one ? "N" : "A:B:STEP|A:B:xN";
+  add("--rpm", flags.rpm,
+      one ? "speed of the crank in revolutions per minute; default the scene's (its first)"
+          : "speeds of the crank in revolutions per minute, by step or by number of points; default the "
+            "scene's",
+      speeds);
+  add("--omega", flags.omega, "the same in rad per the scene's unit of time", speeds);
+  add("--threads", flags.threads, "number of threads, 1 or more, or all", "N");
   add("--steady-method", flags.steady_method, "automatic, direct or iterative", "METHOD");
   add("--stability-method", flags.stability_method, "automatic, hill, slaving, propagation, determinant or bound",
       "METHOD");
+}
+
+std::string in_flags(const RequestError& error) {
+  // Other fields (a metric such as stress:AB) are texts of the command line already.
+  static const std::map<std::string, std::string> flag_of = {
+      {"rods", "--rods"},         {"modes", "--modes"},       {"tolerance", "--tol"}, {"rpm", "--rpm"},
+      {"omega", "--omega"},       {"only", "--only"},         {"vary", "--vary"},     {"keep", "--keep"},
+      {"minimise", "--minimise"}, {"maximise", "--maximise"}, {"height", "--height"}};
+  const auto flag = flag_of.find(error.field);
+  std::string text = flag == flag_of.end() ? error.field : flag->second;
+  if (!text.empty()) text += ": ";
+  for (const char c : error.sentence) text += c == '@' ? std::string("--") : std::string(1, c);
+  return text;
 }
 
 std::vector<Override> overrides(const CommonFlags& flags) {
@@ -195,10 +248,6 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
   if (hill && !result.only.steady && !result.only.stability) {
     refuse("--only", flags.only, "steady, stability: a [hill] scene has no joints and no shape");
   }
-  if (!flags.threads.empty()) {
-    result.threads =
-        integer_flag("--threads", flags.threads, 1, max_threads, fmt::format("an integer 1 to {}", max_threads));
-  }
   if (!flags.steady_method.empty()) {
     result.steady_method = choice_flag<SteadyMethod>("--steady-method", flags.steady_method,
                                                      {{"automatic", SteadyMethod::automatic},
@@ -218,39 +267,66 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                                                             {"determinant", StabilityMethod::determinant},
                                                             {"bound", StabilityMethod::bound}});
   }
+  return result;
+}
+
+Output output(const CommonFlags& flags) {
+  Output result;
+  if (!flags.threads.empty()) {
+    const int all = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, max_threads);
+    result.threads = flags.threads == "all" ? all
+                                            : integer_flag("--threads", flags.threads, 1, max_threads,
+                                                           fmt::format("an integer 1 to {}, or all", max_threads));
+  }
   if (flags.out) {
     // "--out --json" names no folder.
     if (flags.out->empty() || flags.out->front() == '-') refuse("--out", *flags.out, "a folder (-x as ./-x)");
-    result.out = *flags.out;
+    result.folder = *flags.out;
   }
+  if (flags.html) {
+    if (!flags.out) refuse("--html", "no --out", "beside --out DIR, which the page is written into");
+    if (const std::string obstacle = report_obstacle(); !obstacle.empty()) throw UsageError("--html: " + obstacle);
+  }
+  result.html = flags.html;
   result.json = flags.json;
   result.plots = !flags.no_plots;
   result.stats = flags.stats;
   return result;
 }
 
-SpeedRange speed_range(const CommonFlags& flags, const Scene& scene) {
-  if (!flags.rpm.empty() && !flags.omega.empty()) {
+SpeedRange speed_range(const CommonFlags& flags, const Scene& scene) { return speeds_of_flags(flags, scene, false); }
+
+SpeedRange several_speeds(const CommonFlags& flags, const Scene& scene) {
+  const SpeedRange range = speed_range(flags, scene);
+  if (range.speeds.from < range.speeds.to) return range;
+  const std::string name = range.in_rpm ? "rpm" : "omega";
+  if (!flags.rpm.empty() || !flags.omega.empty()) {
     throw UsageError(
-        fmt::format("--omega: found \"{}\" beside --rpm {}, allowed: one of the two", flags.omega, flags.rpm));
+        fmt::format("--{}: found the single speed {}, allowed: a range FROM:TO:STEP or FROM:TO:xN (hb steady "
+                    "does one speed)",
+                    name, range.speeds.from));
   }
-  if (!flags.rpm.empty()) return {speeds_flag("--rpm", flags.rpm), true};
-  if (!flags.omega.empty()) return {speeds_flag("--omega", flags.omega), false};
-  if (scene.analysis.rpm) return {*scene.analysis.rpm, true};
-  if (scene.analysis.omega) return {{*scene.analysis.omega, *scene.analysis.omega, 0}, false};
-  throw UsageError(fmt::format(
-      "--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm N, or --omega W (rad per {})",
-      scene.file.string(), scene.units.time));
+  throw UsageError(
+      fmt::format("--{0}: not given, and the scene's [analysis] has the single speed {0} = {1}; allowed: "
+                  "--{0} FROM:TO:STEP (or FROM:TO:xN), or {0} = [from, to, step] in the scene",
+                  name, range.speeds.from));
+}
+
+std::vector<double> speed_values(const SpeedRange& range) {
+  const Speeds& speeds = range.speeds;
+  const std::string flag = range.in_rpm ? "--rpm" : "--omega";
+  if (speeds.count > 0) return range_by_count(flag, speeds.from, speeds.to, static_cast<std::size_t>(speeds.count));
+  return range_by_step(flag, speeds.from, speeds.to, speeds.step);
+}
+
+SpeedRange first_speed(const CommonFlags& flags, const Scene& scene) {
+  SpeedRange range = speeds_of_flags(flags, scene, true);
+  range.speeds = {range.speeds.from, range.speeds.from, 0};
+  return range;
 }
 
 double single_speed(const CommonFlags& flags, const Scene& scene) {
-  const auto [speeds, in_rpm] = speed_range(flags, scene);
-  if (speeds.step != 0) {
-    const bool from_flag = !flags.rpm.empty() || !flags.omega.empty();
-    throw UsageError(fmt::format("{}: found the range {}:{}:{}{}, allowed: one speed; give one with --rpm N",
-                                 in_rpm ? "--rpm" : "--omega", speeds.from, speeds.to, speeds.step,
-                                 from_flag ? "" : " in the scene's [analysis]"));
-  }
+  const auto [speeds, in_rpm] = first_speed(flags, scene);
   return in_rpm ? speed_from_rpm(speeds.from, scene.units) : speeds.from;
 }
 

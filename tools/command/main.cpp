@@ -17,6 +17,11 @@
 #include "lib/scene/scene.hpp"
 #include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
+#include "tools/command/common_flags.hpp"
+#include "tools/command/version.hpp"
+#include "tools/output/printable.hpp"
+#include "tools/output/standard_output.hpp"
+#include "tools/work/interrupts.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "tools/work/ranks.hpp"
 #ifdef HB_WITH_MPI
@@ -25,16 +30,34 @@
 
 namespace {
 
-int say(int status, const char* what) {
-  fmt::print(stderr, "hb: {}\n", what);
+int say(int status, const std::string& what) {
+  fmt::print(stderr, "hb: {}\n", hb::tools::printable(what));
   return status;
 }
 
-// A result that did not reach its reader is not a success.
+// A result that did not reach its reader is not a success. A reader that has read enough (`| head`) is told nothing.
 int flush_output(int status) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
-  fmt::print(stderr, "hb: standard output cannot be written: {}\n", std::strerror(errno));
-  return hb::tools::exit_wrong_input;
+  const int error = hb::tools::standard_output_error();
+  if (error == 0) return status;
+  if (error == EPIPE) {
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
+  return say(hb::tools::exit_wrong_input, fmt::format("standard output cannot be written: {}", std::strerror(error)));
+}
+
+// Errors that nobody caught, as out of memory while one was handled.
+[[noreturn]] void end_without_abort() {
+  constexpr char message[] = "hb: out of memory, or an internal error\n";
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, message, sizeof message - 1);
+  _exit(hb::tools::exit_failed);
+}
+
+void prepare_process() {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
+  std::signal(SIGPIPE, SIG_IGN);  // files come first, see flush_output
+  std::set_terminate(end_without_abort);
+  hb::tools::end_cleanly_on_signals();
 }
 
 std::string unknown_command(const CLI::App& app, const std::string& found) {
@@ -50,11 +73,13 @@ int run(int argc, char** argv) {
   using namespace hb::tools;
   CLI::App app{
       "Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.\n"
-      "Exit status: 0 done, 1 disagreement found by a check or internal error, 2 wrong input, 3 tolerance not reached.",
+      "Exit status: 0 done, 1 disagreement found by a check or internal error, 2 wrong input or output that cannot be\n"
+      "written, 3 a tolerance asked for not reached, 4 data complete but pictures missing, 130 interrupted.",
       "hb"};
   app.require_subcommand(1);
-  app.set_version_flag("--version", HB_VERSION);
+  app.set_version_flag("--version", version());
   int status = exit_ok;
+  add_new_command(app, status);
   add_scene_command(app, status);
   add_steady_command(app, status);
   add_sweep_command(app, status);
@@ -62,23 +87,25 @@ int run(int argc, char** argv) {
   add_check_command(app, status);
   add_bench_command(app, status);
   add_tune_command(app, status);
+  add_report_command(app, status);
   try {
     app.parse(argc, argv);
     return status;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     if (argc > 1 && app.get_subcommands().empty()) {
-      fmt::print(stderr, "hb: {}\n", unknown_command(app, argv[1]));
-      return exit_wrong_input;
+      return say(exit_wrong_input, unknown_command(app, argv[1]));
     }
     const auto chosen = app.get_subcommands();
     const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
-    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, error.what(), command);
+    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(error.what()), command);
     return exit_wrong_input;
-  } catch (const UnresolvedLinkage& error) {
+  } catch (const hb::UnresolvedLinkage& error) {
     return say(exit_not_reached, error.what());
   } catch (const hb::SceneError& error) {
     return say(exit_wrong_input, error.what());
+  } catch (const hb::RequestError& error) {
+    return say(exit_wrong_input, in_flags(error));
   } catch (const UsageError& error) {
     return say(exit_wrong_input, error.what());
   } catch (const OutputError& error) {
@@ -90,8 +117,7 @@ int run(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return say(exit_failed, "out of memory");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "hb: internal error: {}\n", error.what());
-    return exit_failed;
+    return say(exit_failed, fmt::format("internal error: {}", error.what()));
   }
 }
 
@@ -100,9 +126,9 @@ int run(int argc, char** argv) {
 #ifdef HB_WITH_MPI
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);
   const hb::tools::MpiRanks ranks(argc, argv);
   hb::tools::set_ranks(ranks);
+  prepare_process();
   // The first rank speaks for all.
   if (!ranks.first() && (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))) return 1;
   const std::string command = argc > 1 ? argv[1] : "";
@@ -110,8 +136,7 @@ int main(int argc, char** argv) {
   const int status = shared ? flush_output(run(argc, argv))
                             : say(hb::tools::exit_wrong_input,
                                   fmt::format("found {} processes for \"{}\", allowed: several for sweep and map only",
-                                              ranks.size(), command)
-                                      .c_str());
+                                              ranks.size(), command));
   if (status == hb::tools::exit_wrong_input || status == hb::tools::exit_failed) ranks.end_all(status);
   return status;
 }
@@ -119,7 +144,7 @@ int main(int argc, char** argv) {
 #else
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
+  prepare_process();
   // Under mpirun the program with MPI beside this one takes over; alone, nobody waits for MPI to be loaded.
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr) {
     std::error_code error;

@@ -10,8 +10,9 @@
 namespace hb::tools {
 namespace {
 
-constexpr const char* by_step = "FROM:TO:STEP with FROM < TO and 0 < STEP <= TO - FROM";
-constexpr const char* by_count = "FROM:TO:N with FROM < TO and N an integer, 2 or more";
+constexpr const char* by_step = "FROM:TO:STEP or FROM:TO:xN (N points) with FROM < TO and 0 < STEP <= TO - FROM";
+constexpr const char* by_count =
+    "FROM:TO:N or FROM:TO:xN with FROM < TO and N, the number of points, an integer, 2 or more";
 
 [[noreturn]] void refuse(const std::string& flag, const std::string& found, const std::string& why,
                          const std::string& allowed) {
@@ -19,10 +20,27 @@ constexpr const char* by_count = "FROM:TO:N with FROM < TO and N an integer, 2 o
 }
 
 [[noreturn]] void refuse_size(const std::string& flag, const std::string& found, double count) {
-  refuse(flag, found, fmt::format("which is {:.3g} points", count), fmt::format("at most {} points", max_range_points));
+  refuse(flag, found, fmt::format("which is {:.10g} points", count),
+         fmt::format("at most {} points", max_range_points));
 }
 
-std::vector<double> three_numbers(const std::string& flag, const std::string& text, const std::string& allowed) {
+double number_in(const std::string& flag, const std::string& text, const std::string& part,
+                 const std::string& allowed) {
+  double value = 0;
+  const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+  if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value)) {
+    refuse(flag, text, fmt::format("where \"{}\" is not a finite number", part), allowed);
+  }
+  return value;
+}
+
+// "FROM:TO:third", the third a number or "xN".
+struct RangeText {
+  double from, to;
+  std::string third;
+};
+
+RangeText range_text(const std::string& flag, const std::string& text, const std::string& allowed) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
     if (c == ':') {
@@ -33,16 +51,7 @@ std::vector<double> three_numbers(const std::string& flag, const std::string& te
   }
   if (parts.size() == 1) refuse(flag, text, "a single value", allowed);
   if (parts.size() != 3) refuse(flag, text, "which has not three parts", allowed);
-  std::vector<double> numbers;
-  for (const std::string& part : parts) {
-    double value = 0;
-    const auto [stop, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    if (error != std::errc() || stop != part.data() + part.size() || !std::isfinite(value)) {
-      refuse(flag, text, fmt::format("where \"{}\" is not a finite number", part), allowed);
-    }
-    numbers.push_back(value);
-  }
-  return numbers;
+  return {number_in(flag, text, parts[0], allowed), number_in(flag, text, parts[1], allowed), parts[2]};
 }
 
 void require_ascending(const std::string& flag, const std::string& text, double from, double to,
@@ -81,24 +90,49 @@ std::vector<double> range_by_step(const std::string& flag, double from, double t
   return values;
 }
 
+std::optional<std::size_t> point_count(const std::string& flag, const std::string& range, const std::string& third) {
+  if (!third.starts_with('x')) return std::nullopt;
+  std::size_t count = 0;
+  const auto [stop, error] = std::from_chars(third.data() + 1, third.data() + third.size(), count);
+  if (error != std::errc() || stop != third.data() + third.size() || count < 2) {
+    refuse(flag, range, fmt::format("where \"{}\" is not x and a number of points", third),
+           "FROM:TO:xN with N an integer, 2 or more");
+  }
+  if (count > max_range_points) refuse_size(flag, range, static_cast<double>(count));
+  return count;
+}
+
 std::vector<double> range_by_step(const std::string& flag, const std::string& text) {
-  const std::vector<double> numbers = three_numbers(flag, text, by_step);
-  return range_by_step(flag, numbers[0], numbers[1], numbers[2]);
+  const RangeText range = range_text(flag, text, by_step);
+  if (const auto count = point_count(flag, text, range.third))
+    return range_by_count(flag, range.from, range.to, *count);
+  return range_by_step(flag, range.from, range.to, number_in(flag, text, range.third, by_step));
 }
 
 std::vector<double> range_by_count(const std::string& flag, const std::string& text) {
-  const std::vector<double> numbers = three_numbers(flag, text, by_count);
-  require_ascending(flag, text, numbers[0], numbers[1], by_count);
-  const double count = numbers[2];
+  const RangeText range = range_text(flag, text, by_count);
+  if (const auto count = point_count(flag, text, range.third))
+    return range_by_count(flag, range.from, range.to, *count);
+  const double count = number_in(flag, text, range.third, by_count);
   if (count > static_cast<double>(max_range_points)) refuse_size(flag, text, count);
-  if (!(count >= 2) || count != std::floor(count)) refuse(flag, text, "whose number of points is not one", by_count);
-  const auto N = static_cast<std::size_t>(count);
-  std::vector<double> values(N);
-  for (std::size_t k = 0; k < N; ++k) {
-    const double t = static_cast<double>(k) / static_cast<double>(N - 1);
-    values[k] = numbers[0] + t * (numbers[1] - numbers[0]);
+  if (!(count >= 2) || count != std::floor(count)) {
+    refuse(flag, text,
+           fmt::format("where the number of points is {}, no integer of 2 or more{}", range.third,
+                       count > 0 && count < range.to - range.from ? " (here the third number is no step)" : ""),
+           by_count);
   }
-  values.back() = numbers[1];
+  return range_by_count(flag, range.from, range.to, static_cast<std::size_t>(count));
+}
+
+std::vector<double> range_by_count(const std::string& flag, double from, double to, std::size_t count) {
+  const std::string text = fmt::format("{}:{}:x{}", from, to, count);
+  require_ascending(flag, text, from, to, by_count);
+  std::vector<double> values(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    const double t = static_cast<double>(k) / static_cast<double>(count - 1);
+    values[k] = from + t * (to - from);
+  }
+  values.back() = to;
   if (!(values[1] > values[0])) refuse(flag, text, "whose step is lost in rounding", by_count);
   return values;
 }

@@ -4,38 +4,44 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
+#include "tools/command/delivery.hpp"
+#include "tools/command/scene_input.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/pictures/figures.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
+#include "tools/output/printable.hpp"
 #include "tools/output/scene_report.hpp"
 
 namespace hb::tools {
 namespace {
 
 int run_scene(const CommonFlags& flags) {
-  const Scene scene = read_scene(flags.scene_file, overrides(flags));
-  const Settings options = settings(flags, scene);
-  if (options.out) {
-    OutputFolder folder(*options.out, "scene");
-    folder.write("scene.txt", scene_table(scene));
-    if (std::holds_alternative<Linkage>(scene.model)) {
-      const CsvFile mechanism = mechanism_csv(scene);
-      folder.write(mechanism.name, csv_text(mechanism));
-      draw_figures({mechanism_figure(scene, mechanism)}, folder, options.plots);
-    }
-    folder.commit();
-  }
-  if (options.json) {
-    print_json(scene_json(scene));
-  } else {
-    fmt::print("{}", scene_table(scene));
-  }
-  return exit_ok;
+  const SceneInput input = scene_input(flags.scene_file);
+  const Scene scene = input.source.with(overrides(flags));
+  (void)settings(flags, scene);
+  const Output out = output(flags);
+  std::optional<OutputFolder> folder;
+  if (out.folder) folder.emplace(*out.folder, "scene", provenance(flags.line, input));
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(scene_json(scene)) : scene_table(scene);
+  delivery.write_data = [&](OutputFolder& place) -> std::vector<Figure> {
+    place.write("scene.txt", printable(scene_table(scene)));
+    if (!std::holds_alternative<Linkage>(scene.model)) return {};
+    // `hb steady` writes the same under its own names.
+    CsvFile mechanism = mechanism_csv(scene);
+    mechanism.name = "scene_mechanism.csv";
+    place.write(mechanism.name, csv_text(mechanism));
+    Figure figure = mechanism_figure(scene, mechanism);
+    figure.name = "scene_mechanism";
+    return {figure};
+  };
+  return deliver(folder ? &*folder : nullptr, out.plots, exit_ok, delivery);
 }
 
 }  // namespace

@@ -6,15 +6,19 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "hb/analysis/linkage_analysis.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
+#include "tools/command/delivery.hpp"
+#include "tools/command/scene_input.hpp"
 #include "tools/output/csv_output.hpp"
-#include "tools/pictures/figures.hpp"
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/json_output.hpp"
-#include "hb/analysis/linkage_analysis.hpp"
+#include "tools/output/nonlinear_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/table_output.hpp"
+#include "tools/pictures/figures.hpp"
+#include "tools/pictures/gnuplot.hpp"
+#include "tools/report/report_data.hpp"
 
 namespace hb::tools {
 namespace {
@@ -57,31 +61,81 @@ std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& res
   return figures;
 }
 
-int run_steady(const CommonFlags& flags) {
-  Scene scene = read_scene(flags.scene_file, overrides(flags));
-  const Settings options = settings(flags, scene);
-  const double speed = single_speed(flags, scene);
-  std::optional<OutputFolder> folder;
-  if (options.out) folder.emplace(*options.out, "steady");
+struct SteadyFlags : CommonFlags {
+  std::string theory = "linear", period;
+};
 
-  const SceneModel model = make_model(std::move(scene), options);
+// Motions of one turn have tables and pictures, longer ones the document alone.
+int run_nonlinear(const SteadyFlags& flags) {
+  const SceneInput input = scene_input(flags.scene_file);
+  Scene scene = input.source.with(overrides(flags));
+  const Settings options = settings(flags, scene);
+  const Output out = output(flags);
+  const double speed = single_speed(flags, scene);
+  NonlinearOptions asked;
+  if (!flags.period.empty())
+    asked.turns = integer_flag("--period", flags.period, 1, 64, "a whole number of turns from 1 to 64");
+  std::optional<OutputFolder> folder;
+  if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
+
+  // The motion is that of all rods, whatever is shown of it.
+  Settings all = options;
+  all.only.steady = true;
+  const SceneModel model = make_model(std::move(scene), all, false);
+  const NonlinearResult result = nonlinear_steady(model, speed, options, asked);
+  const nlohmann::ordered_json document =
+      out.json || folder ? nonlinear_json(model, result, options, out.stats) : nlohmann::ordered_json();
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(document) : nonlinear_table(model, result);
+  delivery.write_data = [&](OutputFolder& place) {
+    place.write("steady.json", json_file_text(document));
+    return result.turns == 1 ? write_tables(model, as_speed_result(result), place) : std::vector<Figure>();
+  };
+  const int status =
+      deliver(folder ? &*folder : nullptr, out.plots, result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+  if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
+  return status;
+}
+
+int run_steady(const SteadyFlags& flags) {
+  if (flags.theory != "linear" && flags.theory != "nonlinear")
+    throw UsageError(fmt::format("--theory: found \"{}\", allowed: linear, nonlinear", flags.theory));
+  if (flags.theory == "nonlinear") return run_nonlinear(flags);
+  if (!flags.period.empty())
+    throw UsageError(
+        fmt::format("--period: found {} with the linear theory, allowed: with --theory nonlinear", flags.period));
+  const SceneInput input = scene_input(flags.scene_file);
+  Scene scene = input.source.with(overrides(flags));
+  const Settings options = settings(flags, scene);
+  const Output out = output(flags);
+  const double speed = single_speed(flags, scene);
+  const Provenance origin = provenance(flags.line, input);
+  std::optional<OutputFolder> folder;
+  if (out.folder) folder.emplace(*out.folder, "steady", origin);
+
+  const auto shared_model = std::make_shared<const SceneModel>(make_model(std::move(scene), options));
+  const SceneModel& model = *shared_model;
   const SpeedResult result = analyse(model, speed, options);
   const nlohmann::ordered_json document =
-      options.json || folder ? steady_json(model, result, options) : nlohmann::ordered_json();
-  if (folder) {
-    folder->write("steady.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    draw_figures(write_tables(model, result, *folder), *folder, options.plots);
-    folder->commit();
-  }
-  if (options.json) {
-    print_json(document);
-  } else {
-    fmt::print("{}", steady_table(model, result, options));
-  }
-  if (options.stats && !options.json) {
+      out.json || folder ? steady_json(model, result, options, out.stats) : nlohmann::ordered_json();
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(document) : steady_table(model, result, options);
+  delivery.write_data = [&](OutputFolder& place) {
+    place.write("steady.json", json_file_text(document));
+    return write_tables(model, result, place);
+  };
+  if (out.html)
+    delivery.page = [&](std::vector<PageText::Picture> pictures) {
+      ReportData data(model.scene);
+      data.add_speed({shared_model, result, ""}, options);
+      return data.page(page_text(origin, std::move(pictures)));
+    };
+  const int status = deliver(folder ? &*folder : nullptr, out.plots,
+                             result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+  if (out.stats && !out.json) {
     fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
   }
-  return result.shortfalls.empty() ? exit_ok : exit_not_reached;
+  return status;
 }
 
 }  // namespace
@@ -89,10 +143,19 @@ int run_steady(const CommonFlags& flags) {
 void add_steady_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "steady", "periodic steady state at one speed: response, stability, joint forces, driving torque");
-  const auto flags = std::make_shared<CommonFlags>();
+  const auto flags = std::make_shared<SteadyFlags>();
   add_scene_flags(*command, *flags);
-  add_analysis_flags(*command, *flags);
+  add_analysis_flags(*command, *flags, SpeedsTaken::one);
   add_single_speed_flags(*command, *flags);
+  command
+      ->add_option("--theory", flags->theory,
+                   "linear, or nonlinear: the motion without linearisation, all rods together")
+      ->type_name("linear|nonlinear");
+  command
+      ->add_option("--period", flags->period,
+                   "with --theory nonlinear: motions of N turns, which leave the others by period doubling")
+      ->type_name("N");
+  add_html_flag(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }
 

@@ -13,13 +13,18 @@
 
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
+#include "tools/command/delivery.hpp"
+#include "tools/command/scene_input.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/command/parameter_range.hpp"
 #include "tools/output/table_output.hpp"
 #include "tools/output/tune_output.hpp"
+#include "tools/output/output_units.hpp"
 #include "tools/pictures/tune_pictures.hpp"
+#include "tools/report/report_data.hpp"
 #include "hb/analysis/tune/tune_problem.hpp"
+#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -292,6 +297,51 @@ void require_algorithm(const TuneTask& task) {
     throw UsageError(fmt::format("--algorithm: found bobyqa, which needs two variables, with one --vary; {}", allowed));
 }
 
+// The design after along its speeds, beside the design before.
+std::string design_page(const TuneTask& task, const TuneResult& result, const Scene& before,
+                        const nlohmann::ordered_json& document, int threads, PageText text) {
+  constexpr int points = 49;
+  const SpeedSpan& span = result.span_after;
+  const std::vector<Override> tuned = overrides_at(task, result.tuned);
+  const Scene after = task.source.with(tuned);
+  ReportData data(after);
+  SharedWork work(threads);
+  if (span.from < span.to) {
+    Axis axis;
+    axis.kind = task.in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
+    axis.path = task.in_rpm ? "rpm" : "omega";
+    axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, points);
+    const SweepScene along(task.source, tuned, task.settings, axis, span.from, axis.values.front());
+    data.add_sweep(along, run_sweep(along, work), places_along(along, work));
+  } else {
+    const auto model = std::make_shared<const SceneModel>(make_model(after, task.settings));
+    data.add_speed({model, analyse(*model, span.from, task.settings), ""}, task.settings);
+  }
+  std::vector<ReportData::DesignCurve> curves;
+  if (result.curves_before && result.curves_after) {
+    const auto speeds = [&](const DesignCurves& design) {
+      std::vector<double> x;
+      for (const double speed : design.speed) x.push_back(speed / task.speed_unit);
+      return x;
+    };
+    const auto values = [](const auto& column) {
+      const Eigen::VectorXd list = column;
+      return std::vector<double>(list.begin(), list.end());
+    };
+    const DesignCurves &first = *result.curves_before, &last = *result.curves_after;
+    const OutputUnits units = output_units(before);
+    for (std::size_t r = 0; r < last.rods.size(); ++r) {
+      const auto column = static_cast<Eigen::Index>(r);
+      curves.push_back({"Largest deflection of " + last.rods[r], units.response, speeds(first),
+                        values(first.deflection.col(column)), speeds(last), values(last.deflection.col(column))});
+    }
+    curves.push_back(
+        {"Growth rate, largest of the links", units.rate, speeds(first), values(first.growth), speeds(last), values(last.growth)});
+  }
+  data.add_design(document, tune_table(task, result, before), before, curves);
+  return data.page(std::move(text));
+}
+
 int run_tune(const TuneFlags& flags) {
   if (flags.minimise.empty() == flags.maximise.empty())
     throw UsageError(fmt::format("--minimise, --maximise: found {}, allowed: one goal, as in --minimise deflection",
@@ -303,7 +353,8 @@ int run_tune(const TuneFlags& flags) {
                     "computed",
                     flags.only));
   // Numbers of --set become part of the scene that is tuned.
-  const SceneSource as_written(flags.scene_file);
+  const SceneInput input = scene_input(flags.scene_file);
+  const SceneSource& as_written = input.source;
   const std::vector<Override> set = overrides(flags);
   const std::filesystem::path file = flags.scene_file;
   std::optional<Scene> given;
@@ -312,7 +363,7 @@ int run_tune(const TuneFlags& flags) {
   } catch (const ObstructedLinkage&) {  // an infeasible start
   }
   TuneTask task{
-      .source = set.empty() ? as_written : SceneSource(as_written.text_with(set), file.string(), file.parent_path()),
+      .source = set.empty() ? as_written : SceneSource(as_written.text_with(set), input.name, input.folder),
       .variables = {},
       .goal = flags.maximise.empty() ? parse_goal(flags.minimise) : parse_largest_goal(flags.maximise),
       .keeps = {},
@@ -332,44 +383,50 @@ int run_tune(const TuneFlags& flags) {
   close_start(task);
   const Scene scene = given ? *given : task.source.with(overrides_at(task, start_of(task)));
   task.settings = settings(flags, scene);
+  const Output out = output(flags);
   require_heights(task, scene);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
   task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;
   start_speeds(task);
 
+  const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
-  if (task.settings.out) {
+  if (out.folder) {
     for (const char* name : {tuned_file, nearest_file}) {
       std::error_code none;
-      if (std::filesystem::equivalent(*task.settings.out / name, file, none))
+      if (std::filesystem::equivalent(*out.folder / name, file, none))
         throw UsageError(
             fmt::format("--out: found {}, where {} would replace the scene itself; allowed: another folder",
-                        task.settings.out->string(), name));
+                        out.folder->string(), name));
     }
-    folder.emplace(*task.settings.out, "tune");
+    folder.emplace(*out.folder, "tune", origin);
   }
-  const TuneResult result = tune(task);
+  const TuneResult result = tune(task, SharedWork(out.threads));
   if (task.options.progress) fmt::print(stderr, "\r\033[K");
   task.settings.modes = result.num_modes;
 
-  const nlohmann::ordered_json document = tune_json(task, result, scene);
-  if (folder) {
-    folder->write(scene_file(result), tuned_scene(task, result, scene.units, file, *task.settings.out));
-    folder->write("tune.json", document.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  const nlohmann::ordered_json document = tune_json(task, result, scene, out.stats);
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(document) : tune_table(task, result, scene);
+  if (!out.json && folder)
+    delivery.printed += fmt::format("written: {}\n", (*out.folder / scene_file(result)).string());
+  delivery.write_data = [&](OutputFolder& place) -> std::vector<Figure> {
+    place.write(scene_file(result), tuned_scene(task, result, scene.units, file, *out.folder));
+    place.write("tune.json", json_file_text(document));
     const CsvFile history = history_csv(task, result);
-    folder->write(history.name, csv_text(history));
-    write_curves(task, result, scene, *folder);
-    if (task.settings.plots) draw_figures(tune_figures(task, result, scene, *folder), *folder, true);
-    folder->commit();
-  }
-  if (task.settings.json) {
-    print_json(document);
-  } else {
-    fmt::print("{}", tune_table(task, result, scene));
-    if (folder) fmt::print("written: {}\n", (*task.settings.out / scene_file(result)).string());
-    if (task.settings.stats) fmt::print(stderr, "\n{}", stages_table(result.stages));
-  }
-  return shortfall(result).empty() ? exit_ok : exit_not_reached;
+    place.write(history.name, csv_text(history));
+    write_curves(task, result, scene, place);
+    return {};
+  };
+  delivery.write_more = [&](OutputFolder& place) { return tune_figures(task, result, scene, out.threads, place); };
+  if (out.html)
+    delivery.page = [&](std::vector<PageText::Picture> pictures) {
+      return design_page(task, result, scene, document, out.threads, page_text(origin, std::move(pictures)));
+    };
+  const int status = deliver(folder ? &*folder : nullptr, out.plots,
+                             shortfall(result).empty() ? exit_ok : exit_not_reached, delivery);
+  if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
+  return status;
 }
 
 }  // namespace
@@ -380,6 +437,7 @@ void add_tune_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<TuneFlags>();
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags);
+  add_html_flag(*command, *flags);
   const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* help, const char* type) {
     command->add_option(name, values, help)
         ->type_name(type)

@@ -135,7 +135,7 @@ Json range_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) 
     json["joints_difference"].push_back(joints ? number(check.joints->forces.difference) : Json());
     json["torque_difference"].push_back(joints ? number(check.joints->torque.difference) : Json());
   }
-  if (const std::optional<WorstCase> worst = worst_case(checks))
+  if (const std::optional<WorstComparison> worst = worst_comparison(checks))
     json["worst"] = {{"rpm", rpm_from_speed(worst->speed, model.scene.units)},
                      {"rod", worst->where},
                      {"what", worst->comparison.what},

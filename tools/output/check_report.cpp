@@ -33,7 +33,7 @@ std::string differs(const Comparison& c, const OutputUnits& units) {
   return fmt::format("{} differs by {:.2e}, allowed {:.2e}", with_unit(c, units), c.difference, c.allowed);
 }
 
-void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const OutputUnits& units) {
+void add_rod(Text& text, const RodCheck& rod, const Settings& settings, bool stats, const OutputUnits& units) {
   const ShootingResult& shooting = rod.shooting;
   add(text, "\n{}\n", rod.name);
   if (rod.steady.status == SteadyStatus::singular)
@@ -47,7 +47,7 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, const Ou
     add(text, "  shooting                 asked {:.1e}, reached {:.1e}; {}, {} steps, {} segment{} a turn, {:.3g} s\n",
         shooting_tolerance(settings), shooting.q_error, to_string(shooting.integrator), shooting.steps,
         shooting.num_segments, shooting.num_segments == 1 ? "" : "s", shooting.seconds);
-  if (settings.stats)
+  if (stats)
     add(text, "  work                     {} evaluations, predicted {:.3g} s; {} {:.1e}\n", shooting.evaluations,
         shooting.predicted_seconds,
         shooting.integrator == Integrator::collocation ? "finest cell [rad]" : "finest local tolerance",
@@ -84,11 +84,11 @@ void add_times(Text& text, const std::vector<SpeedCheck>& checks) {
   add(text, "\n");
 }
 
-void add_single(Text& text, const SceneModel& model, const SpeedCheck& check, const Settings& settings) {
+void add_single(Text& text, const SceneModel& model, const SpeedCheck& check, const Settings& settings, bool stats) {
   const OutputUnits units = output_units(model.scene);
   add(text, "{}, {}: harmonic balance against time integration\n", scene_name(model.scene),
       speed_text(check.speed, model.scene));
-  for (const RodCheck& rod : check.rods) add_rod(text, rod, settings, units);
+  for (const RodCheck& rod : check.rods) add_rod(text, rod, settings, stats, units);
   if (check.joints) {
     add(text, "\njoints\n  {:<24} {:>10}  {:>10}\n", "", "difference", "allowed");
     add_comparison(text, check.joints->forces, units);
@@ -125,7 +125,7 @@ void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck
                                     {"torque", check.joints->torque}})
         add(text, "{:>10}  {:<12} {} {:>53}{}\n", "", name, cells(c), "", c.agrees() ? "yes" : "NO");
   }
-  if (const std::optional<WorstCase> worst = worst_case(checks))
+  if (const std::optional<WorstComparison> worst = worst_comparison(checks))
     add(text, "\nworst case: {} at {}, {}\n", worst->where, speed_text(worst->speed, model.scene),
         differs(worst->comparison, units));
 }
@@ -161,12 +161,13 @@ void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedChe
 
 }  // namespace
 
-std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings) {
+std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings,
+                         bool stats) {
   Text text;
   if (checks.size() > 1)
     add_range(text, model, checks);
   else
-    add_single(text, model, checks.front(), settings);
+    add_single(text, model, checks.front(), settings, stats);
   add_times(text, checks);
   add_verdict(text, model, checks);
   return fmt::to_string(text);

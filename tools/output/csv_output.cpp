@@ -9,6 +9,7 @@
 #include "lib/linkage/kinematics.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/printable.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -87,11 +88,11 @@ std::string csv_text(const CsvFile& file) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   for (std::string line : file.comment) {
-    std::replace_if(
-        line.begin(), line.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    line = printable(line);
+    std::replace(line.begin(), line.end(), '\n', ' ');
     fmt::format_to(out, "# {}\n", line);
   }
-  fmt::format_to(out, "{}\n", fmt::join(file.columns, ","));
+  fmt::format_to(out, "{}\n", printable(fmt::format("{}", fmt::join(file.columns, ","))));
   for (Eigen::Index row = 0; row < file.rows.rows(); ++row) {
     for (Eigen::Index column = 0; column < file.rows.cols(); ++column) {
       fmt::format_to(out, "{}{}", column == 0 ? "" : ",", file.rows(row, column));

@@ -4,35 +4,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json_parts.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/printable.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-// No "-0.0".
-Json pair(std::complex<double> value) { return Json::array({value.real() + 0.0, value.imag() + 0.0}); }
-
-Json range_json(const FourierSeries& series, Eigen::Index component) {
-  const Range range = fourier::range(series, component);
-  return {{"min", range.min.value}, {"max", range.max.value}};
-}
-
-Json fourier_json(const FourierSeries& series) {
-  Json modes = Json::array();
-  for (Eigen::Index i = 0; i < series.num_components(); ++i) {
-    Json coefficients = Json::array();
-    for (Eigen::Index n = 0; n <= series.num_harmonics(); ++n) coefficients.push_back(pair(series.c(i, n)));
-    modes.push_back(std::move(coefficients));
-  }
-  return modes;
-}
-
-Json peak_json(const RodPeak& peak, const Units& units) {
-  return {{"max_abs", peak.max_abs}, {"x", peak.x}, {"crank_angle", scene_angle(peak.crank_angle, units)}};
-}
 
 void add_steady(Json& json, const RodResult& rod, const Units& units) {
   const SteadyState& state = *rod.steady;
@@ -52,42 +31,18 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
 }
 
 void add_stability(Json& json, const RodResult& rod) {
-  const Stability& stability = *rod.stability;
-  Json exponents = Json::array(), errors = Json::array();
-  for (const Exponent& exponent : stability.exponents) {
-    exponents.push_back(pair(exponent.value));
-    errors.push_back(exponent.error);
-  }
-  json["exponents"] = std::move(exponents);
-  json["exponent_errors"] = std::move(errors);
-  json["exponents_unresolved"] = unresolved_exponents(rod);
-  Json& uncertain = json["exponents_uncertain"] = Json::array();
-  for (const Exponent& exponent : stability.uncertain)
-    uncertain.push_back({{"exponent", pair(exponent.value)}, {"error", exponent.error}});
-  json["growth_rate"] = stability.growth_rate + 0.0;
+  json.update(stability_json(*rod.stability, 2 * rod.num_modes));
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
-  json["exponent_error"] = stability.growth_error;
-  json["growth_interval"] = {stability.growth_low + 0.0, stability.growth_high + 0.0};
-  json["verdict"] = to_string(stability.verdict);
-  json["stability_method"] = to_string(stability.method);
-  json["stability_converged"] = stability.converged;
 }
 
-Json joints_json(const JointForces& forces) {
-  Json joints = Json::object();
-  for (const JointForce& joint : forces.joints) {
-    Json& entry = joints[joint.name];
-    if (joint.rigid.num_components() == 1) {
-      entry["n"] = range_json(joint.elastic, 0);
-      entry["n_rigid"] = range_json(joint.rigid, 0);
-      continue;
-    }
-    entry["x"] = range_json(joint.elastic, 0);
-    entry["y"] = range_json(joint.elastic, 1);
-    entry["x_rigid"] = range_json(joint.rigid, 0);
-    entry["y_rigid"] = range_json(joint.rigid, 1);
-  }
-  return joints;
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+void add_theory(Json& json, const std::optional<TheoryErrors>& errors, std::size_t r) {
+  json["theory"] = !errors ? "not judged" : beyond_theory(errors->rods[r].q) ? "beyond" : "within";
+  json["theory_error"] = errors ? or_null(errors->rods[r].q) : Json(nullptr);
+  if (!errors) return;
+  json["deflection_theory_error"] = or_null(errors->rods[r].deflection);
+  if (errors->rods[r].axial_share) json["theory_axial_share"] = *errors->rods[r].axial_share;
 }
 
 }  // namespace
@@ -117,7 +72,7 @@ Json stages_json(const std::vector<Stage>& stages) {
   return json;
 }
 
-Json steady_json(const SceneModel& model, const SpeedResult& result, const Settings& settings) {
+Json steady_json(const SceneModel& model, const SpeedResult& result, const Settings& settings, bool stats) {
   const Units& units = model.scene.units;
   Json json;
   json["title"] = model.scene.title;
@@ -126,14 +81,24 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
   json["tolerance"] = settings.tolerance;
-  if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
+  if (result.computed.stability && !result.rods.empty()) {
+    Verdict verdict = Verdict::stable;
+    for (const RodResult& rod : result.rods)
+      if (rod.stability) verdict = worst(verdict, rod.stability->verdict);
+    json["verdict"] = to_string(verdict);
+  }
+  std::vector<std::string> warnings = model.scene.warnings;
+  for (std::string& sentence : theory_warnings(model, result)) warnings.push_back(std::move(sentence));
+  if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["units"] = units_json(units);
   Json& rods = json["rods"] = Json::object();
-  for (const RodResult& rod : result.rods) {
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const RodResult& rod = result.rods[r];
     if (!rod.reported) continue;
     Json& entry = rods[rod.name];
     entry["modes"] = rod.num_modes;
     if (result.computed.steady) add_steady(entry, rod, units);
+    if (model.linkage()) add_theory(entry, result.theory, r);
     if (rod.modes_error) {
       entry["modes_error"] = *rod.modes_error;
       entry["more_modes_needed"] = needs_more_modes(rod);
@@ -154,10 +119,14 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       json["joints_modes_error"] = errors->force_cut;
       json["torque_modes_error"] = errors->torque_cut;
     }
+    if (result.theory) {
+      json["joints_theory_error"] = or_null(result.theory->force);
+      json["torque_theory_error"] = or_null(result.theory->torque);
+    }
   } else if (!model.linkage() && settings.only.reactions) {
     json["joints"] = Json::object();
   }
-  if (settings.stats) {
+  if (stats) {
     std::vector<Stage> stages = model.stages;
     stages.insert(stages.end(), result.stages.begin(), result.stages.end());
     json["stats"] = stages_json(stages);
@@ -165,9 +134,12 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   return json;
 }
 
-void print_json(const Json& document) {
-  const std::string text = document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-  std::fwrite(text.data(), 1, text.size(), stdout);
+std::string json_text(const Json& document) {
+  return printable(document.dump(-1, ' ', false, Json::error_handler_t::replace)) + "\n";
+}
+
+std::string json_file_text(const Json& document) {
+  return printable(document.dump(1, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace hb::tools

@@ -10,10 +10,11 @@
 namespace hb::tools {
 
 [[nodiscard]] nlohmann::ordered_json steady_json(const SceneModel& model, const SpeedResult& result,
-                                                 const Settings& settings);
+                                                 const Settings& settings, bool stats);
 [[nodiscard]] nlohmann::ordered_json units_json(const Units& units);
 [[nodiscard]] nlohmann::ordered_json stages_json(const std::vector<Stage>& stages);
-// The document with a newline, on standard output.
-void print_json(const nlohmann::ordered_json& document);
+// The document with a newline at its end, on one line for standard output, on many for files that are read.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& document);
+[[nodiscard]] std::string json_file_text(const nlohmann::ordered_json& document);
 
 }  // namespace hb::tools

@@ -4,19 +4,18 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <system_error>
 
 #include "tools/command/command.hpp"
+#include "tools/output/printable.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;
@@ -26,101 +25,21 @@ namespace {
   throw OutputError(fmt::format("--out: {} cannot be written: {}", path.string(), reason));
 }
 
-// A new empty folder `parent`/`prefix`XXXXXX.
-fs::path make_temporary(const fs::path& parent, const std::string& prefix, const fs::path& wanted) {
-  std::string name = (parent / (prefix + "XXXXXX")).string();
+// A new empty folder `parent`/.hb-XXXXXX.
+fs::path make_temporary(const fs::path& parent, const fs::path& wanted) {
+  std::string name = (parent / ".hb-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) fail(wanted, std::strerror(errno));
   // mkdtemp gives 0700; the folder is to have what mkdir would have given.
   const mode_t mask = umask(0);
   umask(mask);
-  fs::permissions(name, static_cast<fs::perms>(0777 & ~mask));
-  return name;
-}
-
-// What Ctrl-C or SIGTERM removes before the program ends; empty: nothing.
-char unfinished[4096];
-
-// Only calls that a signal handler may make.
-void remove_unfinished(int signal) {
-  if (unfinished[0] != '\0') {
-    const pid_t child = fork();
-    if (child == 0) {
-      execl("/bin/rm", "rm", "-rf", "--", unfinished, nullptr);
-      _exit(1);
-    }
-    if (child > 0) waitpid(child, nullptr, 0);
-  }
-  std::signal(signal, SIG_DFL);
-  std::raise(signal);
-}
-
-void remove_when_interrupted(const std::string& path) {
-  if (path.size() >= sizeof unfinished) return;
-  std::strcpy(unfinished, path.c_str());
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    struct sigaction now {};
-    if (sigaction(signal, nullptr, &now) == 0 && now.sa_handler == SIG_DFL) std::signal(signal, remove_unfinished);
-  }
-}
-
-}  // namespace
-
-std::string file_name(const std::string& text) {
-  std::string name;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool plain = std::isalnum(byte) != 0 || c == '-' || c == '_' || c == '.' || byte >= 0x80;
-    name += plain ? std::string(1, c) : fmt::format("%{:02X}", byte);
-  }
-  return name;
-}
-
-OutputFolder::OutputFolder(fs::path folder, const std::string& command)
-    : folder_(std::move(folder)), list_(command.empty() ? "" : ".hb-" + command) {
-  std::error_code error;
-  // "out/" is out.
-  if (!folder_.has_filename()) folder_ = folder_.parent_path();
-  const fs::path absolute = fs::absolute(folder_, error);
-  if (error) fail(folder_, error.message());
-  const fs::file_status status = fs::status(absolute, error);
-  if (error && status.type() != fs::file_type::not_found) fail(folder_, error.message());
-  existed_ = fs::exists(status);
-  if (existed_ && !fs::is_directory(status)) fail(folder_, "it exists and is not a folder");
-  if (existed_) {
-    scratch_ = make_temporary(absolute, ".hb-", folder_);
-    remove_when_interrupted(scratch_.string());
-    return;
-  }
-  std::vector<fs::path> missing;  // parents to make, innermost first
-  for (fs::path parent = absolute.parent_path(); !fs::exists(parent, error); parent = parent.parent_path()) {
-    if (error) fail(folder_, error.message());
-    missing.push_back(parent);
-  }
-  try {
-    for (auto parent = missing.rbegin(); parent != missing.rend(); ++parent) {
-      if (!fs::create_directory(*parent, error) && error) fail(folder_, error.message());
-      made_parents_.push_back(*parent);
-    }
-    scratch_ = make_temporary(absolute.parent_path(), fmt::format(".{}-", absolute.filename().string()), folder_);
-  } catch (...) {
-    for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, error);
-    throw;
-  }
-  remove_when_interrupted((made_parents_.empty() ? scratch_ : made_parents_.front()).string());
-}
-
-OutputFolder::~OutputFolder() {
-  if (committed_) return;
-  unfinished[0] = '\0';
   std::error_code ignored;
-  fs::remove_all(scratch_, ignored);
-  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+  fs::permissions(name, static_cast<fs::perms>(0777 & ~mask), ignored);
+  return name;
 }
 
-void OutputFolder::write(const std::string& name, const std::string& text) {
-  const fs::path path = scratch_ / name;
+void write_file(const fs::path& path, const std::string& text, const fs::path& wanted) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail(folder_ / name, std::strerror(errno));
+  if (file < 0) fail(wanted, std::strerror(errno));
   const char* next = text.data();
   std::size_t left = text.size();
   while (left > 0) {
@@ -129,54 +48,202 @@ void OutputFolder::write(const std::string& name, const std::string& text) {
     if (written < 0) {
       const int reason = errno;
       close(file);
-      fail(folder_ / name, std::strerror(reason));
+      fail(wanted, std::strerror(reason));
     }
     next += written;
     left -= static_cast<std::size_t>(written);
   }
-  if (close(file) != 0) fail(folder_ / name, std::strerror(errno));
+  if (close(file) != 0) fail(wanted, std::strerror(errno));
 }
 
-// Only plain files in the folder itself, whatever the list says.
-void OutputFolder::remove_old(const fs::path& place, const std::vector<std::string>& written) const {
-  std::ifstream list(place / list_);
+bool is_plain(const fs::path& path) {
   std::error_code ignored;
-  for (std::string name; std::getline(list, name);) {
-    const bool plain = !name.empty() && name.find('/') == std::string::npos;
-    if (plain && std::find(written.begin(), written.end(), name) == written.end() &&
-        fs::is_regular_file(fs::symlink_status(place / name, ignored)))
-      fs::remove(place / name, ignored);
+  return fs::is_regular_file(fs::symlink_status(path, ignored));
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(fs::symlink_status(path, ignored));
+}
+
+// As `cp --backup=numbered` names what it keeps.
+fs::path free_name_beside(const fs::path& path) {
+  for (int number = 1;; ++number) {
+    const fs::path name = fmt::format("{}.~{}~", path.string(), number);
+    if (!is_there(name)) return name;
   }
+}
+
+std::string files(std::size_t count) { return fmt::format("{} file{}", count, count == 1 ? "" : "s"); }
+
+}  // namespace
+
+std::string file_name(const std::string& text) {
+  std::string name;
+  for (std::size_t at = 0; at < text.size();) {
+    const CodePoint point = code_point_at(text, at);
+    const auto byte = static_cast<unsigned char>(text[at]);
+    const bool plain =
+        byte < 0x80 ? std::isalnum(byte) != 0 || byte == '-' || byte == '_' || byte == '.' : point.visible;
+    for (std::size_t k = at; k < at + point.length; ++k)
+      name += plain ? std::string(1, text[k]) : fmt::format("%{:02X}", static_cast<unsigned char>(text[k]));
+    at += point.length;
+  }
+  return name;
+}
+
+OutputFolder::Scratch::Scratch(const fs::path& made) : path(made), removed_on_signal(made, Unfinished::Kind::tree) {}
+
+OutputFolder::Scratch::~Scratch() {
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
+}
+
+OutputFolder::OutputFolder(fs::path folder, const std::string& command, Provenance origin)
+    : folder_(std::move(folder)), command_(command), list_(".hb-" + command), origin_(std::move(origin)) {
+  std::error_code error;
+  // "out/" is out.
+  if (!folder_.has_filename()) folder_ = folder_.parent_path();
+  absolute_ = fs::absolute(folder_, error);
+  if (error) fail(folder_, error.message());
+  const fs::file_status status = fs::status(absolute_, error);
+  if (error && status.type() != fs::file_type::not_found) fail(folder_, error.message());
+  if (fs::exists(status) && !fs::is_directory(status)) fail(folder_, "it exists and is not a folder");
+  if (!fs::exists(status) && is_there(absolute_)) {
+    fail(folder_, fmt::format("it is a link to {}, which does not exist", fs::read_symlink(absolute_, error).string()));
+  }
+  std::vector<fs::path> missing;  // parents to make, innermost first
+  for (fs::path parent = absolute_.parent_path(); !fs::exists(parent, error); parent = parent.parent_path()) {
+    if (error) fail(folder_, error.message());
+    missing.push_back(parent);
+  }
+  try {
+    for (auto parent = missing.rbegin(); parent != missing.rend(); ++parent) {
+      if (!fs::create_directory(*parent, error) && error) fail(folder_, error.message());
+      made_parents_.push_back(*parent);
+      parents_on_signal_.push_back(std::make_unique<Unfinished>(*parent, Unfinished::Kind::empty_folder));
+    }
+    lock_.emplace(folder_, "hb " + command_);
+    make_scratch();
+  } catch (...) {
+    lock_.reset();
+    for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, error);
+    throw;
+  }
+}
+
+OutputFolder::~OutputFolder() {
+  scratch_.reset();
+  lock_.reset();
+  std::error_code ignored;  // of folders that are not empty
+  for (auto parent = made_parents_.rbegin(); parent != made_parents_.rend(); ++parent) fs::remove(*parent, ignored);
+}
+
+void OutputFolder::make_scratch() {
+  std::error_code error;
+  const bool there = fs::is_directory(absolute_, error);
+  const SignalsHeld held;  // until it is registered
+  scratch_.emplace(make_temporary(there ? absolute_ : absolute_.parent_path(), folder_));
+  lock_->note_scratch(scratch_->path);
+}
+
+void OutputFolder::write(const std::string& name, const std::string& text) {
+  if (!scratch_) make_scratch();
+  write_file(scratch_->path / name, with_provenance(name, text, origin_), folder_ / name);
+}
+
+void OutputFolder::drop(const std::string& name) {
+  std::error_code ignored;
+  if (scratch_) fs::remove(scratch_->path / name, ignored);
+}
+
+fs::path OutputFolder::scratch_with_links() {
+  if (!scratch_) make_scratch();
+  std::error_code error;
+  for (const std::string& name : committed_) {
+    fs::create_symlink(absolute_ / name, scratch_->path / name, error);
+    if (error) fail(folder_, error.message());
+  }
+  return scratch_->path;
+}
+
+std::set<std::string> OutputFolder::listed(const fs::path& place) const {
+  std::set<std::string> names;
+  if (!is_plain(place / list_)) return names;
+  std::ifstream list(place / list_);
+  // Only files in the folder itself, whatever the list says.
+  for (std::string name; std::getline(list, name);)
+    if (!name.empty() && name.find('/') == std::string::npos && is_plain(place / name)) names.insert(name);
+  return names;
+}
+
+void OutputFolder::write_list(const fs::path& place, const std::set<std::string>& names) {
+  write_file(scratch_->path / list_, fmt::format("{}\n", fmt::join(names, "\n")), folder_ / list_);
+  std::error_code error;
+  fs::rename(scratch_->path / list_, place / list_, error);
+  if (error) fail(folder_ / list_, error.message());
+}
+
+void OutputFolder::refuse_folders(const fs::path& place, const std::vector<std::string>& names) const {
+  std::error_code ignored;
+  for (const std::string& name : names)
+    if (fs::is_directory(fs::symlink_status(place / name, ignored))) fail(folder_ / name, "a folder has that name");
+  if (is_there(place / list_) && !is_plain(place / list_)) fail(folder_ / list_, "it exists and is not a file");
+}
+
+void OutputFolder::merge(const fs::path& place, const std::vector<std::string>& names) {
+  refuse_folders(place, names);
+  const std::set<std::string> before = listed(place);
+  std::set<std::string> after = committed_, all = before;
+  after.insert(names.begin(), names.end());
+  all.insert(after.begin(), after.end());
+  std::vector<std::string> said;
+  if (first_stage_ && !before.empty())
+    said.push_back(fmt::format("{} of an earlier run replaced", files(before.size())));
+  // In this order a kill at any point leaves no file that the list does not know.
+  write_list(place, all);
+  std::error_code error;
+  for (const std::string& name : names) {
+    if (!before.contains(name) && is_there(place / name)) {
+      const fs::path kept = free_name_beside(place / name);
+      fs::rename(place / name, kept, error);
+      if (error) fail(folder_ / name, error.message());
+      said.push_back(fmt::format("{} (not of hb {}) is now {}", name, command_, kept.filename().string()));
+    }
+    fs::rename(scratch_->path / name, place / name, error);
+    if (error) fail(folder_ / name, error.message());
+  }
+  if (first_stage_) {
+    for (const std::string& name : before)
+      if (!after.contains(name)) fs::remove(place / name, error);
+  }
+  write_list(place, after);
+  if (!said.empty()) fmt::print(stderr, "hb {}: in {}: {}\n", command_, folder_.string(), fmt::join(said, "; "));
 }
 
 void OutputFolder::commit() {
-  std::error_code error;
-  const fs::path place = fs::absolute(folder_);
+  if (!scratch_) return;
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(scratch_))
-    names.push_back(entry.path().filename().string());
+  for (const fs::directory_entry& entry : fs::directory_iterator(scratch_->path))
+    if (!entry.is_symlink()) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
-  if (!list_.empty()) {
-    write(list_, fmt::format("{}\n", fmt::join(names, "\n")));
-    names.push_back(list_);
+  const SignalsHeld held;
+  bool moved = false;
+  if (!is_there(absolute_)) {
+    write_file(scratch_->path / list_, fmt::format("{}\n", fmt::join(names, "\n")), folder_ / list_);
+    // Fails where somebody has made a folder there meanwhile.
+    moved = std::rename(scratch_->path.c_str(), absolute_.c_str()) == 0;
+    if (!moved) drop(list_);
   }
-  unfinished[0] = '\0';
-  if (!existed_) {
-    fs::rename(scratch_, place, error);
-    if (error) fail(folder_, error.message());
-    committed_ = true;
-    return;
+  if (!moved) {
+    std::error_code error;
+    if (!fs::is_directory(absolute_, error)) fail(folder_, "it was made meanwhile and is not a folder");
+    merge(absolute_, names);
   }
-  for (const std::string& name : names) {
-    if (fs::is_directory(place / name, error)) fail(folder_ / name, "a folder has that name");
-  }
-  if (!list_.empty()) remove_old(place, names);
-  for (const std::string& name : names) {
-    fs::rename(scratch_ / name, place / name, error);
-    if (error) fail(folder_ / name, error.message());
-  }
-  fs::remove(scratch_, error);
-  committed_ = true;
+  committed_.insert(names.begin(), names.end());
+  scratch_.reset();
+  lock_->note_scratch({});
+  first_stage_ = false;
 }
 
 }  // namespace hb::tools

@@ -10,6 +10,8 @@
 #include <numbers>
 
 #include "lib/linkage/kinematics.hpp"
+#include "lib/linkage/transmission_angle.hpp"
+#include "tools/output/hill_report.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
@@ -20,29 +22,17 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int num_frequencies = 3;
 
-// sin of the transmission angle of one dyad.
-double sine_at(const Linkage& linkage, int dyad, double crank_angle, std::vector<BodyMotion>& motion) {
-  motion_at(linkage, crank_angle, motion);
-  const std::complex<double> coupler = motion[static_cast<std::size_t>(coupler_index(dyad))].e;
-  const std::complex<double> closing = motion[static_cast<std::size_t>(closing_index(dyad))].e;
-  const std::complex<double> turned = coupler * std::conj(closing);
-  const bool is_slider = std::holds_alternative<Slider>(linkage.dyads[static_cast<std::size_t>(dyad)].closing);
-  return std::abs(is_slider ? turned.real() : turned.imag());
-}
-
 std::string modes_text(const AnalysisDefaults& analysis) {
   return std::holds_alternative<AutoModes>(analysis.modes) ? "auto" : fmt::format("{}", std::get<int>(analysis.modes));
 }
 
 std::string speeds_text(const Scene& scene) {
   const AnalysisDefaults& analysis = scene.analysis;
-  if (analysis.rpm && analysis.rpm->step != 0) {
-    return fmt::format("{:.10g} to {:.10g} rpm in steps of {:.10g}", analysis.rpm->from, analysis.rpm->to,
-                       analysis.rpm->step);
-  }
-  if (analysis.rpm) return fmt::format("{:.10g} rpm", analysis.rpm->from);
-  if (analysis.omega) return fmt::format("omega = {:.10g} rad/{}", *analysis.omega, scene.units.time);
-  return "no speed";
+  if (!analysis.rpm && !analysis.omega) return "no speed";
+  const Speeds& speeds = analysis.rpm ? *analysis.rpm : *analysis.omega;
+  const std::string unit = analysis.rpm ? "rpm" : "rad/" + scene.units.time;
+  if (speeds.step == 0) return fmt::format("{:.10g} {}", speeds.from, unit);
+  return fmt::format("{:.10g} to {:.10g} {} in steps of {:.10g}", speeds.from, speeds.to, unit, speeds.step);
 }
 
 // cos 90 deg is 6e-17: what is rounding beside the other coordinate counts as 0.
@@ -64,6 +54,41 @@ void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
   fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
 }
 
+// Elastic data in the units of data sheets: GPa, MPa, kg/m^3, Hz; lengths in the scene's.
+void add_elastic(Text& text, const Body& body, const Units& units) {
+  const Elastic& elastic = *body.elastic;
+  const double L = units.length_in_m, pascal = units.force_in_newton() / (L * L);
+  const double EJ = elastic.youngs_modulus * elastic.second_moment, k = std::numbers::pi / body.length;
+  const double gyration = std::sqrt(elastic.second_moment / elastic.area);
+  add(text, "           elastic: E {:.6g} GPa, area {:.6g} {}^2, J {:.6g} {}^4, density {:.6g} kg/m^3\n",
+      elastic.youngs_modulus * pascal * 1e-9, elastic.area, units.length, elastic.second_moment, units.length,
+      elastic.density * units.mass_in_kg / (L * L * L));
+  add(text, "           section: radius of gyration {:.4g} {}, slenderness {:.4g}{}\n", gyration, units.length,
+      body.length / gyration,
+      elastic.section_height > 0 ? fmt::format(", height {:.6g} {}", elastic.section_height, units.length) : "");
+  add(text, "           buckling as a pinned rod at {:.4g} N, axial stress {:.4g} MPa\n",
+      EJ * k * k * units.force_in_newton(), EJ * k * k / elastic.area * pascal * 1e-6);
+  if (elastic.shear) {
+    add(text, "           shear: G {:.6g} GPa, k {:.6g}\n", elastic.shear->modulus * pascal * 1e-9,
+        elastic.shear->coefficient);
+  }
+  const std::vector<double> omega = natural_frequencies(body, num_frequencies);
+  // lib/README.md (M9), rotary inertia included.
+  const double m = elastic.density / elastic.youngs_modulus * k * k + body.mass / body.length / EJ;
+  add(text,
+      "           damping: internal {:.6g} {} (ratio {:.3g} of mode 1), external {:.6g} along and {:.6g} across {}/({} "
+      "{})\n",
+      elastic.internal_damping, units.time, elastic.internal_damping * k * k / std::sqrt(m) / 2, elastic.damping_x,
+      elastic.damping_y, units.mass, units.length, units.time);
+  std::vector<std::string> hertz, speeds;
+  for (const double frequency : omega) {
+    hertz.push_back(fmt::format("{:.6g}", frequency / (2 * std::numbers::pi * units.time_in_s)));
+    speeds.push_back(fmt::format("{:.6g}", rpm_from_speed(frequency, units)));
+  }
+  add(text, "           natural frequencies at rest, slender: {} Hz (as crank speeds: {} rpm)\n",
+      fmt::join(hertz, ", "), fmt::join(speeds, ", "));
+}
+
 void add_body(Text& text, const Body& body, const char* kind, const Units& units) {
   add(text, "  {:<8} {:<12} length {:.6g} {}, mass {:.6g} {}", kind, body.name, body.length, units.length, body.mass,
       units.mass);
@@ -78,28 +103,22 @@ void add_body(Text& text, const Body& body, const char* kind, const Units& units
     add(text, "           point {}.{} at {} {} in its frame\n", body.name, name, point_text(point), units.length);
   }
   if (!body.elastic) return;
-  const Elastic& elastic = *body.elastic;
-  const std::string pressure = fmt::format("{}/({} {}^2)", units.mass, units.length, units.time);
-  add(text, "           elastic: E {:.6g} {}, area {:.6g} {}^2, J {:.6g} {}^4, density {:.6g} {}/{}^3\n",
-      elastic.youngs_modulus, pressure, elastic.area, units.length, elastic.second_moment, units.length,
-      elastic.density, units.mass, units.length);
-  add(text, "           damping: internal {:.6g} {}, external {:.6g} along and {:.6g} across {}/({} {})\n",
-      elastic.internal_damping, units.time, elastic.damping_x, elastic.damping_y, units.mass, units.length, units.time);
-  std::vector<std::string> frequencies, speeds;
-  for (const double omega : natural_frequencies(body, num_frequencies)) {
-    frequencies.push_back(fmt::format("{:.6g}", omega));
-    speeds.push_back(fmt::format("{:.6g}", rpm_from_speed(omega, units)));
-  }
-  add(text, "           natural frequencies at rest, slender: {} rad/{} (as crank speeds: {} rpm)\n",
-      fmt::join(frequencies, ", "), units.time, fmt::join(speeds, ", "));
+  add_elastic(text, body, units);
 }
 
-std::string force_text(const FourierSeries& force, const Units& units) {
-  const Eigen::Index harmonics = force.num_components() == 0 ? -1 : force.num_harmonics();
-  if (harmonics < 0) return "";
-  if (harmonics > 0) return fmt::format(", applied force of {} harmonic{}", harmonics, harmonics == 1 ? "" : "s");
-  return fmt::format(", constant applied force {:.6g} {} {}/{}^2", force.c(0, 0).real(), units.mass, units.length,
-                     units.time);
+// Along the direction is away from the crank where the position is positive there.
+std::string force_text(const Slider& slider, int branch, const Units& units) {
+  if (slider.force.num_components() == 0) return "";
+  const double newton = units.force_in_newton();
+  const Range range = fourier::range(slider.force, 0);
+  const std::string sense =
+      fmt::format("positive = along direction ({} the crank)", branch > 0 ? "away from" : "toward");
+  if (slider.force.num_harmonics() == 0) {
+    return fmt::format("           constant applied force {:.6g} N, {}\n", range.max.value * newton, sense);
+  }
+  return fmt::format("           applied force {:.6g} .. {:.6g} N, mean {:.6g} N, {}; {} harmonics\n",
+                     range.min.value * newton, range.max.value * newton, slider.force.c(0, 0).real() * newton, sense,
+                     slider.force.num_harmonics());
 }
 
 void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
@@ -110,7 +129,7 @@ void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
   for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
     const Dyad& dyad = linkage.dyads[d];
     const auto* rocker = std::get_if<Rocker>(&dyad.closing);
-    add(text, "\ndyad {} ({}) on {}, branch {:+d}\n", d + 1, rocker ? "coupler and rocker" : "coupler and slider",
+    add(text, "\ndyad.{} ({}) on {}, branch {:+d}\n", d, rocker ? "coupler and rocker" : "coupler and slider",
         dyad.on.name, dyad.branch);
     add_body(text, dyad.coupler, "coupler", units);
     if (rocker) {
@@ -118,20 +137,14 @@ void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
       add(text, "           pivot at {} {}\n", point_text(rocker->pivot), units.length);
     } else {
       const Slider& slider = std::get<Slider>(dyad.closing);
-      add(text, "  {:<8} {:<12} mass {:.6g} {}, guide through {} {}, direction {:.6g} deg{}\n", "slider", slider.name,
-          slider.mass, units.mass, point_text(slider.guide), units.length, slider.direction * degrees_per_radian,
-          force_text(slider.force, units));
+      add(text, "  {:<8} {:<12} mass {:.6g} {}, guide through {} {}, direction {:.6g} deg\n", "slider", slider.name,
+          slider.mass, units.mass, point_text(slider.guide), units.length, slider.direction * degrees_per_radian);
+      text.append(force_text(slider, dyad.branch, units));
     }
     const TransmissionAngle worst = transmission_angle(linkage, static_cast<int>(d));
     add(text, "  smallest transmission angle {:.4g} deg, at crank angle {:.4g} deg\n",
         worst.smallest * degrees_per_radian, worst.crank_angle * degrees_per_radian);
   }
-}
-
-Eigen::Index highest_harmonic(const std::array<FourierSeries, 3>& powers) {
-  Eigen::Index highest = 0;
-  for (const FourierSeries& series : powers) highest = std::max(highest, series.num_harmonics());
-  return highest;
 }
 
 Json point_json(std::complex<double> given) {
@@ -154,9 +167,15 @@ Json body_json(const Body& body, const Units& units) {
                        {"damping_internal", elastic.internal_damping},
                        {"damping_x", elastic.damping_x},
                        {"damping_y", elastic.damping_y}};
+    if (elastic.shear) json["elastic"]["shear"] = {{"G", elastic.shear->modulus}, {"k", elastic.shear->coefficient}};
+    if (elastic.section_height > 0) json["elastic"]["section_height"] = elastic.section_height;
+    json["elastic"]["slenderness"] = body.length / std::sqrt(elastic.second_moment / elastic.area);
     const std::vector<double> frequencies = natural_frequencies(body, num_frequencies);
     json["natural_frequencies"] = frequencies;
-    for (const double omega : frequencies) json["natural_frequencies_rpm"].push_back(rpm_from_speed(omega, units));
+    for (const double omega : frequencies) {
+      json["natural_frequencies_rpm"].push_back(rpm_from_speed(omega, units));
+      json["natural_frequencies_hz"].push_back(omega / (2 * std::numbers::pi * units.time_in_s));
+    }
   }
   return json;
 }
@@ -184,6 +203,11 @@ Json linkage_json(const Linkage& linkage, const Units& units) {
                          {"guide", point_json(slider.guide)},
                          {"direction", scene_angle(slider.direction, units)},
                          {"force_harmonics", std::max<Eigen::Index>(0, slider.force.num_harmonics())}};
+      if (slider.force.num_components() > 0) {
+        const Range range = fourier::range(slider.force, 0);
+        entry["slider"]["force"] = {
+            {"min", range.min.value}, {"max", range.max.value}, {"mean", slider.force.c(0, 0).real()}};
+      }
     }
     const TransmissionAngle worst = transmission_angle(linkage, static_cast<int>(d));
     entry["transmission_angle"] = {{"min", scene_angle(worst.smallest, units)},
@@ -194,35 +218,6 @@ Json linkage_json(const Linkage& linkage, const Units& units) {
 }
 
 }  // namespace
-
-TransmissionAngle transmission_angle(const Linkage& linkage, int dyad) {
-  constexpr int num_samples = 720;
-  constexpr double step = 2 * std::numbers::pi / num_samples;
-  std::vector<BodyMotion> motion;
-  int worst = 0;
-  double smallest = 2;
-  for (int j = 0; j < num_samples; ++j) {
-    const double sine = sine_at(linkage, dyad, j * step, motion);
-    if (sine < smallest) smallest = sine, worst = j;
-  }
-  // Golden section about the smallest sample.
-  const double ratio = (std::sqrt(5.0) - 1) / 2;
-  double low = (worst - 1) * step, high = (worst + 1) * step;
-  while (high - low > 1e-9) {
-    const double left = high - ratio * (high - low), right = low + ratio * (high - low);
-    if (sine_at(linkage, dyad, left, motion) <= sine_at(linkage, dyad, right, motion)) {
-      high = right;
-    } else {
-      low = left;
-    }
-  }
-  const double angle = (low + high) / 2;
-  const double sine = std::min(smallest, sine_at(linkage, dyad, angle, motion));
-  const double turn = 2 * std::numbers::pi;
-  // A smooth minimum is found to the root of rounding: what lies that near to a full turn is its beginning.
-  const double in_turn = angle < 0 ? angle + turn : angle;
-  return {std::asin(std::min(1.0, sine)), turn - in_turn <= 1e-7 ? 0 : in_turn};
-}
 
 std::vector<double> natural_frequencies(const Body& link, int count) {
   const Elastic& elastic = *link.elastic;
@@ -239,17 +234,16 @@ std::string scene_table(const Scene& scene) {
   const Units& units = scene.units;
   Text text;
   add(text, "{}\n", scene_name(scene));
-  add(text, "units: {}, {}, {}, {}; force {} {}/{}^2 = {:.6g} N\n", units.length, units.mass, units.time, units.angle,
-      units.mass, units.length, units.time, units.force_in_newton());
   if (const auto* hill = std::get_if<HillSystem>(&scene.model)) {
-    add(text, "linear periodic system of {} {}: stiffness with {} harmonics, load with {}\n", hill->num_modes(),
-        hill->num_modes() == 1 ? "unknown" : "unknowns", highest_harmonic(hill->stiffness),
-        highest_harmonic(hill->load));
+    add(text, "{}", hill_table(*hill, scene));
   } else {
+    add(text, "units: {}, {}, {}, {}; force {} {}/{}^2 = {:.6g} N\n", units.length, units.mass, units.time, units.angle,
+        units.mass, units.length, units.time, units.force_in_newton());
     add_linkage(text, scene, std::get<Linkage>(scene.model));
   }
   add(text, "\nanalysis: {}, modes {}, tolerance {:.1e}\n", speeds_text(scene), modes_text(scene.analysis),
       scene.analysis.tolerance);
+  for (const std::string& note : scene.notes) add(text, "\nNOTE: {}\n", note);
   for (const std::string& warning : scene.warnings) add(text, "\nWARNING: {}\n", warning);
   return fmt::to_string(text);
 }
@@ -259,9 +253,7 @@ Json scene_json(const Scene& scene) {
   json["title"] = scene.title;
   json["units"] = units_json(scene.units);
   if (const auto* hill = std::get_if<HillSystem>(&scene.model)) {
-    json["system"] = {{"unknowns", hill->num_modes()},
-                      {"stiffness_harmonics", highest_harmonic(hill->stiffness)},
-                      {"load_harmonics", highest_harmonic(hill->load)}};
+    json["system"] = hill_json(*hill, scene);
   } else {
     json["linkage"] = linkage_json(std::get<Linkage>(scene.model), scene.units);
   }
@@ -272,12 +264,13 @@ Json scene_json(const Scene& scene) {
     analysis["modes"] = "auto";
   }
   analysis["tolerance"] = scene.analysis.tolerance;
-  if (scene.analysis.rpm) {
-    const Speeds& rpm = *scene.analysis.rpm;
-    analysis["rpm"] = rpm.step == 0 ? Json(rpm.from) : Json::array({rpm.from, rpm.to, rpm.step});
-  }
-  if (scene.analysis.omega) analysis["omega"] = *scene.analysis.omega;
+  const auto speeds = [](const Speeds& given) {
+    return given.step == 0 ? Json(given.from) : Json::array({given.from, given.to, given.step});
+  };
+  if (scene.analysis.rpm) analysis["rpm"] = speeds(*scene.analysis.rpm);
+  if (scene.analysis.omega) analysis["omega"] = speeds(*scene.analysis.omega);
   json["warnings"] = scene.warnings;
+  json["notes"] = scene.notes;
   return json;
 }
 

@@ -9,14 +9,6 @@
 
 namespace hb::tools {
 
-// Angle between coupler and rocker, or between coupler and the normal of the guide, folded to [0, pi/2]: how well the
-// dyad passes force on. Smallest over the turn.
-struct TransmissionAngle {
-  double smallest = 0;  // rad
-  double crank_angle = 0;  // rad
-};
-[[nodiscard]] TransmissionAngle transmission_angle(const Linkage& linkage, int dyad);
-
 // Natural frequencies at rest without axial load, omega_i = (i pi/l)^2 sqrt(EJ/mu), i = 1..count, rad per unit time.
 [[nodiscard]] std::vector<double> natural_frequencies(const Body& link, int count);
 

@@ -14,6 +14,7 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -63,7 +64,8 @@ Json exponents_json(const Stability& stability) {
   return array;
 }
 
-Json rod_json(const SweepResult& result, std::size_t r, const std::vector<SweepPoint>& points) {
+Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
+              const std::vector<SweepPoint>& points) {
   Json json;
   json["modes"] = result.rods[r].num_modes;
   const auto of_rod = [&](const auto& value) {
@@ -78,6 +80,8 @@ Json rod_json(const SweepResult& result, std::size_t r, const std::vector<SweepP
     json["deflection"] = of_rod([](const RodPoint& rod) { return number(rod.deflection.value_or(nan)); });
     json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment.value_or(nan)); });
   }
+  if (scene.first().linkage())
+    json["theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.theory_error.value_or(nan)); });
   if (result.computed.stability) {
     json["growth_rate"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_rate); });
     json["growth_error"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_error); });
@@ -114,6 +118,13 @@ void add_forces(Json& json, const SweepResult& result) {
       ranges_json(result.points, [](const SweepPoint& p) { return p.torque_rigid ? &*p.torque_rigid : nullptr; });
 }
 
+// The refined point at a peak or boundary; nullptr where that is a point asked for or lies outside.
+const SweepPoint* refined_point(const SweepResult& result, double x) {
+  const auto found = std::find_if(result.refined.begin(), result.refined.end(),
+                                  [&](const SweepPoint& point) { return point.x == x; });
+  return found != result.refined.end() && !found->rods.empty() ? &*found : nullptr;
+}
+
 Json critical_json(const SweepResult& result, const CriticalPoint& point, const SweepScene& scene) {
   Json json = {{"rod", result.rods[point.rod].name}, {"x", point.peak.x}};
   if (is_speed(scene)) json["rpm"] = rpm_from_speed(point.speed, scene.scene().units);
@@ -123,6 +134,8 @@ Json critical_json(const SweepResult& result, const CriticalPoint& point, const 
   json["max_abs"] = number(point.peak.value);
   json["unbounded"] = std::isinf(point.peak.value);
   json["prominence"] = point.prominence;
+  if (const SweepPoint* there = refined_point(result, point.peak.x); there && has_theory(scene, result))
+    json["theory_error"] = number(there->rods[point.rod].theory_error.value_or(nan));
   if (point.mode >= 0) {
     json["mode"] = point.mode + 1;
     json["order"] = point.order;
@@ -178,13 +191,15 @@ std::string axis_label(const SweepScene& scene) {
   return scene.axis().path + bracketed(path_unit(scene.axis().path, scene.scene().units));
 }
 
-Json sweep_json(const SweepScene& scene, const SweepResult& result) {
+Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) {
   const Units& units = scene.scene().units;
   const std::vector<SweepPoint>& points = result.points;
   Json json;
   json["title"] = scene.scene().title;
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
+  if (std::vector<std::string> warnings = theory_warnings(scene, result); !warnings.empty())
+    json["warnings"] = std::move(warnings);
   json["tolerance"] = scene.settings().tolerance;
   json["units"] = units_json(units);
   json["x"] = {{"path", scene.axis().path}, {"values", scene.axis().values}};
@@ -197,9 +212,19 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result) {
   }
   json["rpm"] = std::move(rpm);
   json["omega"] = std::move(omega);
+  if (result.computed.stability && !result.rods.empty()) {
+    // Of all elastic links; null where the linkage does not close.
+    Json& verdicts = json["verdict"] = Json::array();
+    for (const SweepPoint& point : points) {
+      Verdict verdict = Verdict::stable;
+      for (const RodPoint& rod : point.rods)
+        if (rod.stability) verdict = worst(verdict, rod.stability->stability.verdict);
+      verdicts.push_back(point.rods.empty() ? Json() : Json(to_string(verdict)));
+    }
+  }
   Json& rods = json["rods"] = Json::object();
   for (std::size_t r = 0; r < result.rods.size(); ++r)
-    if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(result, r, points);
+    if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(scene, result, r, points);
   if (result.computed.steady) {
     std::vector<double> critical, critical_x;
     for (const CriticalPoint& point : result.critical) critical_x.push_back(point.peak.x);
@@ -241,9 +266,9 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result) {
     for (const SweepPoint& point : result.refined) x.push_back(point.x);
     refined["x"] = std::move(x);
     for (std::size_t r = 0; r < result.rods.size(); ++r)
-      if (result.rods[r].reported) refined["rods"][result.rods[r].name] = rod_json(result, r, result.refined);
+      if (result.rods[r].reported) refined["rods"][result.rods[r].name] = rod_json(scene, result, r, result.refined);
   }
-  if (scene.settings().stats) json["stats"] = stages_json(result.stages);
+  if (stats) json["stats"] = stages_json(result.stages);
   return json;
 }
 
@@ -270,6 +295,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     if (result.computed.shape) {
       add(text, "  {:>15}  {:>14}", "deflection" + bracketed(units.length), "moment [N m]");
     }
+    if (has_theory(scene, result)) add(text, "  {:>12}", "theory error");
     if (result.computed.stability) add(text, "  {:>16}  {}", "growth" + bracketed(units.rate), "verdict");
     add(text, "\n");
     for (std::size_t k = 0; k < values.size(); k += every) {
@@ -285,6 +311,9 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
         add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan),
             here.bending_moment.value_or(nan) * units.moment);
       }
+      if (has_theory(scene, result))
+        add(text, "  {:>12}", (here.theory_error ? fmt::format("{:.1e}", *here.theory_error) : "no value") +
+                                  (beyond_theory(here.theory_error) ? " !" : "  "));
       if (result.computed.stability) {
         add(text, "  {:>16.6g}  {}", here.stability->stability.growth_rate,
             here.stability->stability.verdict == Verdict::unstable ? "UNSTABLE"
@@ -310,7 +339,8 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
       for (const CriticalPoint& point : result.critical) {
         if (point.rod != r) continue;
         if (std::isinf(point.peak.value)) {
-          add(text, "    {:.12g}  |q_{}| unbounded: a multiplier passes +1", point.peak.x, point.component + 1);
+          add(text, "    {:.12g}  |q_{}| unbounded: a multiplier passes +1{}", point.peak.x, point.component + 1,
+              has_theory(scene, result) ? "; beyond the linear theory" : "");
         } else {
           add(text, "    {:.12g}  max |q_{}| = {:.6g}", point.peak.x, point.component + 1, point.peak.value);
         }
@@ -318,6 +348,9 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
           add(text, ", mode {} at order {} ({:.5g} rad/{}, {:.3g} per turn of the crank)", point.mode + 1, point.order,
               point.frequency, units.time, point.frequency / point.speed);
         }
+        if (const SweepPoint* there = refined_point(result, point.peak.x);
+            there && has_theory(scene, result) && beyond_theory(there->rods[r].theory_error))
+          add(text, "; beyond the linear theory");
         add(text, "\n");
       }
     }
@@ -331,10 +364,11 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
         first->problem);
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  for (const std::string& warning : theory_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }
 
-SweepColumns sweep_columns(const SweepResult& result, std::size_t rod) {
+SweepColumns sweep_columns(const SweepScene& scene, const SweepResult& result, std::size_t rod) {
   SweepColumns columns;
   int next = 3;
   if (result.computed.steady) {
@@ -344,6 +378,10 @@ SweepColumns sweep_columns(const SweepResult& result, std::size_t rod) {
   if (result.computed.shape) {
     columns.deflection = next++;
     columns.bending_moment = next++;
+  }
+  if (has_theory(scene, result)) {
+    columns.beyond = next + 1;
+    next += 2;
   }
   if (result.computed.stability) {
     columns.growth = next;
@@ -370,6 +408,12 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   if (only.shape) {
     file.columns.push_back("deflection [" + units.length + "]");
     file.columns.push_back("bending moment [N m]");
+  }
+  if (has_theory(scene, result)) {
+    file.columns.push_back("theory error");
+    file.columns.push_back("beyond the linear theory");
+    file.comment.push_back(fmt::format("theory error: first nonlinear correction of q, relative; beyond: above {} or none",
+                                       theory_error_limit));
   }
   if (only.stability) {
     file.columns.insert(file.columns.end(), {"growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate),
@@ -403,6 +447,10 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
     if (only.shape) {
       row(column++) = here.deflection.value_or(nan);
       row(column++) = here.bending_moment.value_or(nan) * units.moment;
+    }
+    if (has_theory(scene, result)) {
+      row(column++) = here.theory_error.value_or(nan);
+      row(column++) = beyond_theory(here.theory_error) ? 1 : 0;
     }
     if (only.stability) {
       const Stability& stability = here.stability->stability;

@@ -10,7 +10,7 @@
 
 namespace hb::tools {
 
-[[nodiscard]] nlohmann::ordered_json sweep_json(const SweepScene& scene, const SweepResult& result);
+[[nodiscard]] nlohmann::ordered_json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats);
 [[nodiscard]] std::string sweep_table(const SweepScene& scene, const SweepResult& result);
 
 // "crank speed [rpm]", "omega [rad/s]" or the path.
@@ -29,9 +29,10 @@ namespace hb::tools {
 struct SweepColumns {
   int first_peak = 0;       // of q_1; the others follow
   int deflection = 0, bending_moment = 0;
+  int beyond = 0;           // 1: beyond the linear theory; the theory error stands before it
   int growth = 0;
   int first_frequency = 0;  // of mode 1; its growth rate stands beside, the other modes follow
 };
-[[nodiscard]] SweepColumns sweep_columns(const SweepResult& result, std::size_t rod);
+[[nodiscard]] SweepColumns sweep_columns(const SweepScene& scene, const SweepResult& result, std::size_t rod);
 
 }  // namespace hb::tools

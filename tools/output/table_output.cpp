@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "tools/output/output_units.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -42,6 +43,23 @@ void add_steady(Text& text, const RodResult& rod, const OutputUnits& units, bool
       state.bound == SteadyBound::proved ? ", proved" : "",
       state.error_bound <= tolerance ? "" : fmt::format("  NOT REACHED: asked {:.1e}", tolerance));
   add(text, "  resonance         {:.3g} away (1: far, 0: at resonance)\n", state.resonance_distance);
+}
+
+void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size_t r) {
+  if (!errors) {
+    add(text, "  theory error      not judged: q was not computed\n");
+    return;
+  }
+  const TheoryErrors::Rod& rod = errors->rods[r];
+  if (!rod.q) {
+    add(text, "  theory error      no value: {}; BEYOND THE LINEAR THEORY\n", errors->reason);
+    return;
+  }
+  add(text, "  theory error      {:.1e} of the largest |q|, first nonlinear correction{}\n", *rod.q,
+      beyond_theory(rod.q) ? "; BEYOND THE LINEAR THEORY" : "");
+  if (rod.axial_share)
+    add(text, "    of it           {:.1g} would be taken away by axial elasticity, which it leaves out, estimated\n",
+        *rod.axial_share);
 }
 
 void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, const std::string& unit,
@@ -122,6 +140,24 @@ void add_forces(Text& text, const Linkage& linkage, const JointForces& forces, c
   add(text, "\n");
 }
 
+// "unstable because of AB", "stable (AB, CD)": the worst of all rods, and which of them were not looked at.
+std::string verdict_of_all(const std::vector<RodResult>& rods) {
+  std::vector<Verdict> verdicts;
+  for (const RodResult& rod : rods) {
+    if (rod.stability) verdicts.push_back(rod.stability->verdict);
+  }
+  std::vector<std::string> names, others;
+  const Verdict verdict = worst(verdicts);
+  for (const RodResult& rod : rods) {
+    if (!rod.stability) others.push_back(rod.name);
+    if (rod.stability && rod.stability->verdict == verdict) names.push_back(rod.name);
+  }
+  const bool all = verdict == Verdict::stable || verdict == Verdict::bounded;
+  const std::string because = fmt::format(fmt::runtime(all ? "({})" : "because of {}"), fmt::join(names, ", "));
+  return fmt::format("{} {}{}", to_string(verdict), because,
+                     others.empty() ? "" : fmt::format("; not looked at: {}", fmt::join(others, ", ")));
+}
+
 }  // namespace
 
 std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings) {
@@ -132,13 +168,15 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   add(text, "{}: {}", scene_name(scene), speed_text(result.speed, scene));
   if (is_linkage) add(text, " (omega = {:.10g} rad/{})", result.speed, units.time);
   add(text, "\n\n");
-  for (const RodResult& rod : result.rods) {
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const RodResult& rod = result.rods[r];
     if (!rod.reported) continue;
     add(text, "{}: {} {}", rod.name, rod.num_modes,
         is_linkage ? (rod.num_modes == 1 ? "mode" : "modes") : (rod.num_modes == 1 ? "unknown" : "unknowns"));
     if (rod.steady && result.computed.steady) add(text, ", {} harmonics", rod.steady->num_harmonics);
     add(text, "\n");
     if (rod.steady && result.computed.steady) add_steady(text, rod, units, is_linkage, settings.tolerance);
+    if (is_linkage) add_theory(text, result.theory, r);
     if (rod.modes_error) {
       add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
           !needs_more_modes(rod) ? "" : "; MORE MODES ARE NEEDED (--modes)");
@@ -153,6 +191,9 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");
   if (result.forces) {
     add_forces(text, *model.linkage(), *result.forces, result.force_errors, units);
+    if (result.theory && result.theory->force)
+      add(text, "  theory errors: forces {:.1e} of the largest, torque {:.1e}\n", *result.theory->force,
+          *result.theory->torque);
     const bool unstable = std::any_of(result.rods.begin(), result.rods.end(), [](const RodResult& rod) {
       return rod.stability && rod.stability->verdict == Verdict::unstable;
     });
@@ -160,6 +201,8 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
   for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
+  for (const std::string& warning : theory_warnings(model, result)) add(text, "WARNING: {}\n", warning);
+  if (result.computed.stability && !result.rods.empty()) add(text, "\nVerdict: {}\n", verdict_of_all(result.rods));
   return fmt::to_string(text);
 }
 

@@ -40,6 +40,8 @@ std::string label(MetricKind kind) {
       return "stability margin";
     case MetricKind::margin_per_turn:
       return "margin per turn";
+    case MetricKind::theory:
+      return "theory error";
     case MetricKind::clearance:
       return "clearance";
     case MetricKind::speed_range:
@@ -299,7 +301,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   return text;
 }
 
-Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene) {
+Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene, bool stats) {
   const Units& units = scene.units;
   Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
   json["over"] = span_json(task, result.span_after, units);
@@ -369,7 +371,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   json["without_response"] = result.without_response;
   json["evidence"] = result.design.evidence;
   json["units"] = units_json(units);
-  if (task.settings.stats) json["stats"] = stages_json(result.stages);
+  if (stats) json["stats"] = stages_json(result.stages);
   return json;
 }
 

@@ -11,7 +11,8 @@
 namespace hb::tools {
 
 [[nodiscard]] std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene);
-[[nodiscard]] nlohmann::ordered_json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene,
+                                               bool stats);
 
 // Every design tried: variables, goal, conditions' excess.
 [[nodiscard]] CsvFile history_csv(const TuneTask& task, const TuneResult& result);

@@ -130,16 +130,4 @@ const char* status_text(SteadyStatus status) {
   return "singular";
 }
 
-const char* method_text(SteadyMethod method) {
-  switch (method) {
-    case SteadyMethod::direct:
-      return "direct";
-    case SteadyMethod::iterative:
-      return "iterative";
-    case SteadyMethod::automatic:
-      break;
-  }
-  return "automatic";
-}
-
 }  // namespace hb::tools

@@ -31,6 +31,5 @@ inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided
 [[nodiscard]] std::string force_frames(const std::vector<std::string>& elastic_rockers);
 [[nodiscard]] std::vector<std::string> elastic_rockers(const Linkage& linkage);
 [[nodiscard]] const char* status_text(SteadyStatus status);
-[[nodiscard]] const char* method_text(SteadyMethod method);
 
 }  // namespace hb::tools

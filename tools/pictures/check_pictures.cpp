@@ -127,8 +127,8 @@ Figure range_figure(const SceneModel& model, const std::vector<SpeedCheck>& chec
 
 }  // namespace
 
-void write_check_pictures(const SceneModel& model, const std::vector<SpeedCheck>& checks, OutputFolder& folder,
-                          bool draw) {
+std::vector<Figure> write_check_tables(const SceneModel& model, const std::vector<SpeedCheck>& checks,
+                                       OutputFolder& folder) {
   std::vector<Figure> figures;
   if (checks.size() > 1) {
     const CsvFile file = range_csv(model, checks);
@@ -146,7 +146,7 @@ void write_check_pictures(const SceneModel& model, const std::vector<SpeedCheck>
       if (rod.q.difference > 0) figures.push_back(curves_figure(model, checks.front(), rod, file.name));
     }
   }
-  draw_figures(figures, folder, draw);
+  return figures;
 }
 
 }  // namespace hb::tools

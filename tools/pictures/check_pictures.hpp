@@ -6,11 +6,12 @@
 
 #include "hb/analysis/cross_check.hpp"
 #include "tools/output/output_folder.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 
-// Writes into the folder without committing it; pictures only if `draw`.
-void write_check_pictures(const SceneModel& model, const std::vector<SpeedCheck>& checks, OutputFolder& folder,
-                          bool draw);
+// Writes the tables into the folder without committing it; the pictures that there are of them.
+[[nodiscard]] std::vector<Figure> write_check_tables(const SceneModel& model, const std::vector<SpeedCheck>& checks,
+                                                     OutputFolder& folder);
 
 }  // namespace hb::tools

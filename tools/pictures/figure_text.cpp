@@ -4,6 +4,7 @@
 
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/output/output_folder.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -64,13 +65,17 @@ std::string two_lines(const std::string& bold, const std::string& shown) {
 std::string rod_title(const SceneModel& model, const SpeedResult& result, const RodResult& rod,
                       const std::string& shown) {
   const std::string subject = model.linkage() ? ", " + rod.name : "";
+  std::string beyond;
+  for (std::size_t r = 0; result.theory && r < result.rods.size(); ++r)
+    if (&result.rods[r] == &rod) beyond = beyond_text(*result.theory, r);
   return two_lines(short_name(model.scene) + subject + ", " + speed_text(result.speed, model.scene) + verdict_text(rod),
-                   shown);
+                   shown + (beyond.empty() ? "" : "; " + beyond));
 }
 
 std::string scene_title(const SceneModel& model, const SpeedResult& result, const std::string& shown) {
+  const std::string beyond = beyond_text(result);
   return two_lines(short_name(model.scene) + ", " + speed_text(result.speed, model.scene) + verdicts_text(result),
-                   shown);
+                   shown + (beyond.empty() ? "" : (shown.empty() ? "" : "\n") + literal(beyond)));
 }
 
 std::string figure_name(const std::string& kind, const std::string& name) { return file_name(kind + "_" + name); }

@@ -2,15 +2,25 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <csignal>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <sstream>
 
 #include "tools/command/command.hpp"
+#include "tools/output/printable.hpp"
+#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;
@@ -23,6 +33,7 @@ set datafile separator ','
 set datafile columnheaders
 svg(w, h) = sprintf("set terminal svg size %d,%d font 'DejaVu Sans,13' background 'white' linewidth 1.2", w, h)
 png(w, h) = sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,13' fontscale 2 linewidth 2.4 pointscale 2", 2*w, 2*h)
+small(w, h) = sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,11' linewidth 1.2", w, h)
 set border 3 linecolor '#444444'
 set tics nomirror textcolor '#222222'
 set grid linecolor '#c8c8c8' linewidth 0.6
@@ -47,18 +58,148 @@ std::string contents(const fs::path& path) {
 
 // A picture that a full disk cut short lacks its end.
 bool complete(const fs::path& path, const std::string& end) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
   const std::string text = contents(path);
   const std::size_t window = 64;
   return text.size() > window && text.find(end, text.size() - window) != std::string::npos;
 }
 
+// gnuplot writes > as it is, but ]]> may not stand in the text of XML.
+std::string well_formed(std::string svg) {
+  const std::string wrong = "]]>", right = "]]&gt;";
+  for (std::size_t at = 0; (at = svg.find(wrong, at)) != std::string::npos; at += right.size())
+    svg.replace(at, wrong.size(), right);
+  return svg;
+}
+
+std::uintmax_t bytes_drawn(const fs::path& folder, const std::vector<Figure>& figures, const PictureKinds& kinds) {
+  std::uintmax_t sum = 0;
+  std::error_code error;
+  for (const Figure& figure : figures) {
+    for (const std::string& kind : kinds) {
+      const std::uintmax_t size = fs::file_size(folder / (figure.name + "." + kind), error);
+      if (!error) sum += size + 1;
+    }
+  }
+  return sum;
+}
+
+// One line of what a program printed, whatever it was.
+std::string printable_words(const std::string& words) {
+  constexpr std::size_t most = 300;
+  std::string line;
+  for (const char c : words) {
+    const bool blank = static_cast<unsigned char>(c) <= ' ' || c == 0x7f;
+    if (!blank) line += c;
+    if (blank && !line.empty() && line.back() != ' ') line += ' ';
+  }
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  if (line.size() > most) line = line.substr(0, most) + " ...";
+  return printable(line);
+}
+
+// gnuplot in a process group of its own: Ctrl-C reaches this program alone, which then ends the group.
+class Child {
+ public:
+  Child(const fs::path& folder, const std::string& script) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0)
+      throw OutputError(fmt::format("gnuplot cannot be started: {}", std::strerror(errno)));
+    const SignalsHeld held;
+    pid_ = fork();
+    if (pid_ == 0) become_gnuplot(folder, script, ends[1]);
+    close(ends[1]);
+    output_ = ends[0];
+    if (pid_ < 0) {
+      close(output_);
+      throw OutputError(fmt::format("gnuplot cannot be started: {}", std::strerror(errno)));
+    }
+    setpgid(pid_, pid_);
+    killed_on_signal_.emplace(pid_);
+    fcntl(output_, F_SETFL, O_NONBLOCK);
+  }
+  ~Child() {
+    kill(-pid_, SIGKILL);  // and what it may have started
+    if (!ended_) waitpid(pid_, &status_, 0);
+    close(output_);
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  // False if it was still running when `progress` had not changed for `patience`.
+  bool wait(const std::function<std::uintmax_t()>& progress, std::chrono::milliseconds patience) {
+    using Clock = std::chrono::steady_clock;
+    constexpr int poll_interval = 20;  // ms
+    std::uintmax_t last = progress();
+    for (Clock::time_point changed = Clock::now();;) {
+      read_output();
+      const pid_t done = waitpid(pid_, &status_, WNOHANG);
+      ended_ = done == pid_ || (done < 0 && errno != EINTR);
+      if (ended_) break;
+      if (const std::uintmax_t now = progress(); now != last) {
+        last = now;
+        changed = Clock::now();
+      }
+      if (Clock::now() - changed > patience) return false;
+      poll(nullptr, 0, poll_interval);
+    }
+    read_output();
+    return true;
+  }
+
+  const std::string& words() const { return words_; }
+  bool not_found() const { return ended_ && WIFEXITED(status_) && WEXITSTATUS(status_) == no_program; }
+  // Empty if it ended with status 0.
+  std::string unusual_end() const {
+    if (WIFSIGNALED(status_)) return fmt::format("ended by signal {}", WTERMSIG(status_));
+    return WEXITSTATUS(status_) == 0 ? "" : fmt::format("exit status {}", WEXITSTATUS(status_));
+  }
+
+ private:
+  static constexpr int no_program = 127;
+
+  [[noreturn]] static void become_gnuplot(const fs::path& folder, const std::string& script, int sink) {
+    setpgid(0, 0);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    std::signal(SIGPIPE, SIG_DFL);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    const int source = open("/dev/null", O_RDONLY);
+    if (source < 0 || chdir(folder.c_str()) != 0) _exit(1);
+    dup2(source, STDIN_FILENO);
+    dup2(sink, STDOUT_FILENO);
+    dup2(sink, STDERR_FILENO);
+    execlp("gnuplot", "gnuplot", "--default-settings", script.c_str(), static_cast<char*>(nullptr));
+    _exit(errno == ENOENT ? no_program : 1);
+  }
+
+  // The beginning is kept; the rest, however much it is, is read and forgotten.
+  void read_output() {
+    constexpr std::size_t most = 4096;
+    constexpr int at_once = 256;  // blocks, lest a flood keeps this from looking at anything else
+    char block[4096];
+    for (int k = 0; k < at_once; ++k) {
+      const ssize_t size = read(output_, block, sizeof block);
+      if (size <= 0) return;
+      words_.append(block, std::min(static_cast<std::size_t>(size), most - std::min(most, words_.size())));
+    }
+  }
+
+  pid_t pid_ = -1;
+  int output_ = -1, status_ = 0;
+  bool ended_ = false;
+  std::string words_;
+  std::optional<RunningChild> killed_on_signal_;
+};
+
 }  // namespace
 
 std::string literal(const std::string& text) {
   std::string result;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < ' ') {
+  for (const char c : printable(text)) {
+    if (c == '\n') {
       result += ' ';
     } else if (c == '\'') {
       result += "''";
@@ -72,59 +213,74 @@ std::string literal(const std::string& text) {
 
 std::string quoted(const std::string& text) { return fmt::format("'{}'", literal(text)); }
 
-std::string plot_script(const std::vector<Figure>& figures) {
+std::string plot_script(const std::vector<Figure>& figures, const PictureKinds& kinds) {
   std::string script = preamble;
   for (const Figure& figure : figures) {
     script += fmt::format(
-        "\ndo for [kind in 'svg png'] {{\n"
-        "eval (kind eq 'svg') ? svg({0}, {1}) : png({0}, {1})\n"
+        "\ndo for [kind in '{4}'] {{\n"
+        "eval (kind eq 'svg') ? svg({0}, {1}) : (kind eq 'png') ? png({0}, {1}) : small({0}, {1})\n"
         "set output '{2}.'.kind\n"
         "{3}"
         "set output\n"
         "}}\n",
-        figure.width, figure.height, figure.name, figure.commands);
+        figure.width, figure.height, figure.name, figure.commands, fmt::join(kinds, " "));
   }
   return script;
 }
 
-PlotStatus run_gnuplot(const fs::path& folder, const std::string& script, const std::vector<Figure>& figures) {
-  constexpr int no_program = 127;
-  const fs::path log = folder / ".gnuplot.log";
-  const pid_t child = fork();
-  if (child < 0) throw OutputError(fmt::format("gnuplot cannot be started: {}", std::strerror(errno)));
-  if (child == 0) {
-    const int sink = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const int source = open("/dev/null", O_RDONLY);
-    if (sink < 0 || source < 0 || chdir(folder.c_str()) != 0) _exit(1);
-    dup2(source, STDIN_FILENO);
-    dup2(sink, STDOUT_FILENO);
-    dup2(sink, STDERR_FILENO);
-    execlp("gnuplot", "gnuplot", "--default-settings", script.c_str(), static_cast<char*>(nullptr));
-    _exit(errno == ENOENT ? no_program : 1);
+std::string script_name(const std::string& command) { return command + ".gp"; }
+
+PlotOutcome run_gnuplot(const fs::path& folder, const std::string& script, const std::vector<Figure>& figures,
+                        std::chrono::milliseconds patience, const PictureKinds& kinds) {
+  PlotOutcome outcome;
+  Child gnuplot(folder, script);
+  const bool ended = gnuplot.wait([&] { return bytes_drawn(folder, figures, kinds); }, patience);
+  outcome.no_gnuplot = gnuplot.not_found();
+  outcome.words = printable_words(gnuplot.words());
+  if (!ended) {
+    outcome.words = fmt::format("it was ended after {} s without a new picture{}{}",
+                                std::chrono::duration<double>(patience).count(),
+                                outcome.words.empty() ? "" : "; it said: ", outcome.words);
+  } else if (const std::string end = gnuplot.unusual_end(); !end.empty()) {
+    outcome.words = outcome.words.empty() ? end : fmt::format("{}: {}", end, outcome.words);
   }
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  const std::string words = contents(log);
-  std::error_code ignored;
-  fs::remove(log, ignored);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == no_program) return PlotStatus::no_gnuplot;
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw OutputError("--out: gnuplot failed: " + words);
   for (const Figure& figure : figures) {
-    if (!complete(folder / (figure.name + ".svg"), "</svg>") || !complete(folder / (figure.name + ".png"), "IEND")) {
-      throw OutputError(fmt::format("--out: picture {} was not written whole{}{}", figure.name,
-                                    words.empty() ? "" : "; gnuplot says: ", words));
-    }
+    const bool whole = std::all_of(kinds.begin(), kinds.end(), [&](const std::string& kind) {
+      return complete(folder / (figure.name + "." + kind), kind == "svg" ? "</svg>" : "IEND");
+    });
+    if (!whole) outcome.missing.push_back(figure.name);
   }
-  return PlotStatus::drawn;
+  return outcome;
 }
 
-void draw_figures(const std::vector<Figure>& figures, OutputFolder& folder, bool draw) {
-  if (figures.empty() || !draw) return;
-  folder.write("plots.gp", plot_script(figures));
-  if (run_gnuplot(folder.scratch(), "plots.gp", figures) == PlotStatus::no_gnuplot) {
-    fmt::print(stderr, "hb: no pictures: gnuplot is not installed; plots.gp beside the CSV files draws them\n");
+bool draw_figures(const std::vector<Figure>& figures, OutputFolder& folder) {
+  const std::string script = script_name(folder.command());
+  const fs::path place = folder.scratch_with_links();
+  const PlotOutcome outcome = run_gnuplot(place, script, figures);
+  for (const Figure& figure : figures) {
+    const bool missing =
+        std::find(outcome.missing.begin(), outcome.missing.end(), figure.name) != outcome.missing.end();
+    for (const std::string kind : {".svg", ".png"}) {
+      const std::string file = figure.name + kind;
+      if (missing) {
+        folder.drop(file);
+      } else {
+        const std::string picture = contents(place / file);
+        folder.write(file, kind == ".svg" ? well_formed(picture) : picture);
+      }
+    }
   }
+  folder.commit();
+  if (outcome.complete()) return true;
+  const std::string again = fmt::format("`gnuplot {}` in {} draws them", script, folder.path().string());
+  if (outcome.no_gnuplot) {
+    fmt::print(stderr, "hb {}: no pictures: gnuplot is not installed; {}\n", folder.command(), again);
+  } else {
+    fmt::print(stderr, "hb {}: {} of {} pictures missing: {}; {}\n", folder.command(), outcome.missing.size(),
+               figures.size(), outcome.words.empty() ? "gnuplot did not write them" : "gnuplot: " + outcome.words,
+               again);
+  }
+  return false;
 }
 
 }  // namespace hb::tools

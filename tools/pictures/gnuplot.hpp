@@ -1,6 +1,7 @@
 // Pictures through gnuplot: a script that draws named figures from CSV files beside it, as SVG and as PNG.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,17 +21,33 @@ struct Figure {
 // Text for the inside of a quoted string with gnuplot's enhanced markup (q_1 has a subscript), `literal` parts escaped.
 [[nodiscard]] std::string literal(const std::string& text);
 
+// Kinds of pictures, by the extension of their files.
+using PictureKinds = std::vector<std::string>;
+inline const PictureKinds folder_kinds = {"svg", "png"};
+// PNG with one pixel for one of the figure, for pages.
+inline const PictureKinds page_kinds = {"small"};
+
 // The script that draws all figures when run in the folder of their CSV files.
-[[nodiscard]] std::string plot_script(const std::vector<Figure>& figures);
+[[nodiscard]] std::string plot_script(const std::vector<Figure>& figures, const PictureKinds& kinds = folder_kinds);
 
-enum class PlotStatus { drawn, no_gnuplot };
+struct PlotOutcome {
+  bool no_gnuplot = false;
+  std::vector<std::string> missing;  // figures without all pictures whole
+  std::string words;  // gnuplot's, clean and short, or why it was ended
+  [[nodiscard]] bool complete() const { return missing.empty(); }
+};
 
-// Runs `script` (a file name) in `folder`. Throws OutputError with gnuplot's words when it fails or when a picture is
-// missing or cut short.
-[[nodiscard]] PlotStatus run_gnuplot(const std::filesystem::path& folder, const std::string& script,
-                                     const std::vector<Figure>& figures);
+// Runs `script` (a file name) in `folder`; it is ended when no picture has grown for `patience`.
+[[nodiscard]] PlotOutcome run_gnuplot(const std::filesystem::path& folder, const std::string& script,
+                                      const std::vector<Figure>& figures,
+                                      std::chrono::milliseconds patience = std::chrono::seconds(30),
+                                      const PictureKinds& kinds = folder_kinds);
 
-// Writes plots.gp and, if `draw`, the pictures into the folder; without gnuplot says so on standard error.
-void draw_figures(const std::vector<Figure>& figures, OutputFolder& folder, bool draw);
+// Name of the script among the files of a command.
+[[nodiscard]] std::string script_name(const std::string& command);
+
+// Draws the figures of a folder whose script and CSV files are committed, and commits those pictures that are whole.
+// False, with the reason on standard error, if some are missing.
+[[nodiscard]] bool draw_figures(const std::vector<Figure>& figures, OutputFolder& folder);
 
 }  // namespace hb::tools

@@ -45,6 +45,23 @@ std::string shaded(const SweepRod& rod) {
 
 std::string shaded_note(const SweepRod& rod) { return rod.bands.empty() ? "" : "; shaded: unstable"; }
 
+// A curve, grey and dashed where the answer is beyond the linear theory. `style`: what stands behind "with lines".
+std::string curve(const std::string& csv, int column, const SweepColumns& columns, const std::string& style,
+                  double width) {
+  if (columns.beyond == 0) return fmt::format("'{}' using 1:{} with lines {} linewidth {}", csv, column, style, width);
+  return fmt::format(
+      "'{0}' using 1:{1} with lines linecolor rgb '#999999' dashtype 2 linewidth {2} notitle, '{0}' using "
+      "1:(column({3}) > 0 ? NaN : column({1})) with lines {4} linewidth {5}",
+      csv, column, 0.7 * width, columns.beyond, style, width);
+}
+
+// Some of the picture is beyond.
+std::string beyond_note(const CsvFile& csv, const SweepColumns& columns) {
+  if (columns.beyond == 0) return "";
+  const bool some = (csv.rows.col(columns.beyond - 1).array() > 0).any();
+  return some ? "'.\"\\n\".'grey, dashed: beyond the linear theory" : "";
+}
+
 std::string figure_name(const std::string& kind, const std::string& name) { return file_name(kind + "_" + name); }
 
 // Finite values of a column.
@@ -85,7 +102,7 @@ double largest(const std::vector<double>& values) {
 Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
                        const std::string& critical) {
   const SweepRod& rod = result.rods[r];
-  const SweepColumns columns = sweep_columns(result, r);
+  const SweepColumns columns = sweep_columns(scene, result, r);
   const int I = rod.num_modes;
   const auto frequency = [&](int mode) { return columns.first_frequency + 2 * mode; };
   const double from = scene.axis().values.front(), to = scene.axis().values.back();
@@ -116,7 +133,7 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   std::string& text = figure.commands;
   text += title(scene, result, r,
                 "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
-                    "; dots: resonance peaks" + shaded_note(rod));
+                    "; dots: resonance peaks" + shaded_note(rod) + beyond_note(csv, columns));
   text += axis(scene) + shaded(rod);
   text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [Hz]'\nunset key\nset rmargin 20\n", top);
   const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
@@ -173,11 +190,20 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   constexpr double jump = 0.25;  // of the speed
   for (int mode = 0; mode < shown; ++mode) {
     text += fmt::format("before{} = NaN\n", mode);
+    // Grey first, the palette over what is within the theory.
+    const std::string beyond = columns.beyond > 0 ? fmt::format("column({}) > 0", columns.beyond) : "0";
+    if (columns.beyond > 0) {
+      text += fmt::format("grey{} = NaN\n", mode);
+      add(fmt::format(
+          "'{}' using 1:(now = column({}), jumps = abs(now - grey{}) > {} * ({} * $1 + {}), grey{} = now, "
+          "jumps ? NaN : now) with lines linecolor rgb '#999999' dashtype 2 linewidth 2 notitle",
+          csv.name, frequency(mode), mode, jump, factor, constant, mode));
+    }
     add(fmt::format(
         "'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
-        "jumps ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
+        "jumps || {} ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
         "linewidth 3 linecolor palette notitle",
-        csv.name, frequency(mode), mode, jump, factor, constant, mode, frequency(mode) + 1, scale, scale,
+        csv.name, frequency(mode), mode, jump, factor, constant, mode, beyond, frequency(mode) + 1, scale, scale,
         frequency(mode) + 1, -scale, -scale, frequency(mode) + 1));
     // Named where it is first seen inside the picture.
     for (Eigen::Index k = 0; k < csv.rows.rows(); ++k) {
@@ -200,13 +226,14 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
 
 Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
   const SweepRod& rod = result.rods[r];
-  const SweepColumns columns = sweep_columns(result, r);
+  const SweepColumns columns = sweep_columns(scene, result, r);
   const int shown = std::min(rod.num_modes, max_curves);
   Figure figure;
   figure.name = figure_name("peaks", rod.name);
   const std::string meaning = scene.first().linkage() ? "q_i: amplitude of sin(iπx/l)" : "q_i: unknowns of the system";
   std::string& text = figure.commands;
-  text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(rod)) + axis(scene) + shaded(rod);
+  text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(rod) + beyond_note(csv, columns)) +
+          axis(scene) + shaded(rod);
   double top = 0, bottom = HUGE_VAL;
   for (int i = 0; i < shown; ++i) {
     for (const double value : where_stable(result, csv, columns.first_peak + i)) {
@@ -223,8 +250,8 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   text += fmt::format("set ylabel 'largest |q_i|{}'\nset key outside right top Left reverse samplen 2\nplot ",
                       bracketed(output_units(scene.scene()).response));
   for (int i = 0; i < shown; ++i) {
-    text += fmt::format("{}'{}' using 1:{} with lines lt {} linewidth 1.8 title 'q_{{{}}}'", i == 0 ? "" : ", ",
-                        csv.name, columns.first_peak + i, i + 1, i + 1);
+    text += fmt::format("{}{} title 'q_{{{}}}'", i == 0 ? "" : ", ",
+                        curve(csv.name, columns.first_peak + i, columns, fmt::format("lt {}", i + 1), 1.8), i + 1);
   }
   text += std::string("\n") + clean_up;
   return figure;
@@ -232,18 +259,19 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
 
 Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
   const SweepRod& rod = result.rods[r];
-  const SweepColumns columns = sweep_columns(result, r);
+  const SweepColumns columns = sweep_columns(scene, result, r);
   Figure figure;
-  figure.name = figure_name("deflection", rod.name);
+  figure.name = figure_name("sweep_deflection", rod.name);
   figure.height = 640;
   std::string& text = figure.commands;
   std::string heading =
-      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(rod));
+      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(rod) +
+                                    beyond_note(csv, columns));
   heading.replace(0, 10, "");  // without "set title "
   heading.pop_back();
   text += fmt::format(
-      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char 4.5 spacing char 0, char 1.5\n",
-      heading);
+      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n",
+      heading, beyond_note(csv, columns).empty() ? 4.5 : 6);
   text += axis(scene) + shaded(rod);
   const auto range = [&](int column) {
     const std::vector<double> values = where_stable(result, csv, column);
@@ -254,24 +282,26 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
   };
   text += fmt::format(
       "unset key\nset logscale y\nset format x ''\nunset xlabel\nset ylabel 'deflection [{}]'\n{}"
-      "plot '{}' using 1:{} with lines lt 1 linewidth 1.8\n"
+      "plot {}\n"
       "set format x '%g'\nset xlabel {}\nset ylabel 'bending moment [N m]'\n{}"
-      "plot '{}' using 1:{} with lines lt 2 linewidth 1.8\nunset multiplot\n",
-      literal(output_units(scene.scene()).length), range(columns.deflection), csv.name, columns.deflection,
-      quoted(axis_label(scene)), range(columns.bending_moment), csv.name, columns.bending_moment);
+      "plot {}\nunset multiplot\n",
+      literal(output_units(scene.scene()).length), range(columns.deflection),
+      curve(csv.name, columns.deflection, columns, "lt 1", 1.8), quoted(axis_label(scene)),
+      range(columns.bending_moment), curve(csv.name, columns.bending_moment, columns, "lt 2", 1.8));
   text += clean_up;
   return figure;
 }
 
 Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
   const SweepRod& rod = result.rods[r];
-  const SweepColumns columns = sweep_columns(result, r);
+  const SweepColumns columns = sweep_columns(scene, result, r);
   const OutputUnits units = output_units(scene.scene());
   const std::vector<double> growth = finite(csv, columns.growth);
   Figure figure;
   figure.name = figure_name("growth", rod.name);
   std::string& text = figure.commands;
-  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(rod)) +
+  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(rod) +
+                                         beyond_note(csv, columns)) +
           axis(scene) + shaded(rod);
   // Around the leading rate: modes that decay far faster would hide it.
   const double low = growth.empty() ? -1 : *std::min_element(growth.begin(), growth.end());
@@ -285,8 +315,10 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
                       columns.growth);
   const int shown = std::min(rod.num_modes, max_curves);
   for (int mode = 0; mode < shown; ++mode) {
-    text += fmt::format(", '' using 1:{} with lines lt {} linewidth 1.4 title 'mode {}'",
-                        columns.first_frequency + 2 * mode + 1, mode + 1, mode + 1);
+    text += fmt::format(", {} title 'mode {}'",
+                        curve(csv.name, columns.first_frequency + 2 * mode + 1, columns, fmt::format("lt {}", mode + 1),
+                              1.4),
+                        mode + 1);
   }
   text += "\n";
   text += clean_up;

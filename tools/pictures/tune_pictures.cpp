@@ -11,7 +11,7 @@
 #include "tools/output/map_output.hpp"
 #include "tools/pictures/map_plot.hpp"
 #include "tools/output/output_units.hpp"
-#include "tools/work/parallel_for.hpp"
+#include "tools/work/shared_work.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/output/wording.hpp"
@@ -24,12 +24,6 @@ constexpr int map_speeds = 61, map_designs = 23;
 
 const char* after_text(const TuneResult& result) {
   return result.design.status == DesignStatus::infeasible ? "nearest design, conditions not met" : "after tuning";
-}
-
-std::vector<double> evenly(double from, double to, int count) {
-  std::vector<double> values;
-  for (int k = 0; k < count; ++k) values.push_back(k + 1 == count ? to : from + (to - from) * k / (count - 1));
-  return values;
 }
 
 CsvFile curves_csv(const TuneTask& task, const DesignCurves& curves, const Scene& scene, bool after) {
@@ -90,7 +84,7 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
 }
 
 // As `hb sweep` draws them, one per rod and design.
-void add_campbell(const TuneTask& task, const TuneResult& result, bool after, OutputFolder& folder,
+void add_campbell(const TuneTask& task, const TuneResult& result, bool after, SharedWork& work, OutputFolder& folder,
                   std::vector<Figure>& figures) {
   const SpeedSpan& span = after ? result.span_after : result.span_before;
   Settings settings = task.settings;
@@ -101,7 +95,7 @@ void add_campbell(const TuneTask& task, const TuneResult& result, bool after, Ou
   axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, campbell_points);
   const SweepScene scene(task.source, overrides_at(task, after ? result.tuned : result.start), settings, axis,
                          span.from, axis.values.front());
-  const std::optional<SweepResult> sweep = run_sweep(scene);
+  const std::optional<SweepResult> sweep = run_sweep(scene, work);
   if (!sweep) return;
   for (std::size_t r = 0; r < sweep->rods.size(); ++r) {
     if (!sweep->rods[r].reported) continue;
@@ -156,9 +150,9 @@ class Way {
 
 // Growth at every point of the grid; boundaries between them are `hb map`'s business.
 StabilityMap grid_map(const Way& way, std::size_t rod, const std::vector<double>& x, const std::vector<double>& y,
-                      const Settings& settings) {
+                      const Settings& settings, const Work& work) {
   StabilityMap map{.x = x, .y = y, .points = std::vector<MapPoint>(x.size() * y.size()), .boundaries = {}};
-  parallel_for(map.points.size(), settings.threads, [&](std::size_t p) {
+  work.for_each(map.points.size(), [&](std::size_t p) {
     const std::optional<ScaledSystem> system = way.system(rod, x[p % x.size()], y[p / x.size()]);
     if (!system) return;
     const Stability stability = leading_stability(*system, settings);
@@ -173,8 +167,8 @@ StabilityMap grid_map(const Way& way, std::size_t rod, const std::vector<double>
   return map;
 }
 
-void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene, OutputFolder& folder,
-             std::vector<Figure>& figures) {
+void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene, const Work& work,
+             OutputFolder& folder, std::vector<Figure>& figures) {
   const Way way(task, result, task.settings);
   const double from = std::min(result.span_before.from, result.span_after.from) / task.speed_unit;
   const double to = std::max(result.span_before.to, result.span_after.to) / task.speed_unit;
@@ -187,7 +181,7 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
   for (std::size_t r = 0; r < tuned->rods.size(); ++r) {
     if (!tuned->rods[r].reported) continue;
     map.rods.push_back(tuned->rods[r].name);
-    map.maps.push_back(grid_map(way, r, x, y, task.settings));
+    map.maps.push_back(grid_map(way, r, x, y, task.settings, work));
     const StabilityMap& own = map.maps.back();
     if (map.worst.empty()) map.worst = own.points;
     for (std::size_t p = 0; p < own.points.size(); ++p)
@@ -202,8 +196,9 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
     folder.write(name, csv_text(file));
     return name;
   };
-  files.grid = write(map_grid_csv(document), "map.csv");
+  files.grid = write(map_grid_csv(document), "tune_map.csv");
   Figure figure = map_figure(document, files, MapColour::growth);
+  figure.name = "tune_map";
   std::string marks = "set colorbox vertical default\n";
   for (const int t : {0, 1})
     marks += fmt::format(
@@ -216,6 +211,12 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
 
 }  // namespace
 
+std::vector<double> evenly(double from, double to, int count) {
+  std::vector<double> values;
+  for (int k = 0; k < count; ++k) values.push_back(k + 1 == count ? to : from + (to - from) * k / (count - 1));
+  return values;
+}
+
 void write_curves(const TuneTask& task, const TuneResult& result, const Scene& scene, OutputFolder& folder) {
   for (const bool after : {false, true}) {
     const CsvFile csv = curves_csv(task, after ? *result.curves_after : *result.curves_before, scene, after);
@@ -224,12 +225,13 @@ void write_curves(const TuneTask& task, const TuneResult& result, const Scene& s
 }
 
 std::vector<Figure> tune_figures(const TuneTask& task, const TuneResult& result, const Scene& scene,
-                                 OutputFolder& folder) {
+                                 int num_threads, OutputFolder& folder) {
   if (task.span.from == task.span.to) return {};
   std::vector<Figure> figures = {curves_figure(task, result, scene)};
-  add_campbell(task, result, false, folder, figures);
-  add_campbell(task, result, true, folder, figures);
-  add_map(task, result, scene, folder, figures);
+  SharedWork work(num_threads);
+  add_campbell(task, result, false, work, folder, figures);
+  add_campbell(task, result, true, work, folder, figures);
+  add_map(task, result, scene, work, folder, figures);
   return figures;
 }
 

@@ -10,10 +10,13 @@
 
 namespace hb::tools {
 
+// Equally spaced values, both ends exact.
+[[nodiscard]] std::vector<double> evenly(double from, double to, int count);
+
 // Response and growth curves of both designs.
 void write_curves(const TuneTask& task, const TuneResult& result, const Scene& scene, OutputFolder& folder);
 // Writes the other tables. Empty at a single speed.
 [[nodiscard]] std::vector<Figure> tune_figures(const TuneTask& task, const TuneResult& result, const Scene& scene,
-                                               OutputFolder& folder);
+                                               int num_threads, OutputFolder& folder);
 
 }  // namespace hb::tools

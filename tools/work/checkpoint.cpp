@@ -2,21 +2,30 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 
 #include "tools/command/command.hpp"
+#include "tools/command/version.hpp"
 
 namespace hb::tools {
+namespace fs = std::filesystem;
 namespace {
 
-constexpr char magic[8] = {'h', 'b', 'p', 'a', 'r', 't', 's', '1'};
+constexpr char magic[8] = {'h', 'b', 'p', 'a', 'r', 't', 's', '2'};
+
+// The program that wrote it: its results may differ from those of another version.
+const std::string& program() {
+  static const std::string name = fmt::format("hb {}", version());
+  return name;
+}
 
 // One part: index, count, numbers, hash of all before.
 struct Head {
@@ -25,18 +34,33 @@ struct Head {
 
 std::uint64_t hash_of(const std::string& bytes) { return TaskKey().add(bytes).value(); }
 
-[[noreturn]] void fail(const std::filesystem::path& file, int reason) {
-  throw OutputError(fmt::format("{} cannot be written: {}", file.string(), std::strerror(reason)));
+[[noreturn]] void fail(const fs::path& file, int reason) {
+  throw OutputError(fmt::format("--out: {} cannot be written: {}", file.string(), std::strerror(reason)));
 }
 
-void write_all(int descriptor, const std::string& bytes, const std::filesystem::path& file) {
+[[noreturn]] void refuse_foreign(const fs::path& file) {
+  throw UsageError(
+      fmt::format("--out: {} was not written by hb, which keeps finished parts there; allowed: to move it away, or "
+                  "another folder",
+                  file.string()));
+}
+
+// 0 or the reason why not.
+int write_all(int descriptor, const std::string& bytes) {
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t written = ::write(descriptor, bytes.data() + done, bytes.size() - done);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(file, errno);
+    if (written < 0) return errno;
     done += static_cast<std::size_t>(written);
   }
+  return 0;
+}
+
+std::string contents(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw OutputError(fmt::format("--out: {} cannot be read", file.string()));
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 template <class Value>
@@ -51,11 +75,24 @@ Value value_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-volatile std::sig_atomic_t interrupt_seen = 0;
+// Magic, length and name of the program, key of the task.
+struct Header {
+  std::string program;
+  std::uint64_t key = 0;
+  std::size_t size = 0;
+};
 
-void on_interrupt(int signal) {
-  interrupt_seen = 1;
-  std::signal(signal, SIG_DFL);
+std::optional<Header> header_of(const std::string& bytes) {
+  constexpr std::size_t number = sizeof(std::uint64_t), most = 200;
+  if (bytes.size() < sizeof magic + 2 * number || std::memcmp(bytes.data(), magic, sizeof magic) != 0)
+    return std::nullopt;
+  const auto length = value_at<std::uint64_t>(bytes, sizeof magic);
+  if (length > most || bytes.size() < sizeof magic + 2 * number + length) return std::nullopt;
+  Header header;
+  header.program = bytes.substr(sizeof magic + number, length);
+  header.key = value_at<std::uint64_t>(bytes, sizeof magic + number + length);
+  header.size = sizeof magic + 2 * number + length;
+  return header;
 }
 
 }  // namespace
@@ -76,51 +113,86 @@ TaskKey& TaskKey::add(double number) {
   return *this;
 }
 
-Checkpoint::Checkpoint(std::filesystem::path file, std::uint64_t key, bool resume, const std::string& what)
-    : file_(std::move(file)) {
-  std::string kept;
-  if (resume) {
-    std::ifstream stream(file_, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    constexpr std::size_t header = sizeof(magic) + sizeof(key);
-    if (!bytes.empty()) {
-      if (bytes.size() < header || std::memcmp(bytes.data(), magic, sizeof(magic)) != 0 ||
-          value_at<std::uint64_t>(bytes, sizeof(magic)) != key) {
+Checkpoint::Checkpoint(fs::path file, std::uint64_t key, EarlierParts earlier) : file_(std::move(file)) {
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(file_, error);
+  if (fs::exists(status)) {
+    if (!fs::is_regular_file(status)) refuse_foreign(file_);
+    const std::string bytes = contents(file_);
+    const std::optional<Header> header = header_of(bytes);
+    if (!header) refuse_foreign(file_);
+    read(bytes);
+    if (earlier == EarlierParts::none && num_finished_ > 0) {
+      throw UsageError(
+          fmt::format("--out: {} holds {} finished parts of an interrupted run; allowed: --resume to go on with them, "
+                      "--restart to throw them away, or another folder",
+                      file_.string(), num_finished_));
+    }
+    if (earlier == EarlierParts::resume) {
+      if (header->program != program()) {
+        throw UsageError(fmt::format("--resume: {} was left by {}, allowed: parts of {}; --restart throws them away",
+                                     file_.string(), header->program, program()));
+      }
+      if (header->key != key) {
         throw UsageError(
-            fmt::format("--resume: {} belongs to another task, allowed: parts of {}", file_.string(), what));
+            fmt::format("--resume: {} belongs to another task, allowed: parts of the same scene and flags; "
+                        "--restart throws them away",
+                        file_.string()));
       }
-      std::size_t at = header;
-      while (bytes.size() - at >= sizeof(Head)) {
-        const auto head = value_at<Head>(bytes, at);
-        const std::size_t left = bytes.size() - at - sizeof(Head);
-        if (head.count > left / sizeof(double)) break;
-        const std::size_t length = sizeof(Head) + head.count * sizeof(double);
-        if (left < head.count * sizeof(double) + sizeof(std::uint64_t)) break;
-        if (value_at<std::uint64_t>(bytes, at + length) != hash_of(bytes.substr(at, length))) break;
-        std::vector<double> numbers(head.count);
-        std::memcpy(numbers.data(), bytes.data() + at + sizeof(Head), head.count * sizeof(double));
-        parts_[head.index] = std::move(numbers);
-        at += length + sizeof(std::uint64_t);
+      // Goes on in the same file: what is there stays whatever happens, and no room for a copy is needed.
+      descriptor_ = open(file_.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
+      if (descriptor_ < 0) fail(file_, errno);
+      if (ftruncate(descriptor_, static_cast<off_t>(good_bytes_)) != 0 || lseek(descriptor_, 0, SEEK_END) < 0) {
+        const int reason = errno;
+        close(descriptor_);
+        fail(file_, reason);
       }
-      kept = bytes.substr(0, at);
+      return;
     }
   }
-  if (kept.empty()) {
-    kept.assign(magic, sizeof(magic));
-    append(kept, key);
-  }
-  // Whole before it takes the old one's place.
-  const std::filesystem::path fresh = file_.string() + ".new";
-  descriptor_ = open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  parts_.clear();
+  num_finished_ = 0;
+  start_anew(key);
+}
+
+// Whole before it takes the old one's place.
+void Checkpoint::start_anew(std::uint64_t key) {
+  std::string bytes(magic, sizeof magic);
+  append(bytes, static_cast<std::uint64_t>(program().size()));
+  bytes += program();
+  append(bytes, key);
+  std::string fresh = file_.string() + "-XXXXXX";
+  descriptor_ = mkostemp(fresh.data(), O_CLOEXEC);
   if (descriptor_ < 0) fail(file_, errno);
-  try {
-    write_all(descriptor_, kept, file_);
-    if (std::rename(fresh.c_str(), file_.c_str()) != 0) fail(file_, errno);
-  } catch (...) {
+  const mode_t mask = umask(0);
+  umask(mask);
+  fchmod(descriptor_, 0666 & ~mask);
+  const int written = write_all(descriptor_, bytes);
+  if (written != 0 || std::rename(fresh.c_str(), file_.c_str()) != 0) {
+    const int reason = written != 0 ? written : errno;
     close(descriptor_);
-    std::remove(fresh.c_str());
-    throw;
+    unlink(fresh.c_str());
+    fail(file_, reason);
   }
+  good_bytes_ = bytes.size();
+}
+
+void Checkpoint::read(const std::string& bytes) {
+  std::size_t at = header_of(bytes)->size;
+  while (bytes.size() - at >= sizeof(Head)) {
+    const auto head = value_at<Head>(bytes, at);
+    const std::size_t left = bytes.size() - at - sizeof(Head);
+    if (head.count > left / sizeof(double)) break;
+    const std::size_t length = sizeof(Head) + head.count * sizeof(double);
+    if (left < head.count * sizeof(double) + sizeof(std::uint64_t)) break;
+    if (value_at<std::uint64_t>(bytes, at + length) != hash_of(bytes.substr(at, length))) break;
+    std::vector<double> numbers(head.count);
+    std::memcpy(numbers.data(), bytes.data() + at + sizeof(Head), head.count * sizeof(double));
+    parts_[head.index] = std::move(numbers);
+    at += length + sizeof(std::uint64_t);
+  }
+  num_finished_ = parts_.size();
+  good_bytes_ = at;
 }
 
 Checkpoint::~Checkpoint() {
@@ -138,27 +210,28 @@ void Checkpoint::store(std::uint64_t index, const std::vector<double>& numbers) 
   bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
   append(bytes, hash_of(bytes));
   const std::lock_guard lock(mutex_);
-  write_all(descriptor_, bytes, file_);
+  const int reason = write_all(descriptor_, bytes);
+  if (reason == 0) {
+    good_bytes_ += bytes.size();
+    ++num_finished_;
+    return;
+  }
+  // The next one follows the last whole one.
+  const bool back =
+      ftruncate(descriptor_, static_cast<off_t>(good_bytes_)) == 0 && lseek(descriptor_, 0, SEEK_END) >= 0;
+  if (!complained_) {
+    fmt::print(stderr, "hb: {} cannot be written: {}; the work goes on, parts from here on are not kept\n",
+               file_.string(), std::strerror(reason));
+  }
+  complained_ = true;
+  if (!back) fail(file_, errno);
 }
 
 void Checkpoint::remove() {
   close(descriptor_);
   descriptor_ = -1;
   std::error_code ignored;
-  std::filesystem::remove(file_, ignored);
+  fs::remove(file_, ignored);
 }
-
-InterruptGuard::InterruptGuard() {
-  interrupt_seen = 0;
-  std::signal(SIGINT, on_interrupt);
-  std::signal(SIGTERM, on_interrupt);
-}
-
-InterruptGuard::~InterruptGuard() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
-}
-
-bool interrupted() { return interrupt_seen != 0; }
 
 }  // namespace hb::tools

@@ -24,40 +24,43 @@ class TaskKey {
   std::uint64_t hash_ = 14695981039346656037ull;
 };
 
+enum class EarlierParts {
+  none,  // a fresh start; finished parts that are there are not touched
+  resume,  // go on with them
+  restart,  // throw them away
+};
+
 class Checkpoint {
  public:
-  // `resume`: reads what an earlier run left, throws UsageError if it belongs to another task (`what` names it: "this
-  // scene and these flags"); else starts anew. A part cut short by the kill is dropped. Throws OutputError when the
-  // file cannot be written.
-  Checkpoint(std::filesystem::path file, std::uint64_t key, bool resume, const std::string& what);
+  // Throws UsageError where finished parts are in the way of a fresh start, where those to go on with belong to another
+  // task or to another version of hb, and where `file` is not of hb; OutputError when it cannot be written. A part cut
+  // short by a kill is dropped.
+  Checkpoint(std::filesystem::path file, std::uint64_t key, EarlierParts earlier);
   ~Checkpoint();
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
 
-  std::size_t num_finished() const { return parts_.size(); }
+  std::size_t num_finished() const { return num_finished_; }  // of both runs
   // Of the earlier run.
   [[nodiscard]] const std::vector<double>* find(std::uint64_t index) const;
-  // From any thread; on its way to the disk when this returns.
+  // From any thread; on its way to the disk when this returns. Where the disk is full the part is not kept, and the
+  // first such time said on standard error.
   void store(std::uint64_t index, const std::vector<double>& numbers);
-  // The work is complete: the file goes away.
+  // The work is complete and delivered: the file goes away.
   void remove();
   const std::filesystem::path& file() const { return file_; }
 
  private:
+  void read(const std::string& bytes);
+  void start_anew(std::uint64_t key);
+
   std::filesystem::path file_;
   int descriptor_ = -1;
   std::map<std::uint64_t, std::vector<double>> parts_;
+  std::size_t num_finished_ = 0;
+  std::size_t good_bytes_ = 0;  // of the file, up to the end of the last whole part
+  bool complained_ = false;
   std::mutex mutex_;
 };
-
-// While it lives, the first Ctrl-C or SIGTERM only raises a flag; the second ends the program as ever.
-class InterruptGuard {
- public:
-  InterruptGuard();
-  ~InterruptGuard();
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-};
-[[nodiscard]] bool interrupted();
 
 }  // namespace hb::tools

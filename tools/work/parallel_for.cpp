@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -46,7 +47,11 @@ bool parallel_for(std::size_t count, int num_threads, const std::function<void(s
   {
     std::vector<std::jthread> threads;
     const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(num_threads), count) - 1;
-    for (std::size_t t = 0; t < helpers; ++t) threads.emplace_back(run);
+    threads.reserve(helpers);
+    try {
+      for (std::size_t t = 0; t < helpers; ++t) threads.emplace_back(run);
+    } catch (const std::system_error&) {  // no more threads to be had: those that are there do it
+    }
     run();
   }
   if (error) std::rethrow_exception(error);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "tools/command/command.hpp"
+#include "tools/output/folder_lock.hpp"
 #include "tools/work/parallel_for.hpp"
 #include "tools/work/progress.hpp"
 #include "tools/work/ranks.hpp"
@@ -18,47 +19,46 @@ namespace {
 std::size_t parts_per_chunk(std::size_t count) { return std::clamp<std::size_t>(count / 100, 1, 64); }
 
 // Each part after its length.
-Part joined(const std::vector<Part>& parts, std::size_t from, std::size_t to) {
+Part joined(const Parts& parts, std::size_t from, std::size_t to) {
   Part numbers;
   for (std::size_t k = from; k < to; ++k) {
-    numbers.push_back(static_cast<double>(parts[k].size()));
-    numbers.insert(numbers.end(), parts[k].begin(), parts[k].end());
+    const Part part = parts.numbers(k);
+    numbers.push_back(static_cast<double>(part.size()));
+    numbers.insert(numbers.end(), part.begin(), part.end());
   }
   return numbers;
 }
 
-void split(const Part& numbers, std::vector<Part>& parts, std::size_t from, std::size_t to) {
+void split(const Part& numbers, const Parts& parts, std::size_t from, std::size_t to) {
   auto next = numbers.begin();
   for (std::size_t k = from; k < to; ++k) {
     if (next == numbers.end() || !(*next >= 0) || *next > static_cast<double>(numbers.end() - next - 1)) {
       throw std::out_of_range("part of a result: of another kind");
     }
     const auto size = static_cast<std::ptrdiff_t>(*next++);
-    parts[k].assign(next, next + size);
+    parts.take(k, Part(next, next + size));
     next += size;
   }
 }
 
-std::filesystem::path part_file(std::filesystem::path folder) {
-  if (!folder.has_filename()) folder = folder.parent_path();
-  return folder.string() + ".part";
-}
-
 }  // namespace
 
-std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
-                                    const std::function<Part(std::size_t)>& part) {
+void SharedWork::for_each(std::size_t count, const std::function<void(std::size_t)>& task) const {
+  parallel_for(count, num_threads_, task);
+}
+
+void SharedWork::step(const std::string& what, const Parts& parts) {
+  const std::size_t count = parts.count;
   const std::uint64_t step = step_++ << 32;
   const std::size_t chunk_size = parts_per_chunk(count);
-  std::vector<Part> all(count);
   Progress progress(what, count);
   const auto from = [&](std::size_t chunk) { return chunk * chunk_size; };
   const auto to = [&](std::size_t chunk) { return std::min(from(chunk) + chunk_size, count); };
   const auto compute = [&](std::size_t chunk) {
-    for (std::size_t k = from(chunk); k < to(chunk); ++k) all[k] = part(k);
+    for (std::size_t k = from(chunk); k < to(chunk); ++k) parts.compute(k);
   };
   const auto keep = [&](std::size_t chunk) {
-    if (kept_ != nullptr) kept_->store(step + chunk, joined(all, from(chunk), to(chunk)));
+    if (kept_ != nullptr) kept_->store(step + chunk, joined(parts, from(chunk), to(chunk)));
   };
   const std::size_t num_chunks = (count + chunk_size - 1) / chunk_size;
   if (ranks().size() == 1) {
@@ -66,7 +66,7 @@ std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
         num_chunks, num_threads_,
         [&](std::size_t chunk) {
           if (const Part* earlier = kept_ != nullptr ? kept_->find(step + chunk) : nullptr) {
-            split(*earlier, all, from(chunk), to(chunk));
+            split(*earlier, parts, from(chunk), to(chunk));
           } else {
             compute(chunk);
             keep(chunk);
@@ -75,13 +75,13 @@ std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
         },
         stop_);
     if (!complete) throw WorkStopped();
-    return all;
+    return;
   }
 
   // Messages between the ranks: a state, then chunk, length and numbers of each chunk.
   std::vector<bool> known(num_chunks, false);
   const auto add = [&](Part& message, std::size_t chunk) {
-    const Part numbers = joined(all, from(chunk), to(chunk));
+    const Part numbers = joined(parts, from(chunk), to(chunk));
     message.push_back(static_cast<double>(chunk));
     message.push_back(static_cast<double>(numbers.size()));
     message.insert(message.end(), numbers.begin(), numbers.end());
@@ -90,7 +90,7 @@ std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
     for (std::size_t next = 1; next < message.size();) {
       const auto chunk = static_cast<std::size_t>(message[next]), length = static_cast<std::size_t>(message[next + 1]);
       const auto start = message.begin() + static_cast<std::ptrdiff_t>(next) + 2;
-      split(Part(start, start + static_cast<std::ptrdiff_t>(length)), all, from(chunk), to(chunk));
+      split(Part(start, start + static_cast<std::ptrdiff_t>(length)), parts, from(chunk), to(chunk));
       known[chunk] = true;
       progress.advance(to(chunk) - from(chunk));
       next += 2 + length;
@@ -100,7 +100,7 @@ std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
   Part earlier = {running};
   for (std::size_t chunk = 0; kept_ != nullptr && chunk < num_chunks; ++chunk)
     if (const Part* found = kept_->find(step + chunk)) {
-      split(*found, all, from(chunk), to(chunk));
+      split(*found, parts, from(chunk), to(chunk));
       add(earlier, chunk);
     }
   take(ranks().gathered(earlier).front());
@@ -149,43 +149,64 @@ std::vector<Part> SharedWork::parts(const std::string& what, std::size_t count,
     if (other_failed) throw OtherRankFailed();
     if (stop) throw WorkStopped();
   }
-  return all;
 }
 
-bool run_kept(const std::string& command, const std::optional<std::filesystem::path>& out, bool resume,
-              std::uint64_t key, int num_threads, const std::function<void(SharedWork&)>& work) {
-  if (!out) {
-    if (resume) throw UsageError("--resume: found no --out, allowed: the folder of the run to go on with");
-    SharedWork unkept(num_threads);
-    work(unkept);
-    if (!ranks().first()) throw ShareDone();
-    return true;
+KeptRun::KeptRun(std::string command, const std::optional<std::filesystem::path>& out, EarlierParts earlier,
+                 std::uint64_t key, int num_threads)
+    : command_(std::move(command)), num_threads_(num_threads) {
+  if (!out || !ranks().first()) return;
+  checkpoint_.emplace(beside(*out, ".part"), key, earlier);
+  if (earlier == EarlierParts::resume)
+    fmt::print(stderr, "hb {}: {} finished parts found\n", command_, checkpoint_->num_finished());
+}
+
+KeptRun::~KeptRun() {
+  if (!checkpoint_) return;
+  if (checkpoint_->num_finished() == 0) {
+    checkpoint_->remove();
+    return;
   }
+  fmt::print(stderr, "hb {}: {} finished parts are kept in {}: the same command with --resume goes on\n", command_,
+             checkpoint_->num_finished(), checkpoint_->file().string());
+}
+
+bool KeptRun::run(const std::function<void(SharedWork&)>& work) {
   if (!ranks().first()) {
     const InterruptGuard guard;
-    SharedWork share(num_threads, nullptr, interrupted);
+    SharedWork share(num_threads_, nullptr, interrupted);
     work(share);
     throw ShareDone();
   }
-  Checkpoint checkpoint(part_file(*out), key, resume, "the same scene and flags");
-  if (resume) fmt::print(stderr, "hb {}: {} finished parts found\n", command, checkpoint.num_finished());
+  if (!checkpoint_) {
+    SharedWork unkept(num_threads_);
+    work(unkept);
+    return true;
+  }
   const InterruptGuard guard;
-  SharedWork kept(num_threads, &checkpoint, interrupted);
+  SharedWork kept(num_threads_, &*checkpoint_, interrupted);
   try {
     work(kept);
   } catch (const WorkStopped&) {
-    fmt::print(stderr, "hb {}: stopped; what is finished is kept in {}: the same command with --resume goes on\n",
-               command, checkpoint.file().string());
     return false;
   } catch (const std::out_of_range& error) {
     throw UsageError(fmt::format("--resume: {} cannot be read ({}), allowed: what the same version of hb left",
-                                 checkpoint.file().string(), error.what()));
-  } catch (...) {
-    checkpoint.remove();
-    throw;
+                                 checkpoint_->file().string(), error.what()));
   }
-  checkpoint.remove();
   return true;
+}
+
+void KeptRun::delivered() {
+  if (checkpoint_) checkpoint_->remove();
+  checkpoint_.reset();
+}
+
+EarlierParts earlier_parts_flag(bool resume, bool restart, bool out) {
+  if (resume && restart) throw UsageError("--restart: found beside --resume, allowed: one of the two");
+  if ((resume || restart) && !out) {
+    throw UsageError(fmt::format("--{}: found no --out, allowed: beside the folder of the interrupted run",
+                                 resume ? "resume" : "restart"));
+  }
+  return resume ? EarlierParts::resume : restart ? EarlierParts::restart : EarlierParts::none;
 }
 
 }  // namespace hb::tools

@@ -10,38 +10,23 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/boundaries/part.hpp"
+#include "hb/analysis/work.hpp"
 #include "tools/work/checkpoint.hpp"
+#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
-
-constexpr int exit_interrupted = 130;  // as shells report Ctrl-C
 
 // Thrown by SharedWork when `stop` said so: what is finished has been kept.
 struct WorkStopped {};
 
-class SharedWork {
+class SharedWork : public Work {
  public:
   // `kept`, if given, holds what an earlier run finished of the same steps in the same order.
   explicit SharedWork(int num_threads, Checkpoint* kept = nullptr, std::function<bool()> stop = {})
       : num_threads_(num_threads), kept_(kept), stop_(std::move(stop)) {}
 
-  // One step: part(0) .. part(count - 1).
-  std::vector<Part> parts(const std::string& what, std::size_t count, const std::function<Part(std::size_t)>& part);
-
-  // The same for results that visit(visitor, result) writes and reads as numbers.
-  template <class Result, class Visit>
-  std::vector<Result> results(const std::string& what, std::size_t count,
-                              const std::function<Result(std::size_t)>& compute, const Visit& visit) {
-    return computed_parts<Result>(of(what), count, compute, visit);
-  }
-
-  // For those who only know steps.
-  PartsOf of(std::string what) {
-    return [this, what = std::move(what)](std::size_t count, const std::function<Part(std::size_t)>& part) {
-      return parts(what, count, part);
-    };
-  }
+  void for_each(std::size_t count, const std::function<void(std::size_t)>& task) const override;
+  void step(const std::string& what, const Parts& parts) override;
 
  private:
   int num_threads_;
@@ -50,10 +35,29 @@ class SharedWork {
   std::uint64_t step_ = 0;
 };
 
-// Runs `work`, a subcommand's, with what it finishes kept in a file beside the folder `out` until all of it is done;
-// `resume`: goes on with what an interrupted run of the same `key` left there. No folder: nothing is kept. False if
-// Ctrl-C or SIGTERM ended it early.
-bool run_kept(const std::string& command, const std::optional<std::filesystem::path>& out, bool resume,
-              std::uint64_t key, int num_threads, const std::function<void(SharedWork&)>& work);
+// A subcommand's long work, with what it finishes kept in a file beside the folder `out` until the answer is delivered.
+class KeptRun {
+ public:
+  // Throws as Checkpoint does. No folder: nothing is kept.
+  KeptRun(std::string command, const std::optional<std::filesystem::path>& out, EarlierParts earlier, std::uint64_t key,
+          int num_threads);
+  // Says where finished parts are, unless they were delivered.
+  ~KeptRun();
+  KeptRun(const KeptRun&) = delete;
+  KeptRun& operator=(const KeptRun&) = delete;
+
+  // False if Ctrl-C or SIGTERM ended it early.
+  [[nodiscard]] bool run(const std::function<void(SharedWork&)>& work);
+  // The answer is in its place: the parts go.
+  void delivered();
+
+ private:
+  std::string command_;
+  int num_threads_;
+  std::optional<Checkpoint> checkpoint_;
+};
+
+// --resume and --restart.
+[[nodiscard]] EarlierParts earlier_parts_flag(bool resume, bool restart, bool out);
 
 }  // namespace hb::tools

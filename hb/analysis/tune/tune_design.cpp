@@ -10,10 +10,8 @@
 
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/design/worst_case.hpp"
-#include "tools/command/command.hpp"
-#include "tools/work/parallel_for.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 using std::numbers::pi;
 
@@ -33,6 +31,7 @@ struct DesignAnalysis::Sample {
   std::vector<double> deflection, moment;  // by rod
   std::vector<double> forces;  // by joint; empty: not computed
   double ripple = nan;
+  std::vector<double> theory;  // by rod; empty: not computed
   std::vector<double> growth;  // by rod; empty: not computed
 };
 
@@ -44,8 +43,13 @@ struct DesignAnalysis::Curve {
 };
 
 DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
-                               SectionHeights heights, std::vector<RequiredDecay> required)
-    : model_(model), settings_(settings), span_(span), heights_(std::move(heights)), required_(std::move(required)) {
+                               SectionHeights heights, const Work& work, std::vector<RequiredDecay> required)
+    : model_(model),
+      settings_(settings),
+      span_(span),
+      heights_(std::move(heights)),
+      work_(work),
+      required_(std::move(required)) {
   required_.insert(required_.begin(), RequiredDecay{});
   const int count = span.from == span.to ? 1 : std::max(2, span.num_nodes);
   for (int k = 0; k < count; ++k) {
@@ -92,7 +96,7 @@ void DesignAnalysis::place_nodes() {
 
 void DesignAnalysis::respond() {
   place_nodes();
-  parallel_for(nodes_.size(), settings_.threads, [&](std::size_t k) {
+  work_.for_each(nodes_.size(), [&](std::size_t k) {
     Sample& node = *nodes_[k];
     if (!node.deflection.empty()) return;
     node.deflection.assign(model_.rods.size(), nan);
@@ -114,7 +118,7 @@ void DesignAnalysis::respond() {
 void DesignAnalysis::need_forces() {
   respond();
   const std::size_t joints = forces_of(model_, nodes_.front()->speed, {}).joints.size();
-  parallel_for(nodes_.size(), settings_.threads, [&](std::size_t k) {
+  work_.for_each(nodes_.size(), [&](std::size_t k) {
     Sample& node = *nodes_[k];
     if (!node.forces.empty()) return;
     node.forces.assign(joints, nan);
@@ -125,6 +129,16 @@ void DesignAnalysis::need_forces() {
   });
 }
 
+void DesignAnalysis::need_theory() {
+  respond();
+  work_.for_each(nodes_.size(), [&](std::size_t k) {
+    Sample& node = *nodes_[k];
+    if (!node.theory.empty()) return;
+    node.theory = node.q.size() == model_.rods.size() ? theory_of(model_, node.speed, node.q)
+                                                      : std::vector<double>(model_.rods.size(), nan);
+  });
+}
+
 void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
   place_nodes();
@@ -132,7 +146,7 @@ void DesignAnalysis::find_instabilities() {
   StabilityOptions all_exponents;
   all_exponents.method = settings_.stability_method;
   std::vector<std::vector<Stability>> known(num_nodes);  // by node and rod
-  parallel_for(num_nodes, settings_.threads, [&](std::size_t k) {
+  work_.for_each(num_nodes, [&](std::size_t k) {
     for (const RodModel& rod : model_.rods) {
       known[k].push_back(analyse_stability(scale_system(rod.system, nodes_[k]->speed), all_exponents));
       nodes_[k]->growth.push_back(growth_of(known[k].back()));
@@ -154,7 +168,7 @@ void DesignAnalysis::find_instabilities() {
       const SystemAt at = [&](double speed) {
         return std::optional<ScaledSystem>(scale_system(shifted(rod.system, required.at(speed)), speed));
       };
-      parallel_for(num_nodes - 1, settings_.threads, [&](std::size_t k) {
+      work_.for_each(num_nodes - 1, [&](std::size_t k) {
         const SearchedInterval interval =
             search_interval(at, samples[k], samples[k + 1], k > 0 ? &samples[k - 1] : nullptr,
                             k + 2 < num_nodes ? &samples[k + 2] : nullptr, options);
@@ -186,12 +200,12 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
     if (metric.name.empty() || metric.name == name) curves.push_back({metric.kind, index, factor, name});
   };
   const bool needs_linkage = metric.kind == MetricKind::stress || metric.kind == MetricKind::force ||
-                             metric.kind == MetricKind::torque_ripple || metric.kind == MetricKind::mass;
+                             metric.kind == MetricKind::torque_ripple || metric.kind == MetricKind::mass ||
+                             metric.kind == MetricKind::theory;
   if (needs_linkage && !model_.linkage())
-    throw UsageError(
-        fmt::format("{}: found in a [hill] scene, which has no links; allowed there: deflection, stable, "
-                    "frequency, clearance",
-                    metric.text));
+    throw RequestError(metric.text, "a [hill] scene", "deflection, stable, frequency, clearance",
+                       "found in a [hill] scene, which has no links; allowed there: deflection, stable, frequency, "
+                       "clearance");
   switch (metric.kind) {
     case MetricKind::force: {
       const JointForces forces = forces_of(model_, nodes_.front()->speed, {});
@@ -212,7 +226,7 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
       }
   }
   if (curves.empty())
-    throw UsageError(fmt::format("{}: found no \"{}\", allowed: {}", metric.text, metric.name, fmt::join(names, ", ")));
+    throw RequestError(metric.text, fmt::format("no \"{}\"", metric.name), fmt::format("{}", fmt::join(names, ", ")));
   return curves;
 }
 
@@ -227,6 +241,8 @@ double DesignAnalysis::at_node(const Curve& curve, std::size_t node) {
       return curve.factor * sample.forces[curve.index];
     case MetricKind::torque_ripple:
       return curve.factor * sample.ripple;
+    case MetricKind::theory:
+      return sample.theory[curve.index];
     case MetricKind::margin:
       return sample.growth[curve.index];
     case MetricKind::margin_per_turn:
@@ -247,6 +263,7 @@ double DesignAnalysis::at(const Curve& curve, double speed) {
       return curve.factor *
              (curve.kind == MetricKind::stress ? shape.bending_moment.max_abs : shape.deflection.max_abs);
     }
+    case MetricKind::theory:
     case MetricKind::force:
     case MetricKind::torque_ripple: {
       std::vector<FourierSeries> all;
@@ -255,6 +272,7 @@ double DesignAnalysis::at(const Curve& curve, double speed) {
         if (!q) return nan;
         all.push_back(std::move(*q));
       }
+      if (curve.kind == MetricKind::theory) return theory_of(model_, speed, all)[curve.index];
       const JointForces forces = forces_of(model_, speed, all);
       if (curve.kind == MetricKind::force) return curve.factor * joint_quantities(forces).force[curve.index];
       const Range torque = fourier::range(forces.torque, 0);
@@ -343,6 +361,8 @@ MetricValue DesignAnalysis::value(const Metric& metric) {
     find_instabilities();
   } else if (metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple) {
     need_forces();
+  } else if (metric.kind == MetricKind::theory) {
+    need_theory();
   } else {
     respond();
   }
@@ -374,4 +394,4 @@ DesignCurves DesignAnalysis::curves() {
   return result;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

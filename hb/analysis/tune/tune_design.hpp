@@ -10,8 +10,9 @@
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 #include "hb/analysis/tune/tune_quantities.hpp"
+#include "hb/analysis/work.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 // Decay that a condition asks for, 1/time or per turn.
 struct RequiredDecay {
@@ -30,13 +31,13 @@ struct DesignCurves {
 
 class DesignAnalysis {
  public:
-  // Keeps references to both. Bands of instability, and those that decay slower than required, are looked for also
+  // Keeps references to model, settings and work. Bands of instability, and those that decay slower than required, are looked for also
   // where narrow.
   DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span, SectionHeights heights,
-                 std::vector<RequiredDecay> required = {});
+                 const Work& work, std::vector<RequiredDecay> required = {});
   ~DesignAnalysis();
 
-  // Throws UsageError for a name that the scene does not have.
+  // Throws RequestError for a name that the scene does not have.
   [[nodiscard]] MetricValue value(const Metric& metric);
   [[nodiscard]] DesignCurves curves();
 
@@ -52,15 +53,17 @@ class DesignAnalysis {
   // At all nodes that do not have it yet.
   void respond();
   void need_forces();
+  void need_theory();
   void find_instabilities();  // adds nodes in narrow bands
 
   const SceneModel& model_;
   const Settings& settings_;
   SpeedSpan span_;
   SectionHeights heights_;
+  const Work& work_;
   std::vector<RequiredDecay> required_;  // begins with none at all
   std::vector<std::unique_ptr<Sample>> nodes_;  // ascending speed
   bool placed_ = false;
 };
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -11,7 +11,7 @@
 #include "lib/rod/rod_functional.hpp"
 #include "hb/analysis/tune/tune_quantities.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 using Eigen::Index;
@@ -217,6 +217,8 @@ OptionalVector metric_gradient(Neighbourhood& near, const Metric& metric, const 
       return clearance_gradient(near, metric, value);
     case MetricKind::speed_range:
       return VectorXd(VectorXd::Zero(near.x().size()));
+    case MetricKind::theory:
+      return std::nullopt;  // by differences of whole analyses
     case MetricKind::mass:
       return near.gradient([&](const Neighbour& other, const VectorXd&) { return mass_of(other.model, metric.name); });
     case MetricKind::frequency:
@@ -245,4 +247,4 @@ std::optional<MatrixXd> metric_gradients(const DesignFamily& family, const std::
   return result;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -5,6 +5,7 @@
 //   margin                 right and left Floquet vectors
 //   joint force, torque    derivative of q by one linear solution per variable, through the linear force map
 //   mass, frequency, clearance   closed form of the coefficients
+//   theory error           none: the whole analysis is differenced
 #pragma once
 
 #include <functional>
@@ -14,7 +15,7 @@
 #include "hb/analysis/tune/tune_design.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 struct DesignFamily {
   std::function<SceneModel(const std::vector<double>& x)> model;  // may throw SceneError
@@ -29,4 +30,4 @@ struct DesignFamily {
                                                               const std::vector<Metric>& metrics,
                                                               const std::vector<MetricValue>& values);
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -5,28 +5,29 @@
 #include <charconv>
 #include <cmath>
 
-#include "tools/command/command.hpp"
+#include "hb/analysis/request.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 constexpr const char* metric_words =
-    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], frequency[:ROD], stable, clearance[:N], "
-    "speed-range";
+    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD], frequency[:ROD], stable, "
+    "clearance[:N], speed-range";
 
-constexpr const char* small_words = "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD]";
+constexpr const char* small_words = "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD]";
 constexpr const char* large_words = "stable (the margin), frequency[:ROD], clearance[:N], speed-range";
 
-// What may stand behind a flag.
-const char* words_of(const std::string& flag) {
-  return flag == "--minimise" ? small_words : flag == "--maximise" ? large_words : metric_words;
+// What may stand in a field of the request.
+const char* words_of(const std::string& field) {
+  return field == "minimise" ? small_words : field == "maximise" ? large_words : metric_words;
 }
 
 constexpr double largest_weight = 1e100;  // so that no sum overflows
 
-[[noreturn]] void refuse(const char* flag, const std::string& text, const std::string& why,
+[[noreturn]] void refuse(const char* field, const std::string& text, const std::string& why,
                          const std::string& allowed) {
-  throw UsageError(fmt::format("{}: found \"{}\", {}; allowed: {}", flag, text, why, allowed));
+  throw RequestError(field, fmt::format("\"{}\"", text), allowed,
+                     fmt::format("found \"{}\", {}; allowed: {}", text, why, allowed));
 }
 
 std::optional<double> number(const std::string& text) {
@@ -43,14 +44,14 @@ std::string without_blanks(const std::string& text) {
   return result;
 }
 
-Metric parse_metric(const char* flag, const std::string& whole, const std::string& text) {
+Metric parse_metric(const char* field, const std::string& whole, const std::string& text) {
   const std::size_t colon = text.find(':');
   const std::string word = text.substr(0, colon);
   Metric metric;
   metric.text = text;
   if (colon != std::string::npos) {
     metric.name = text.substr(colon + 1);
-    if (metric.name.empty()) refuse(flag, whole, "with nothing behind the colon", words_of(flag));
+    if (metric.name.empty()) refuse(field, whole, "with nothing behind the colon", words_of(field));
   }
   bool named = true;
   if (word == "deflection") {
@@ -61,6 +62,8 @@ Metric parse_metric(const char* flag, const std::string& whole, const std::strin
     metric.kind = MetricKind::force;
   } else if (word == "mass") {
     metric.kind = MetricKind::mass;
+  } else if (word == "theory") {
+    metric.kind = MetricKind::theory;
   } else if (word == "frequency") {
     metric.kind = MetricKind::frequency;
   } else if (word == "torque-ripple") {
@@ -77,15 +80,15 @@ Metric parse_metric(const char* flag, const std::string& whole, const std::strin
     if (!metric.name.empty()) {
       const std::optional<double> orders = number(metric.name);
       if (!orders || *orders != std::floor(*orders) || !(*orders >= 1 && *orders <= 100))
-        refuse(flag, whole, "whose orders are no integer from 1 to 100", "clearance:N");
+        refuse(field, whole, "whose orders are no integer from 1 to 100", "clearance:N");
       metric.orders = static_cast<int>(*orders);
       metric.name.clear();
     }
   } else {
-    refuse(flag, whole, fmt::format("where \"{}\" is unknown", word), words_of(flag));
+    refuse(field, whole, fmt::format("where \"{}\" is unknown", word), words_of(field));
   }
   if (!named && !metric.name.empty())
-    refuse(flag, whole, fmt::format("where \"{}\" stands behind {}", metric.name, word), words_of(flag));
+    refuse(field, whole, fmt::format("where \"{}\" stands behind {}", metric.name, word), words_of(field));
   return metric;
 }
 
@@ -109,15 +112,15 @@ Goal parse_goal(const std::string& text) {
     if (star != std::string::npos) {
       const std::optional<double> weight = number(part.substr(0, star));
       if (!weight || !(*weight >= 1 / largest_weight && *weight <= largest_weight))
-        refuse("--minimise", text, "with a weight that is no number from 1e-100 to 1e100", "0.7*deflection+0.3*mass");
+        refuse("minimise", text, "with a weight that is no number from 1e-100 to 1e100", "0.7*deflection+0.3*mass");
       term.weight = *weight;
       goal.weighted = true;
     }
-    if (part.empty()) refuse("--minimise", text, "with an empty term", small_words);
-    term.metric = parse_metric("--minimise", text, part.substr(star == std::string::npos ? 0 : star + 1));
+    if (part.empty()) refuse("minimise", text, "with an empty term", small_words);
+    term.metric = parse_metric("minimise", text, part.substr(star == std::string::npos ? 0 : star + 1));
     if (better_large(term.metric.kind))
-      refuse("--minimise", text, fmt::format("where {} is better large", term.metric.text),
-             "deflection, stress, force, torque-ripple, mass; the others behind --maximise or --keep");
+      refuse("minimise", text, fmt::format("where {} is better large", term.metric.text),
+             "deflection, stress, force, torque-ripple, mass, theory; the others behind @maximise or @keep");
     goal.terms.push_back(std::move(term));
     if (end == std::string::npos) break;
     begin = end + 1;
@@ -130,10 +133,10 @@ Goal parse_largest_goal(const std::string& text) {
   Goal goal;
   goal.text = text;
   goal.maximise = true;
-  goal.terms.push_back({1, parse_metric("--maximise", text, without_blanks(text))});
+  goal.terms.push_back({1, parse_metric("maximise", text, without_blanks(text))});
   if (!better_large(goal.terms[0].metric.kind))
-    refuse("--maximise", text, "which is better small",
-           "stable (the margin), frequency, clearance, speed-range; the others behind --minimise");
+    refuse("maximise", text, "which is better small",
+           "stable (the margin), frequency, clearance, speed-range; the others behind @minimise");
   return goal;
 }
 
@@ -143,11 +146,11 @@ Keep parse_keep(const std::string& text) {
   const std::string dense = without_blanks(text);
   const std::size_t less = dense.find("<="), more = dense.find(">=");
   const std::size_t sign = std::min(less, more);
-  keep.metric = parse_metric("--keep", text, dense.substr(0, sign));
+  keep.metric = parse_metric("keep", text, dense.substr(0, sign));
   keep.at_least = more < less;
   if (sign == std::string::npos) {
     if (keep.metric.kind != MetricKind::margin)
-      refuse("--keep", text, "without a bound", "stable, or QUANTITY<=NUMBER, QUANTITY>=NUMBER");
+      refuse("keep", text, "without a bound", "stable, or QUANTITY<=NUMBER, QUANTITY>=NUMBER");
     keep.at_least = true;
     return keep;
   }
@@ -160,9 +163,9 @@ Keep parse_keep(const std::string& text) {
   const std::optional<double> value = number(bound);
   const bool may_be_zero = is_margin(keep.metric) || keep.metric.kind == MetricKind::clearance;
   if (!value || !(may_be_zero ? *value >= 0 : *value > 0))
-    refuse("--keep", text, fmt::format("where \"{}\" is no number {} 0", bound, may_be_zero ? ">=" : ">"), "a bound");
+    refuse("keep", text, fmt::format("where \"{}\" is no number {} 0", bound, may_be_zero ? ">=" : ">"), "a bound");
   if (better_large(keep.metric.kind) != keep.at_least)
-    refuse("--keep", text, "which keeps nothing good",
+    refuse("keep", text, "which keeps nothing good",
            better_large(keep.metric.kind) ? ">= with this quantity" : "<= with this quantity");
   keep.bound = *value;
   return keep;
@@ -201,6 +204,7 @@ std::string unit_of(MetricKind kind, const Units& units) {
       return "1/" + units.time;
     case MetricKind::margin_per_turn:
       return "per turn";
+    case MetricKind::theory:
     case MetricKind::clearance:
       return "";
     case MetricKind::speed_range:
@@ -209,4 +213,4 @@ std::string unit_of(MetricKind kind, const Units& units) {
   return "";
 }
 
-}  // namespace hb::tools
+}  // namespace hb

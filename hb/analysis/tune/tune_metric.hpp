@@ -1,5 +1,5 @@
-// What `hb tune` can minimise and keep: quantities of a design that are one number each, the worst over the speed
-// range, and their notation on the command line.
+// What a design can be chosen by: quantities that are one number each, the worst over the speed range, and their
+// notation.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 #include "lib/scene/scene.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 enum class MetricKind {
   deflection,  // largest |w| over rod, turn and speeds
@@ -19,6 +19,7 @@ enum class MetricKind {
   frequency,  // lowest natural frequency at rest
   margin,  // decay rate of the slowest disturbance: minus the largest growth rate
   margin_per_turn,
+  theory,  // theory error of q (theory_error.hpp); where it has no value, 1 + the largest slope
   clearance,  // distance of omega_1/(n Omega) from 1 over all speeds, n = 1..orders; negative inside
   speed_range,  // last minus first speed
 };
@@ -51,7 +52,7 @@ struct Keep {
   std::string text;
 };
 
-// Throw UsageError naming flag, text and what is allowed.
+// Throw RequestError for the field minimise, maximise or keep.
 [[nodiscard]] Goal parse_goal(const std::string& text);  // "deflection", "0.7*deflection+0.3*mass"
 [[nodiscard]] Goal parse_largest_goal(const std::string& text);  // "stable", "speed-range"
 [[nodiscard]] Keep parse_keep(const std::string& text);  // "stable", "stable>=5", "stable>=0.1/turn", "force:B<=200"
@@ -63,4 +64,4 @@ struct Keep {
 // Scene's length and mass; N, N m, MPa, Hz, rpm.
 [[nodiscard]] std::string unit_of(MetricKind kind, const Units& units);
 
-}  // namespace hb::tools
+}  // namespace hb

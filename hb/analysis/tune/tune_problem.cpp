@@ -8,9 +8,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "tools/command/command.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 constexpr int verification = 4;  // times the speeds of the search
@@ -47,10 +46,9 @@ std::vector<double> numbers_of(const std::vector<MetricValue>& values) {
 
 class Tuner {
  public:
-  explicit Tuner(const TuneTask& task) : task_(task), settings_(task.settings) {
-    bool forces = std::ranges::any_of(task.goal.terms, [](const GoalTerm& term) { return needs_forces(term.metric); });
-    for (const Keep& keep : task.keeps) forces = forces || needs_forces(keep.metric);
-    settings_.only = {false, true, forces, false};
+  Tuner(const TuneTask& task, const Work& work) : task_(task), work_(work), settings_(task.settings) {
+    // Joint forces and the theory error, which is always reported, need every rod.
+    settings_.only = {false, true, true, false};
     start_ = start_of(task);
     for (const TuneVariable& variable : task.variables) {
       lower_.push_back(variable.lower);
@@ -103,7 +101,7 @@ class Tuner {
 
   DesignSpace space_of(DesignSpace::At overrides, DesignSpace::SpanAt span) {
     return {task_.source,    settings_,        task_.heights,     std::move(overrides),
-            std::move(span), aims_->metrics(), aims_->required(), counts_};
+            std::move(span), aims_->metrics(), aims_->required(), counts_,           work_};
   }
 
   // The worst cases on more speeds, with the errors of their values, and with the modes needed at this design. Where
@@ -183,9 +181,9 @@ class Tuner {
       return optimise(watched, options);
     } catch (const std::invalid_argument&) {
       if (any) throw;
-      throw UsageError(
-          "--vary: found no design within the bounds that closes and has a periodic solution over all these "
-          "speeds; allowed: bounds and speeds with some");
+      throw RequestError("vary", "no design", "bounds and speeds with some",
+                         "found no design within the bounds that closes and has a periodic solution over all these "
+                         "speeds; allowed: bounds and speeds with some");
     }
   }
 
@@ -239,8 +237,11 @@ class Tuner {
       if (std::ranges::find(shown, keep.metric) == shown.end()) shown.push_back(keep.metric);
     std::vector<MetricKind> more = {MetricKind::deflection, MetricKind::margin};
     const Scene scene = scene_at(start_);
-    if (std::holds_alternative<Linkage>(scene.model)) more.push_back(MetricKind::mass);
-    const char* const words[] = {"deflection", "stable", "mass"};
+    if (const auto* linkage = std::get_if<Linkage>(&scene.model)) {
+      more.push_back(MetricKind::mass);
+      if (!elastic_links(*linkage).empty()) more.push_back(MetricKind::theory);
+    }
+    const char* const words[] = {"deflection", "stable", "mass", "theory"};
     for (std::size_t k = 0; k < more.size(); ++k) {
       const Metric metric{more[k], "", 1, words[k]};
       if (std::ranges::find(shown, metric) == shown.end()) shown.push_back(metric);
@@ -332,14 +333,13 @@ class Tuner {
     const Scene scene = task_.source.with(tuned);
     const auto* linkage = std::get_if<Linkage>(&scene.model);
     if (!linkage || !(std::abs(result.goal_after) > 0)) return;
+    const SceneSource as_tuned(task_.source.text_with(tuned), "tuned scene", ".");
     DesignSpace space = space_of(
         [&](const std::vector<double>& factor) {
           std::vector<Override> overrides = tuned;
-          for (const int link : elastic_links(*linkage)) {
-            const Body& body = *body_at(*linkage, link);
-            if (body.elastic->internal_damping > 0)
-              overrides.push_back(
-                  number_override(body.name + ".damping_internal", factor[0] * body.elastic->internal_damping));
+          for (const std::string& path : as_tuned.damping_paths()) {
+            if (const double value = as_tuned.value(path); value > 0)
+              overrides.push_back(number_override(path, factor[0] * value));
           }
           return overrides;
         },
@@ -385,6 +385,7 @@ class Tuner {
   }
 
   const TuneTask& task_;
+  const Work& work_;
   Settings settings_;
   std::vector<double> start_, lower_, upper_;
   std::unique_ptr<DesignAims> aims_;
@@ -442,6 +443,6 @@ std::vector<double> start_of(const TuneTask& task) {
   return x;
 }
 
-TuneResult tune(const TuneTask& task) { return Tuner(task).run(); }
+TuneResult tune(const TuneTask& task, const Work& work) { return Tuner(task, work).run(); }
 
-}  // namespace hb::tools
+}  // namespace hb

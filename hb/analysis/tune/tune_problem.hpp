@@ -1,4 +1,4 @@
-// `hb tune` as a constrained minimisation: from scene numbers to goal and conditions, and what came of it.
+// Design as a constrained minimisation: from scene numbers to goal and conditions, and what came of it.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 #include "hb/analysis/tune/tune_metric.hpp"
 #include "hb/analysis/tune/tune_space.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 // A number that follows a variable: factor times it.
 struct TiedNumber {
@@ -38,7 +38,7 @@ struct TuneTask {
   SpeedSpan span;
   bool in_rpm = true;  // how speeds are given and shown
   double speed_unit = 1;  // rad per unit time in one of those
-  std::map<std::string, double> heights;  // given by flag
+  std::map<std::string, double> heights;  // given beside the scene
   Settings settings;
   DesignOptions options;
 };
@@ -110,7 +110,7 @@ struct StartChange {
 
 [[nodiscard]] std::vector<double> start_of(const TuneTask& task);
 
-// Throws UsageError and SceneError for what cannot be at the start.
-[[nodiscard]] TuneResult tune(const TuneTask& task);
+// Throws RequestError and SceneError for what cannot be at the start.
+[[nodiscard]] TuneResult tune(const TuneTask& task, const Work& work);
 
-}  // namespace hb::tools
+}  // namespace hb

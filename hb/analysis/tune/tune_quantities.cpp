@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -12,9 +13,8 @@
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "lib/rod/rod_functional.hpp"
-#include "tools/command/command.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 std::optional<FourierSeries> rod_response(const RodModel& rod, double speed, const Settings& settings) {
   SteadyOptions options;
@@ -43,8 +43,8 @@ double stress_factor(const SceneModel& model, const RodModel& rod, const Section
   const auto named = heights.find(rod.name), all = heights.find("*");
   const auto height = named != heights.end() ? named : all;
   if (height == heights.end())
-    throw UsageError(fmt::format("{}: found no section height of {}, allowed: --height {}=H, or a section in the scene",
-                                 metric.text, rod.name, rod.name));
+    throw RequestError(metric.text, fmt::format("no section height of {}", rod.name),
+                       fmt::format("@height {}=H, or a section in the scene", rod.name));
   const Units& units = model.scene.units;
   const double pascal = units.force_in_newton() / (units.length_in_m * units.length_in_m);
   return height->second / (2 * body_at(*model.linkage(), rod.link)->elastic->second_moment) * pascal * 1e-6;
@@ -84,6 +84,21 @@ JointQuantities joint_quantities(const JointForces& forces) {
   return result;
 }
 
+std::vector<double> theory_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q) {
+  std::vector<LinearRod> linear;
+  std::vector<Eigen::Index> modes;
+  for (std::size_t r = 0; r < q.size(); ++r) {
+    linear.push_back({&model.rods[r].system, &q[r]});
+    modes.push_back(model.rods[r].system.num_modes());
+  }
+  std::optional<ExactModel> own;
+  if (!model.exact) own.emplace(theory_model(*model.linkage(), modes));
+  const TheoryErrors errors = theory_errors(own ? *own : *model.exact, speed, linear);
+  std::vector<double> values;
+  for (const TheoryErrors::Rod& rod : errors.rods) values.push_back(rod.q.value_or(1 + errors.steepest));
+  return values;
+}
+
 // Its exponents are those of q plus m:   M p'' + (B - 2 m M) p' + (C - m B + m^2 M) p
 HillSystem shifted(const HillSystem& system, double m) {
   HillSystem result = system;
@@ -101,6 +116,8 @@ Stability shifted(Stability stability, double m) {
   for (Exponent& exponent : stability.exponents) exponent.value += m;
   for (Exponent& exponent : stability.uncertain) exponent.value += m;
   stability.growth_rate += m;
+  stability.growth_low += m;
+  stability.growth_high += m;
   const double low = stability.growth_rate - stability.growth_error, high = growth_of(stability);
   stability.verdict = high < 0 ? Verdict::stable : low > 0 ? Verdict::unstable : Verdict::undecided;
   return stability;
@@ -242,6 +259,22 @@ void complete_force(MetricValue& value, const SpeedResult& at, bool torque) {
   value.error = std::numbers::sqrt2 * (errors.force + errors.force_cut) * size * value.factor;
 }
 
+// What more modes change of the theory error of a rod.
+double theory_error_of_modes(const SceneModel& model, std::size_t rod, double speed, const Settings& settings) {
+  Settings asked = settings;
+  asked.only = {false, false, true, false};
+  asked.rods.clear();
+  const auto value = [&](Eigen::Index modes) {
+    asked.modes = static_cast<int>(modes);
+    const SceneModel other = make_model(model.scene, asked);
+    std::vector<FourierSeries> q;
+    for (const RodModel& each : other.rods) q.push_back(rod_response(each, speed, asked).value_or(FourierSeries()));
+    return theory_of(other, speed, q)[rod];
+  };
+  const Eigen::Index I = model.rods[rod].system.num_modes();
+  return safety * std::abs(value(std::min<Eigen::Index>(comparison_modes(I), max_modes)) - value(I));
+}
+
 // What its error bar and the modes left out may change of the growth rate. Changes that do not shrink with more modes
 // are carried on in proportion to their number squared, to sixty: every mode may be damped less than the one before.
 // Where that leaves the sign open, the growth rate is computed with up to sixty modes instead.
@@ -311,6 +344,9 @@ void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span
       if (metric.kind == MetricKind::margin_per_turn) value.error *= 2 * std::numbers::pi / *value.speed;
       break;
     }
+    case MetricKind::theory:
+      value.error = theory_error_of_modes(model, value.index, *value.speed, settings);
+      break;
     case MetricKind::frequency:
       value.error = value.factor * change_with_more_modes(lowest_frequency);
       break;
@@ -324,4 +360,4 @@ void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span
   }
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -11,7 +11,7 @@
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 struct MetricValue {
   double value = 0;  // in unit_of(kind); NaN where there is no periodic solution
@@ -33,7 +33,7 @@ using SectionHeights = std::map<std::string, double>;
 // Of a [hill] scene the deflection is the largest |q_i|.
 [[nodiscard]] RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q);
 
-// MPa per unit of bending moment: sigma = |E J w''| h/(2 J). Throws UsageError for a rod without height.
+// MPa per unit of bending moment: sigma = |E J w''| h/(2 J). Throws RequestError for a rod without height.
 [[nodiscard]] double stress_factor(const SceneModel& model, const RodModel& rod, const SectionHeights& heights,
                                    const Metric& metric);
 
@@ -46,6 +46,9 @@ struct JointQuantities {
 // `q` by rod of the model; empty: rigid.
 [[nodiscard]] JointForces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q,
                                     double tolerance = 1e-10);
+
+// Theory error of each rod of a linkage with responses q: where there is none, 1 + the largest slope.
+[[nodiscard]] std::vector<double> theory_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q);
 
 // The system of p in q = e^{-mt} p: stable where q decays faster than e^{-mt}.
 [[nodiscard]] HillSystem shifted(const HillSystem& system, double m);
@@ -74,4 +77,4 @@ struct SpeedSpan {
 void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
               const Metric& metric);
 
-}  // namespace hb::tools
+}  // namespace hb

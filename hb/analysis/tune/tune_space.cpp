@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 
-#include "tools/command/command.hpp"
 
-namespace hb::tools {
+namespace hb {
 namespace {
 
 class Stopwatch {
@@ -30,6 +28,7 @@ std::vector<std::string> names_of(const SceneModel& model, const Metric& metric)
   switch (metric.kind) {
     case MetricKind::deflection:
     case MetricKind::stress:
+    case MetricKind::theory:
     case MetricKind::frequency:
     case MetricKind::margin:
     case MetricKind::margin_per_turn:
@@ -51,7 +50,7 @@ std::vector<std::string> names_of(const SceneModel& model, const Metric& metric)
 
 DesignSpace::DesignSpace(const SceneSource& source, const Settings& settings, SectionHeights given_heights,
                          At overrides, SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required,
-                         TuneCounts& counts)
+                         TuneCounts& counts, const Work& work)
     : source_(source),
       settings_(settings),
       given_heights_(std::move(given_heights)),
@@ -59,35 +58,21 @@ DesignSpace::DesignSpace(const SceneSource& source, const Settings& settings, Se
       span_(std::move(span)),
       metrics_(std::move(metrics)),
       required_(std::move(required)),
-      counts_(counts) {
-  const std::vector<std::string> paths = source.numeric_paths();
-  numbers_.insert(paths.begin(), paths.end());
-}
+      counts_(counts),
+      work_(work) {}
 
 SceneModel DesignSpace::model(const std::vector<double>& x) const {
   return make_model(source_.with(overrides_(x)), settings_);
 }
 
-// A section known by its shape gives its height from area and J, whatever is given for all rods.
+// A section known by its shape has a height, whatever is given for all rods.
 SectionHeights DesignSpace::heights(const SceneModel& model) const {
   SectionHeights heights = given_heights_;
   const Linkage* linkage = model.linkage();
   if (!linkage) return heights;
   for (const int link : elastic_links(*linkage)) {
     const Body& body = *body_at(*linkage, link);
-    const double F = body.elastic->area, r2 = body.elastic->second_moment / F;  // radius of gyration squared
-    const auto has = [&](const char* key) {
-      return numbers_.contains(body.name + ".section." + key) ||
-             numbers_.contains(body.name + ".elastic.section." + key);
-    };
-    if (has("height")) {
-      heights[body.name] = std::sqrt(12 * r2);  // J = F h^2/12
-    } else if (has("wall")) {
-      // J = F (D^2 + d^2)/16, F = pi (D^2 - d^2)/4
-      heights[body.name] = std::sqrt((16 * r2 + 4 * F / std::numbers::pi) / 2);
-    } else if (has("diameter")) {
-      heights[body.name] = 4 * std::sqrt(r2);  // J = F D^2/16
-    }
+    if (body.elastic->section_height > 0) heights[body.name] = body.elastic->section_height;
   }
   return heights;
 }
@@ -106,7 +91,7 @@ void DesignSpace::refine(int times) {
 std::vector<MetricValue> DesignSpace::values(const std::vector<double>& x, int times) const {
   const SceneModel scene = model(x);
   const SpeedSpan speeds = span(x, times);
-  DesignAnalysis analysis(scene, settings_, speeds, heights(scene), required_);
+  DesignAnalysis analysis(scene, settings_, speeds, heights(scene), work_, required_);
   std::vector<MetricValue> values;
   for (const Metric& metric : metrics_) {
     values.push_back(analysis.value(metric));
@@ -148,9 +133,9 @@ std::optional<Eigen::MatrixXd> DesignSpace::gradients(const std::vector<double>&
 DesignSpace::Report DesignSpace::report(const std::vector<double>& x, const std::vector<Metric>& metrics, int times,
                                         double tolerance) const {
   const SceneModel scene = model(x);
-  DesignAnalysis rough(scene, settings_, span(x, 1), heights(scene), required_);
+  DesignAnalysis rough(scene, settings_, span(x, 1), heights(scene), work_, required_);
   const SpeedSpan speeds = span(x, times);
-  DesignAnalysis fine(scene, settings_, speeds, heights(scene), required_);
+  DesignAnalysis fine(scene, settings_, speeds, heights(scene), work_, required_);
   Report result;
   for (const Metric& metric : metrics) {
     const MetricValue first = rough.value(metric), second = fine.value(metric);
@@ -209,10 +194,10 @@ void DesignAims::scale_by(std::vector<double> start) {
   for (const GoalTerm& term : goal_.terms) {
     const double value = value_of(term.metric, start_);
     if (std::isfinite(value) && value != 0 && std::isfinite(term.weight / value)) continue;
-    throw UsageError(
-        fmt::format("--minimise: found {} with the value {} at the start, allowed in a weighted sum: quantities that "
-                    "exist there and are not 0, nor so small that the sum overflows",
-                    term.metric.text, value));
+    const std::string found = fmt::format("{} with the value {} at the start", term.metric.text, value);
+    const char* allowed = "quantities that exist there and are not 0, nor so small that the sum overflows";
+    throw RequestError("minimise", found, allowed,
+                       fmt::format("found {}, allowed in a weighted sum: {}", found, allowed));
   }
 }
 
@@ -303,4 +288,4 @@ Eigen::VectorXd DesignAims::allowance_for(const std::vector<MetricValue>& values
   return result;
 }
 
-}  // namespace hb::tools
+}  // namespace hb

@@ -1,11 +1,10 @@
-// The designs that `hb tune` chooses from: from the variables' values to metrics, worst over the speeds, and their
+// The designs to choose from: from the variables' values to metrics, worst over the speeds, and their
 // derivatives; and from metrics to goal and conditions.
 #pragma once
 
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -14,7 +13,7 @@
 #include "hb/analysis/tune/tune_gradient.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 // What was done, for --stats and for the report.
 struct TuneCounts {
@@ -28,9 +27,10 @@ class DesignSpace {
   using At = std::function<std::vector<Override>(const std::vector<double>& x)>;
   using SpanAt = std::function<SpeedSpan(const std::vector<double>& x)>;
 
-  // Keeps references to source, settings and counts. `required` as in DesignAnalysis.
+  // Keeps references to source, settings, counts and work. `required` as in DesignAnalysis.
   DesignSpace(const SceneSource& source, const Settings& settings, SectionHeights given_heights, At overrides,
-              SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required, TuneCounts& counts);
+              SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required, TuneCounts& counts,
+              const Work& work);
 
   const std::vector<Metric>& metrics() const { return metrics_; }
   [[nodiscard]] SceneModel model(const std::vector<double>& x) const;  // throws SceneError
@@ -70,7 +70,7 @@ class DesignSpace {
   std::vector<Metric> metrics_;
   std::vector<RequiredDecay> required_;
   TuneCounts& counts_;
-  std::set<std::string> numbers_;  // paths that the scene gives
+  const Work& work_;
   int times_ = 1;
   std::map<std::vector<double>, std::vector<MetricValue>> known_;
 };
@@ -92,7 +92,7 @@ class DesignAims {
   const std::vector<Metric>& goal_parts() const { return goal_parts_; }
   std::vector<RequiredDecay> required() const;
 
-  // Values of the metrics at the start: units of weighted terms and of margins. Throws UsageError where a weighted sum
+  // Values of the metrics at the start: units of weighted terms and of margins. Throws RequestError where a weighted sum
   // has none.
   void scale_by(std::vector<double> start);
   // Kept free of every part, in its unit: for errors of values.
@@ -122,4 +122,4 @@ class DesignAims {
   std::vector<double> start_;
 };
 
-}  // namespace hb::tools
+}  // namespace hb

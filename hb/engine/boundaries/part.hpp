@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "hb/engine/boundaries/interval_search.hpp"
@@ -13,9 +14,17 @@ namespace hb {
 
 using Part = std::vector<double>;
 
-// part(0) .. part(count - 1), in this order. They may be computed in any order and by several threads, or be known from
-// elsewhere: each must depend on its index alone.
-using PartsOf = std::function<std::vector<Part>(std::size_t count, const std::function<Part(std::size_t)>& part)>;
+// The parts of one step. They may be computed in any order and by several threads, each once, or be taken from
+// elsewhere: each depends on its index alone.
+struct Parts {
+  std::size_t count = 0;
+  std::function<void(std::size_t)> compute;
+  std::function<Part(std::size_t)> numbers;  // of a part that is there
+  std::function<void(std::size_t, const Part&)> take;  // instead of computing it; throws std::out_of_range
+};
+
+// Has all parts computed or taken.
+using PartsOf = std::function<void(const Parts&)>;
 
 // Writes numbers one after the other, reads them in the same order. One function for both directions keeps them alike.
 class PartWriter {
@@ -127,24 +136,25 @@ void visit_interval(Visit& visit, SearchedInterval& interval) {
 template <class Result, class Visit>
 std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
                                    const std::function<Result(std::size_t)>& compute, const Visit& visit) {
-  const auto part = [&](std::size_t k) {
-    Result result = compute(k);
-    PartWriter writer;
-    visit(writer, result);
-    return std::move(writer.numbers);
-  };
-  std::vector<Result> found;
-  found.reserve(count);
+  static_assert(!std::is_same_v<Result, bool>, "elements of a vector of bool share bytes");
+  std::vector<Result> found(count);
+  const auto result = [&](std::size_t k) { found[k] = compute(k); };
   if (!parts) {
-    for (std::size_t k = 0; k < count; ++k) found.push_back(compute(k));
+    for (std::size_t k = 0; k < count; ++k) result(k);
     return found;
   }
-  for (const Part& numbers : parts(count, part)) {
-    PartReader reader(numbers);
-    Result result{};
-    visit(reader, result);
-    found.push_back(std::move(result));
-  }
+  const auto numbers = [&](std::size_t k) {
+    PartWriter writer;
+    visit(writer, found[k]);
+    return std::move(writer.numbers);
+  };
+  const auto take = [&](std::size_t k, const Part& known) {
+    PartReader reader(known);
+    Result read{};
+    visit(reader, read);
+    found[k] = std::move(read);
+  };
+  parts({count, result, numbers, take});
   return found;
 }
 

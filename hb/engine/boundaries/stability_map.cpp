@@ -401,16 +401,16 @@ class Mesh {
       if (rims[c].size() >= 2 && rims[c].size() % 2 == 0) crossed.push_back(c);
       if (rims[c].size() > 2 && rims[c].size() % 2 == 0) unclear.push_back(c);
     }
-    const std::vector<bool> centre_unstable = results<bool>(
+    const std::vector<char> centre_unstable = results<char>(
         unclear.size(),
-        [&](std::size_t k) {
+        [&](std::size_t k) -> char {
           const Cell& cell = cells_[unclear[k]];
           if (thin_band(cell)) return !nodes_[cell.corners[0]].unstable();
           const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
           const auto s = sample(0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)), leading_);
           return s && is_unstable(*s);
         },
-        [](auto& visit, bool& unstable) { visit_as_number(visit, unstable); });
+        [](auto& visit, char& unstable) { visit_as_number(visit, unstable); });
     std::vector<CurveLink> links;
     std::size_t next_unclear = 0;
     for (const std::size_t c : crossed) {

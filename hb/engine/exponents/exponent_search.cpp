@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "hb/engine/exponents/hill_determinant.hpp"
 #include "hb/engine/exponents/hill_exponents.hpp"
 #include "hb/engine/exponents/slaving.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -39,35 +39,8 @@ double unfolded(double s, double near) {
   return std::abs(up - near) <= std::abs(down - near) ? std::abs(up) : std::abs(down);
 }
 
-// Gives every exponent its mode and its unfolded frequency: pairs go to the modes of the group whose mean equation
-// z^2 + b z + w^2 has the nearest root; each mode takes two.
 void name_modes(Exponents& exponents, const ScaledSystem& system, const std::vector<Index>& group) {
-  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
-  const std::size_t count = exponents.s.size();
-  exponents.mode.assign(count, 0);
-  exponents.frequency.assign(count, 0);
-  std::vector<int> room(group.size(), 2);
-  for (std::size_t i = 0; i < count; ++i) {
-    double nearest = HUGE_VAL;
-    std::size_t chosen = 0;
-    for (std::size_t g = 0; g < group.size(); ++g) {
-      if (room[g] == 0) continue;
-      const cplx root = std::sqrt(cplx(b(group[g]) * b(group[g]) / 4 - w2(group[g]), 0));
-      for (const cplx mean : {-b(group[g]) / 2 + root, -b(group[g]) / 2 - root}) {
-        // The phase function gives the whole frequency; a turn's map gives it modulo 1.
-        const double im = std::abs(exponents.s[i].imag());
-        const double frequency = im > 0.5 ? im : unfolded(exponents.s[i].imag(), std::abs(mean.imag()));
-        const double distance = std::hypot(exponents.s[i].real() - mean.real(), frequency - std::abs(mean.imag()));
-        if (distance < nearest) {
-          nearest = distance;
-          chosen = g;
-          exponents.frequency[i] = frequency;
-        }
-      }
-    }
-    if (room[chosen] > 0) --room[chosen];
-    exponents.mode[i] = group[chosen];
-  }
+  hb::name_modes(exponents, system.mean_diagonal(), system.damping_diagonal(), group);
 }
 
 // True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.
@@ -78,7 +51,7 @@ bool spans(const ScaledSystem& system, MatrixXd states) {
   for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
   states.colwise().normalize();
   // Far above the errors of the subspaces.
-  return Eigen::PartialPivLU<MatrixXd>(states).rcond() > 1e-8;
+  return dense::Lu<double>(states).rcond() > 1e-8;
 }
 
 // Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
@@ -157,6 +130,34 @@ void sharpen(Exponents& list, const Exponents& pair) {
 }
 
 }  // namespace
+
+void name_modes(Exponents& exponents, const VectorXd& w2, const VectorXd& b, const std::vector<Index>& group) {
+  const std::size_t count = exponents.s.size();
+  exponents.mode.assign(count, 0);
+  exponents.frequency.assign(count, 0);
+  std::vector<int> room(group.size(), 2);
+  for (std::size_t i = 0; i < count; ++i) {
+    double nearest = HUGE_VAL;
+    std::size_t chosen = 0;
+    for (std::size_t g = 0; g < group.size(); ++g) {
+      if (room[g] == 0) continue;
+      const cplx root = std::sqrt(cplx(b(group[g]) * b(group[g]) / 4 - w2(group[g]), 0));
+      for (const cplx mean : {-b(group[g]) / 2 + root, -b(group[g]) / 2 - root}) {
+        // The phase function gives the whole frequency; a turn's map gives it modulo 1.
+        const double im = std::abs(exponents.s[i].imag());
+        const double frequency = im > 0.5 ? im : unfolded(exponents.s[i].imag(), std::abs(mean.imag()));
+        const double distance = std::hypot(exponents.s[i].real() - mean.real(), frequency - std::abs(mean.imag()));
+        if (distance < nearest) {
+          nearest = distance;
+          chosen = g;
+          exponents.frequency[i] = frequency;
+        }
+      }
+    }
+    if (room[chosen] > 0) --room[chosen];
+    exponents.mode[i] = group[chosen];
+  }
+}
 
 ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance, bool leading_only) {
   const std::vector<Index> all = all_modes(system);

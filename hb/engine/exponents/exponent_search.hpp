@@ -19,6 +19,11 @@ struct ExponentSearch {
   bool complete = false;  // all 2I exponents are listed, or lie below `exponents.others_below`
 };
 
+// Gives every exponent its mode and its unfolded frequency: pairs go to the modes of the group whose mean equation
+// z^2 + b z + w2 has the nearest root; each mode takes two.
+void name_modes(Exponents& exponents, const Eigen::VectorXd& w2, const Eigen::VectorXd& b,
+                const std::vector<Eigen::Index>& group);
+
 // All modes propagated over the turn. With `leading_only` exponents far below the leading one are bounded only.
 [[nodiscard]] ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance,
                                                    bool leading_only = false);

@@ -1,7 +1,8 @@
 #include "hb/engine/exponents/growth_bound.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -21,7 +22,7 @@ VectorXd perron_vector(const MatrixXd& M) {
   for (int i = 0; i < iterations; ++i) {
     const double quotient = (M * v).cwiseQuotient(v).maxCoeff();
     const double shift = quotient + 1e-3 * M.cwiseAbs().maxCoeff() / double(n) + 1e-300;
-    const VectorXd next = Eigen::PartialPivLU<MatrixXd>(shift * MatrixXd::Identity(n, n) - M).solve(v);
+    const VectorXd next = dense::Lu<double>(shift * MatrixXd::Identity(n, n) - M).solve(v);
     const double largest = next.maxCoeff();
     if (!(next.minCoeff() > 0 && std::isfinite(largest))) break;
     // A mode that nothing pulls at keeps some weight.

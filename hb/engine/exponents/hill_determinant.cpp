@@ -1,12 +1,12 @@
 #include "hb/engine/exponents/hill_determinant.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include "hb/engine/exponents/inexact_eigenvalues.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -38,9 +38,9 @@ cplx log_two_sinh_over(cplx z) {
   return std::log(2 * pi * (1.0 + x2 / 6.0 * (1.0 + x2 / 20.0 * (1.0 + x2 / 42.0 * (1.0 + x2 / 72.0)))));
 }
 
-cplx log_determinant(const Eigen::PartialPivLU<MatrixXcd>& lu) {
-  cplx sum(0, lu.permutationP().determinant() < 0 ? pi : 0);
-  for (Index i = 0; i < lu.matrixLU().rows(); ++i) sum += std::log(lu.matrixLU()(i, i));
+cplx log_determinant(const dense::Lu<cplx>& lu) {
+  cplx sum(0, lu.sign() < 0 ? pi : 0);
+  for (const cplx& pivot : lu.pivots()) sum += std::log(pivot);
   return sum;
 }
 
@@ -112,7 +112,7 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
       MatrixXcd here = block(lo, hi, lo, hi);
       if (S.size() > 0) {
         const auto [olo, ohi] = rows(outer_from, outer_to);
-        const Eigen::PartialPivLU<MatrixXcd> lu(S);
+        const dense::Lu<cplx> lu(S);
         log_det += log_determinant(lu);
         here -= block(lo, hi, olo, ohi) * lu.solve(block(olo, ohi, lo, hi));
       }
@@ -123,12 +123,12 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
     }
     if (S.size() > 0) {
       const auto [olo, ohi] = side > 0 ? std::pair(outer_from, outer_to) : std::pair(-outer_to, -outer_from);
-      const Eigen::PartialPivLU<MatrixXcd> lu(S);
+      const dense::Lu<cplx> lu(S);
       log_det += log_determinant(lu);
       A -= block(-core, core, olo, ohi) * lu.solve(block(olo, ohi, -core, core));
     }
   }
-  const Eigen::PartialPivLU<MatrixXcd> lu(A);
+  const dense::Lu<cplx> lu(A);
   log_det += log_determinant(lu);
 
   // -1/2 sum E_ij,m E_ji,-m / (D_i(k) D_j(k - m)) over pairs of harmonics that are not both inside; D ~ -k^2 far out.

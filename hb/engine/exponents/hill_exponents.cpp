@@ -1,8 +1,9 @@
 #include "hb/engine/exponents/hill_exponents.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <optional>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -43,7 +44,7 @@ class Window {
     const cplx start = s;
     VectorXcd x = VectorXcd::Zero(n);
     x(N_ * I_ + mode) = 1;
-    Eigen::PartialPivLU<MatrixXcd> lu;
+    dense::Lu<cplx> lu;
     double change = HUGE_VAL;
     for (int iteration = 0; iteration < 30; ++iteration) {
       lu.compute(matrix(s));
@@ -64,9 +65,9 @@ class Window {
       if (iteration == 29) return std::nullopt;
     }
     // Left null vector by inverse iteration with the last factors.
-    VectorXcd z = lu.adjoint().solve(x);
+    VectorXcd z = lu.solve_adjoint(x);
     if (!z.allFinite()) return std::nullopt;
-    z = lu.adjoint().solve(z.normalized()).eval();
+    z = lu.solve_adjoint(z.normalized());
     if (!z.allFinite()) return std::nullopt;
     z.normalize();
 

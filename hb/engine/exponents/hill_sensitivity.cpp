@@ -1,10 +1,10 @@
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -164,13 +164,13 @@ std::optional<FloquetVectors> floquet_vectors(const HillSystem& system, double s
     // Beside the exponent, so that the matrix is regular. x <- S^-1 S' x gains this factor each time and has the right
     // limit up to its square.
     const Complex beside = s + 1e-9 * (1 + std::abs(s));
-    const Eigen::PartialPivLU<MatrixXcd> lu(hill_matrix(scaled, beside, H));
+    const dense::Lu<Complex> lu(hill_matrix(scaled, beside, H));
     VectorXcd x = VectorXcd::Constant(n, 1e-3), y = x;
     x.segment(I * H, I).setOnes();
     y.segment(I * H, I).setOnes();
     for (int step = 0; step < 3; ++step) {
       x = lu.solve(slope_product(scaled, beside, x, false));
-      y = lu.adjoint().solve(slope_product(scaled, beside, y, true));
+      y = lu.solve_adjoint(slope_product(scaled, beside, y, true));
       x /= x.norm();
       y /= y.norm();
     }
@@ -181,7 +181,7 @@ std::optional<FloquetVectors> floquet_vectors(const HillSystem& system, double s
     vectors.s = s * speed;
     vectors.x = scaled.T * x.reshaped(I, 2 * H + 1);
     // Scaled rows are T^-1 M^-1 times those of the given system, over Omega^2.
-    vectors.y = (scaled.T_inverse * system.mass.inverse()).transpose() * y.reshaped(I, 2 * H + 1);
+    vectors.y = (scaled.T_inverse * dense::inverse(system.mass)).transpose() * y.reshaped(I, 2 * H + 1);
     MatrixXcd slope = system.damping * vectors.x;
     for (Index k = -H; k <= H; ++k)
       slope.col(k + H) +=

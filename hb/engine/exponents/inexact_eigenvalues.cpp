@@ -1,10 +1,13 @@
 #include "hb/engine/exponents/inexact_eigenvalues.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -27,7 +30,7 @@ struct Discs {
 };
 Discs gershgorin_discs(const VectorXcd& value, const MatrixXcd& V, double change) {
   const Index n = value.size();
-  const MatrixXcd inverse = Eigen::PartialPivLU<MatrixXcd>(V).inverse();
+  const MatrixXcd inverse = dense::inverse(V);
   const VectorXd condition = inverse.rowwise().norm();
   // The eigenvectors' own rounding errors must not matter.
   if (!(condition.norm() * double(n * n) * eps < 1e-3)) return {VectorXd::Zero(n)};
@@ -51,7 +54,7 @@ double circle_radius(const MatrixXd& M, cplx mu, double change) {
       const cplx z = mu + r * std::polar(1.0, std::numbers::pi / 4 * (q + 0.5));
       const MatrixXcd shifted = z * MatrixXcd::Identity(n, n) - M.cast<cplx>();
       // 1/sigma_min <= |shifted^-1| (Frobenius).
-      separated = 2 * change * shifted.inverse().norm() < 1;
+      separated = 2 * change * dense::inverse(shifted).norm() < 1;
     }
     if (separated) return r;
   }
@@ -60,12 +63,47 @@ double circle_radius(const MatrixXd& M, cplx mu, double change) {
 
 }  // namespace
 
+// Row j scaled by a < 1 has the disc C_jj + a sum_k C_jk, the others sum_l C_kl + (1/a - 1) C_kj: apart for
+// a >= C_kj/(|value_j - value_k| - ..), which leaves C_jj and terms of second order.
+VectorXd gershgorin_radii(const VectorXcd& value, const MatrixXd& change) {
+  const Index n = value.size();
+  if (!change.allFinite()) return VectorXd::Constant(n, HUGE_VAL);
+  const VectorXd sums = change.rowwise().sum();
+  VectorXd radii = sums;
+  std::vector<Index> group(static_cast<std::size_t>(n));
+  std::iota(group.begin(), group.end(), Index(0));
+  for (Index j = 0; j < n; ++j) {
+    double scale = 0;
+    for (Index k = 0; k < n; ++k) {
+      if (k == j) continue;
+      const double gap = std::abs(value(j) - value(k)) - sums(j) - sums(k);
+      scale = gap > 0 ? std::max(scale, 2 * change(k, j) / gap) : HUGE_VAL;
+    }
+    if (scale < 1) {
+      radii(j) = change(j, j) + scale * (sums(j) - change(j, j));
+      continue;
+    }
+    for (Index k = 0; k < n; ++k)
+      if (!(std::abs(value(j) - value(k)) > sums(j) + sums(k))) {
+        const Index from = group[static_cast<std::size_t>(k)], to = group[static_cast<std::size_t>(j)];
+        std::replace(group.begin(), group.end(), from, to);
+      }
+  }
+  VectorXd result = radii;
+  for (Index j = 0; j < n; ++j)
+    for (Index k = 0; k < n; ++k)
+      if (k != j && group[static_cast<std::size_t>(k)] == group[static_cast<std::size_t>(j)])
+        result(j) = std::max({result(j), sums(j), std::abs(value(j) - value(k)) + sums(k)});
+  return result;
+}
+
 InexactEigenvalues inexact_eigenvalues(const MatrixXd& M, double change, bool leading_only) {
   const Index n = M.rows();
   if (n == 1) return {VectorXcd::Constant(1, M(0, 0)), VectorXd::Constant(1, change)};
-  const Eigen::EigenSolver<MatrixXd> solver(M);
-  InexactEigenvalues result{solver.eigenvalues(), VectorXd::Zero(n)};
-  const Discs discs = gershgorin_discs(result.value, solver.eigenvectors(), change);
+  const std::optional<dense::Eigenpairs> pairs = dense::eigenpairs(M);
+  if (!pairs) return {VectorXcd::Zero(n), VectorXd::Constant(n, HUGE_VAL)};
+  InexactEigenvalues result{pairs->values, VectorXd::Zero(n)};
+  const Discs discs = gershgorin_discs(result.value, pairs->vectors, change);
   result.radius = discs.radii;
   const bool rest_is_far = leading_only && discs.rest < 0.1 * result.value.cwiseAbs().maxCoeff();
   for (Index i = 0; i < n; ++i) {

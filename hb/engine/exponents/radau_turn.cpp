@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "lib/dense.hpp"
+
 namespace hb {
 
 namespace {
@@ -248,7 +250,7 @@ struct Turn {
       right.block(i * m, 0, m, m) = -alpha_i;
       right.block(i * m, m, m, m) = -beta_i - c(i) * h * alpha_i;
     }
-    const MatrixXd k = system.partialPivLu().solve(right);
+    const MatrixXd k = dense::Lu<double>(system).solve(right);
     // Stiffly accurate: the last stage is the end of the cell.
     MatrixXd map = MatrixXd::Identity(2 * m, 2 * m);
     map.topRightCorner(m, m).diagonal().setConstant(h);
@@ -332,7 +334,16 @@ TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index
   else
     for (Index n = 0; n < num_cells; ++n) turn.pivoted(n);
 
-  TurnMaps maps{num_cells, std::move(turn.cells), std::move(turn.scale)};
+  MatrixXd rates = MatrixXd::Zero(2 * num_modes, 2 * num_modes);
+  rates.topRightCorner(num_modes, num_modes).diagonal() = turn.scale;
+  for (Index j = 0; j < num_modes; ++j)
+    for (Index i = 0; i < num_modes; ++i) {
+      rates(num_modes + i, j) = fourier::wiener_norm(alpha, i + num_modes * j) / turn.scale(j);
+      rates(num_modes + i, num_modes + j) = fourier::wiener_norm(beta, i + num_modes * j);
+    }
+  rates *= turn.h;
+  MatrixXd terms = MatrixXd::Identity(2 * num_modes, 2 * num_modes) + rates + 0.5 * rates.lazyProduct(rates);
+  TurnMaps maps{num_cells, std::move(turn.cells), std::move(turn.scale), std::move(terms)};
   for (Index i = 0; i < num_modes; ++i) maps.damping_trace += beta.c(i + num_modes * i, 0).real();
   return maps;
 }

@@ -39,7 +39,7 @@ std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance
   const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
   const double wanted =
       std::max(0.5 * tolerance * std::max(std::abs(reduced.beta.c(0, 0).real()) / 2, 0.01), 1e-12 * frequency);
-  const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error, reduced.beta_error, wanted);
+  const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error(0), reduced.beta_error(0), wanted);
   if (!pair) return std::nullopt;
   Exponents result;
   for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
@@ -54,8 +54,8 @@ std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tol
   const auto pair = mathieu_exponents({.w2 = reduced.alpha.c(0, 0).real(),
                                        .q = std::abs(reduced.alpha.c(0, 1)),
                                        .b = reduced.beta.c(0, 0).real(),
-                                       .stiffness_error = reduced.alpha_error,
-                                       .damping_error = reduced.beta_error});
+                                       .stiffness_error = reduced.alpha_error(0),
+                                       .damping_error = reduced.beta_error(0)});
   if (!pair || !(pair->error[0] <= allowed(tolerance, pair->s[0]))) return std::nullopt;
   Exponents result;
   for (std::size_t i : {0, 1}) result.add(pair->s[i], pair->error[i]);
@@ -78,7 +78,6 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     fastest2 = std::max(fastest2, row);
   }
   const double fastest = std::sqrt(fastest2);
-  const double input_error = 2 * std::numbers::pi * (reduced.alpha_error / W.minCoeff() + reduced.beta_error);
 
   // Beyond some seconds' work nothing is known.
   constexpr double most_work = 1e8;
@@ -110,12 +109,14 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   Index coarse_cells = 0;
   std::vector<double> coarse_change;  // of coarse exponents from those before
   // Effect on the real part of the mean damping, which the discriminant takes as given.
-  const double damping_error = m == 1 ? reduced.beta_error / 2 : 0;
+  const double damping_error = m == 1 ? reduced.beta_error(0) / 2 : 0;
   while (cells <= most && work(double(cells)) < most_work) {
-    // Rounding of a cell's map: of its 8 m equations, ill-conditioned where h^2 K is large; the factor is a choice,
-    // tested on strongly damped systems.
-    const double per_cell = 32 * eps * std::sqrt(double(2 * m)) + input_error / double(cells);
-    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), per_cell, leading_only,
+    // Errors of the coefficients over a cell: h d alpha W^-1, h d beta.
+    MatrixXd given = MatrixXd::Zero(2 * m, 2 * m);
+    const double h = 2 * std::numbers::pi / double(cells);
+    given.bottomLeftCorner(m, m) = h * reduced.alpha_error * W.cwiseInverse().asDiagonal();
+    given.bottomRightCorner(m, m) = h * reduced.beta_error;
+    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, leading_only,
                                         coarse ? coarse->subspaces : MatrixXd());
     std::vector<double> change;
     if (coarse) {

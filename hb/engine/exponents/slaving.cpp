@@ -24,6 +24,8 @@ using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
 constexpr double eps = 2.220446049250313e-16;
+// Of the bound on the rounding errors of K, that they do not all have at once (a choice).
+constexpr double given_rounding = 0.5;
 
 // Root of D(z) = z^2 + b z + w2 with the larger imaginary part, or the slower one of two real roots.
 cplx root(double b, double w2) {
@@ -43,16 +45,16 @@ Partition partition(Index I, std::span<const Index> slow) {
 }
 
 // Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
-void drop_tail(FourierSeries& series, double& error) {
+void drop_tail(FourierSeries& series, MatrixXd& error) {
   Index H = series.num_harmonics();
-  double sum = 0;
+  VectorXd sum = VectorXd::Zero(error.size());
   for (; H > 0; --H) {
-    const double more = sum + 2 * series.c.col(H).cwiseAbs().maxCoeff();
-    if (!(more <= 0.5 * error)) break;
+    const VectorXd more = sum + 2 * series.c.col(H).cwiseAbs();
+    if (!(more.array() <= 0.1 * error.reshaped().array()).all()) break;
     sum = more;
   }
   series = fourier::resized(series, H);
-  error += sum;
+  error += sum.reshaped(error.rows(), error.cols());
 }
 
 // One attempt with N samples of the turn.
@@ -69,6 +71,7 @@ class Iteration {
         N_(num_samples),
         H_((num_samples - 1) / 2),
         G_(system.G),
+        rounding_(system.K_rounding),
         diagonal_damping_(system.diagonal_damping),
         I_(system.num_modes()),
         K_(fourier::synthesise(system.K, num_samples).transpose()),
@@ -238,9 +241,14 @@ class Iteration {
     reduced.alpha = fourier::analyse(alpha_.transpose());
     reduced.beta = fourier::analyse(beta_.transpose());
     const double iteration = 2 * change_ * amplification_;
-    reduced.alpha_error = iteration + 8 * eps * (alpha_.cwiseAbs().maxCoeff() + kappa_ * A_.cwiseAbs().maxCoeff());
+    reduced.alpha_error =
+        iteration +
+        2 * eps * (alpha_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * A_.cwiseAbs().maxCoeff()).reshaped(m_, m_);
     reduced.beta_error =
-        iteration / weight_max() + 8 * eps * (beta_.cwiseAbs().maxCoeff() + kappa_ * C_.cwiseAbs().maxCoeff());
+        iteration / weight_max() +
+        2 * eps * (beta_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * C_.cwiseAbs().maxCoeff()).reshaped(m_, m_);
+    for (Index l = 0; l < m_; ++l)
+      for (Index s = 0; s < m_; ++s) reduced.alpha_error(s, l) += given_rounding * rounding_(S_[s], S_[l]);
     drop_tail(reduced.alpha, reduced.alpha_error);
     drop_tail(reduced.beta, reduced.beta_error);
     reduced.others_below = others_below();
@@ -422,7 +430,7 @@ class Iteration {
 
   std::vector<Index> S_, F_;
   Index m_, n_, N_, H_;
-  const MatrixXd& G_;
+  const MatrixXd &G_, &rounding_;
   bool diagonal_damping_;
   Index I_;
   MatrixXd K_;  // N x I*I
@@ -454,8 +462,8 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
         all.alpha.c.row(s + I * l) = system.K.c.row(p.S[s] + I * p.S[l]);
         all.beta.c(s + I * l, 0) = system.G(p.S[s], p.S[l]);
       }
-    all.alpha_error = 4 * eps * system.K.c.cwiseAbs().rowwise().sum().maxCoeff();
-    all.beta_error = 4 * eps * system.G.cwiseAbs().maxCoeff();
+    all.alpha_error = given_rounding * system.K_rounding(p.S, p.S);
+    all.beta_error = 2 * eps * system.G(p.S, p.S).cwiseAbs();
     drop_tail(all.alpha, all.alpha_error);
     return all;
   }

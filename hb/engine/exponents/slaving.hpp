@@ -13,10 +13,10 @@ namespace hb {
 
 struct ReducedSystem {
   bool converged = false;
-  Eigen::Index num_modes = 0;        // m
-  FourierSeries alpha, beta;         // m*m components, column-major
-  double alpha_error = 0;            // bounds on max_tau of the error of any entry (truncation, iteration, rounding)
-  double beta_error = 0;
+  Eigen::Index num_modes = 0;  // m
+  FourierSeries alpha, beta;  // m*m components, column-major
+  // m x m, of max_tau |error| of each entry: what is left of truncation and iteration, estimated, and rounding.
+  Eigen::MatrixXd alpha_error, beta_error;
   // Upper bound on Re s of all the other 2(I - m) exponents (they belong to what is left when A, C are split off), by
   // the logarithmic norm in adiabatic coordinates averaged over the turn; infinite if no bound was found.
   double others_below = 0;

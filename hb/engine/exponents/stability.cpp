@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "hb/engine/exponents/exponent_search.hpp"
+#include "hb/engine/exponents/exponent_summary.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "hb/engine/exponents/imaginary_axis.hpp"
 #include "hb/engine/system/independent_parts.hpp"
@@ -22,57 +23,10 @@ using cplx = std::complex<double>;
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 
-// Imaginary part to (-Omega/2, Omega/2].
-double folded(double s) {
-  double f = s - std::floor(s + 0.5);  // [-1/2, 1/2)
-  return f <= -0.5 ? f + 1 : f;
-}
-
-// Real part descending, then imaginary part ascending.
-void sort(std::vector<Exponent>& exponents) {
-  std::stable_sort(exponents.begin(), exponents.end(), [](const Exponent& a, const Exponent& b) {
-    if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
-    return a.value.imag() < b.value.imag();
-  });
-}
-
-// The growth rate from what is known about it; an interval without a finite end on both sides leaves the verdict to
-// the other one.
-void set_growth(Stability& result, double growth, double low, double high) {
-  result.growth_rate = growth;
-  result.growth_low = low;
-  result.growth_high = high;
-  const double error = std::max(high - growth, growth - low);
-  result.growth_error = std::isfinite(growth) && error < HUGE_VAL ? error : HUGE_VAL;
-  result.verdict = verdict_of(low, high);
-}
-
 Stability finished(const ScaledSystem& system, const ExponentSearch& search, double tolerance) {
-  const double Omega = system.speed;
   const Exponents& found = search.exponents;
-  Stability result;
-  result.method = search.method;
-  result.evidence = search.evidence;
-  result.kept.assign(search.kept.begin(), search.kept.end());
-  double high = found.others_below, low = -HUGE_VAL, growth = -HUGE_VAL;
-  for (std::size_t i = 0; i < found.s.size(); ++i) {
-    const cplx s = found.s[i];
-    const double error = found.error[i];
-    growth = std::max(growth, s.real());
-    high = std::max(high, s.real() + error);
-    low = std::max(low, s.real() - error);
-    (error <= 1e-6 * std::max(std::abs(s), 1.0) ? result.exponents : result.uncertain)
-        .push_back({{Omega * s.real(), Omega * folded(s.imag())},
-                    Omega * error,
-                    int(found.mode[i]),
-                    Omega * found.frequency[i]});
-  }
-  sort(result.exponents);
-  sort(result.uncertain);
-  const bool known = search.complete && std::isfinite(growth);
-  set_growth(result, Omega * growth, known ? Omega * low : -HUGE_VAL, known ? Omega * high : HUGE_VAL);
-  const double bar = result.growth_error / Omega;
-  result.converged = std::isfinite(bar) && bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 1.0);
+  Stability result = summary(search, system.speed, tolerance);
+  const bool known = search.complete && std::isfinite(result.growth_rate);
   // Where nothing varies the exponents are not taken modulo i Omega.
   const double period = system.K.num_harmonics() == 0 ? HUGE_VAL : 1;
   if (known && Index(found.s.size()) == 2 * system.num_modes() && system.conservative.all() &&

@@ -99,7 +99,7 @@ DirectInverse::DirectInverse(Operator& A) : A_(A) {
     if (g + 1 < G) diagonal -= Schur;
     const auto at = static_cast<std::size_t>(g);
     S_[at].compute(diagonal);
-    regular_ = regular_ && S_[at].matrixLU().diagonal().cwiseAbs().minCoeff() > smallest_pivot;
+    regular_ = regular_ && S_[at].pivots().cwiseAbs().minCoeff() > smallest_pivot;
     up_[at] = S_[at].solve(block(first, inner, p_, width));
     down_[at] = block(inner, first, width, p_);
     Schur = down_[at] * up_[at];
@@ -126,7 +126,7 @@ DirectInverse::DirectInverse(Operator& A) : A_(A) {
       if (k > 0) core.block(place(k) + I, place(l) + I, I, I) = sine.real();
     }
   core_.compute(core);
-  regular_ = regular_ && core_.matrixLU().diagonal().cwiseAbs().minCoeff() > smallest_pivot;
+  regular_ = regular_ && core_.pivots().cwiseAbs().minCoeff() > smallest_pivot;
 }
 
 void DirectInverse::substitute(const Spectrum& rhs, Spectrum& z) const {

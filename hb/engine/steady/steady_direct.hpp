@@ -1,8 +1,9 @@
 // Direct solution of the block Hill system: half-spectrum block elimination.
 #pragma once
 
-#include <Eigen/LU>
 #include <vector>
+
+#include "lib/dense.hpp"
 
 #include "hb/engine/steady/steady_operator.hpp"
 
@@ -33,10 +34,10 @@ class DirectInverse : public Inverse {
   Operator& A_;
   Eigen::Index P_ = 0;  // harmonics of K in the factors
   Eigen::Index c_ = 0, p_ = 0;  // last harmonic of the core, harmonics per block
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXcd>> S_;  // outermost last
+  std::vector<dense::Lu<std::complex<double>>> S_;  // outermost last
   std::vector<Eigen::MatrixXcd> up_;  // S_g^-1 A_{g,g-1}
   std::vector<Eigen::MatrixXcd> down_;  // A_{g-1,g}
-  Eigen::PartialPivLU<Eigen::MatrixXd> core_;
+  dense::Lu<double> core_;
   bool regular_ = true;
 };
 

@@ -1,8 +1,9 @@
 // Iterative solution of the block Hill system: products by FFT, the diagonal of each harmonic as preconditioner.
 #pragma once
 
-#include <Eigen/LU>
 #include <vector>
+
+#include "lib/dense.hpp"
 
 #include "hb/engine/steady/steady_operator.hpp"
 
@@ -35,7 +36,7 @@ class IterativeInverse : public Inverse {
   bool core_known_ = false;
   bool try_fixed_point_ = true;
   std::vector<Pair> core_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> core_lu_;
+  dense::Lu<double> core_lu_;
   Spectrum scratch_;
 };
 

@@ -1,7 +1,8 @@
 #include "hb/engine/steady/steady_proof.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
+
+#include "lib/dense.hpp"
 
 namespace hb::steady {
 
@@ -57,7 +58,7 @@ Proof prove_error(const WeightedSystem& s, const MatrixXd& T, Index N, const Spe
       A(at(i, k), at(i, k)) -= harmonic * harmonic;
       for (Index j = 0; j < I; ++j) A(at(i, k), at(j, k)) += std::complex<double>(0, harmonic * s.G(i, j));
     }
-  const MatrixXcd B = A.partialPivLu().inverse();
+  const MatrixXcd B = dense::inverse(A);
   Proof proof{HUGE_VAL, HUGE_VAL};
   if (!B.allFinite()) return proof;
   // Sums of n complex products are off by 2 (n + 4) eps of the sum of their moduli at most.

@@ -1,6 +1,5 @@
 #include "hb/engine/steady/steady_state.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "hb/engine/steady/steady_proof.hpp"
 #include "hb/engine/steady/steady_residual.hpp"
 #include "hb/engine/steady/truncation.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -222,7 +222,7 @@ class Solver {
     residual.r = accurate.r * (rows / (given_.speed * given_.speed)).transpose();
     residual.rounding = accurate.rounding * rows.cwiseAbs().transpose() / (given_.speed * given_.speed) +
                         8 * eps * static_cast<double>(system_.I) * residual.r.cwiseAbs();
-    const Spectrum x = (u * (1 / given_.scale)).transpose() * to_u.inverse().transpose();
+    const Spectrum x = (u * (1 / given_.scale)).transpose() * dense::inverse(to_u).transpose();
     residual.largest = steady::largest_over_turn(x * T_.transpose());
     residual.conversion =
         given_.is_q ? 0 : 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
@@ -334,7 +334,7 @@ SteadyState solve_steady_state(const HillSystem& system, double speed, const Ste
   const ScaledSystem scaled = scale_system(system, speed);
   if (scaled.load_scale == 0) return at_rest(system.num_modes());
   const Given given{
-      &system, speed, scaled.load_scale, scaled.T, scaled.T_inverse * system.mass.partialPivLu().inverse(), true};
+      &system, speed, scaled.load_scale, scaled.T, scaled.T_inverse * dense::inverse(system.mass), true};
   return Solver(scaled, given, options).run();
 }
 

@@ -1,10 +1,10 @@
 #include "hb/engine/system/scaled_system.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -104,14 +104,14 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
     T = system.mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
     L = T;
   } else {
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum;
-    if (is_symmetric(system.mass)) spectrum.compute(system.mass);
-    if (is_symmetric(system.mass) && spectrum.eigenvalues().minCoeff() > 0) {
-      T = spectrum.operatorInverseSqrt();
+    const std::optional<Eigen::MatrixXd> root =
+        is_symmetric(system.mass) ? dense::inverse_square_root(system.mass) : std::nullopt;
+    if (root) {
+      T = *root;
       L = T;
     } else {
       T = Eigen::MatrixXd::Identity(I, I);
-      L = system.mass.inverse();
+      L = dense::inverse(system.mass);
     }
   }
 
@@ -119,8 +119,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   // together (factor by experience: a diagonal damping matrix is worth keeping).
   const Eigen::MatrixXd K0 = L * mean_of(C, I) * T, B0 = L * system.damping * T;
   if (I > 1 && is_symmetric(K0)) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(K0);
-    const Eigen::MatrixXd& Q = modes.eigenvectors();
+    const Eigen::MatrixXd Q = dense::symmetric_eigenpairs(K0).vectors;
     if (coupling(Q.transpose() * B0 * Q) < 0.1 * (coupling(K0) + coupling(B0))) {
       L = Q.transpose() * L;
       T = T * Q;
@@ -130,7 +129,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   ScaledSystem scaled;
   scaled.speed = speed;
   scaled.T = T;
-  scaled.T_inverse = T.inverse();
+  scaled.T_inverse = dense::inverse(T);
   scaled.G = L * system.damping * T / speed;
   scaled.diagonal_damping = is_diagonal(scaled.G);
   scaled.K = transformed(C, L, T);

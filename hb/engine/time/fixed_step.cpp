@@ -1,9 +1,10 @@
 #include "hb/engine/time/fixed_step.hpp"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -14,7 +15,7 @@ struct Equation {
   const TimeDomainSystem& system;
   Eigen::MatrixXd M, B, C;
   Eigen::VectorXd h;
-  Eigen::PartialPivLU<Eigen::MatrixXd> mass;
+  dense::Lu<double> mass;
   long evaluations = 0;
 
   explicit Equation(const TimeDomainSystem& s)
@@ -37,7 +38,7 @@ void newmark_step(Equation& equation, double tau, double d, State& state) {
   equation.at(tau + d);
   const Eigen::VectorXd q = state.q + d * state.q1 + d * d / 4 * state.q2, q1 = state.q1 + d / 2 * state.q2;
   const Eigen::MatrixXd A = equation.M + d / 2 * equation.B + d * d / 4 * equation.C;
-  state.q2 = A.partialPivLu().solve(equation.h - equation.B * q1 - equation.C * q);
+  state.q2 = dense::Lu<double>(A).solve(equation.h - equation.B * q1 - equation.C * q);
   state.q = q + d * d / 4 * state.q2;
   state.q1 = q1 + d / 2 * state.q2;
 }

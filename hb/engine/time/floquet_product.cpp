@@ -1,11 +1,10 @@
 #include "hb/engine/time/floquet_product.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -29,16 +28,16 @@ CyclicSolution solve_cyclic(const std::vector<SegmentMap>& segments) {
     rest.block(n, n, n, n).setIdentity();
     rest.topRightCorner(n, 1) = r;
     rest.bottomRightCorner(n, 1) = segments[k].particular;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(column);
-    rest = (qr.householderQ().adjoint() * rest).eval();
-    kept.push_back({rest.topLeftCorner(n, n), qr.matrixQR().topRows(n).triangularView<Eigen::Upper>(),
+    const dense::Qr qr = dense::qr(column);
+    rest = (qr.Q.transpose() * rest).eval();
+    kept.push_back({rest.topLeftCorner(n, n), qr.R.topRows(n),
                     rest.block(0, n, n, n), rest.topRightCorner(n, 1)});
     A = rest.bottomLeftCorner(n, n);
     D = rest.block(n, n, n, n);
     r = rest.bottomRightCorner(n, 1);
   }
   CyclicSolution solution;
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A + D);
+  const dense::Lu<double> lu(A + D);
   // Against the size of the parts: A + D = 0 is the singular case.
   const double size = std::max(A.cwiseAbs().maxCoeff(), D.cwiseAbs().maxCoeff());
   solution.reciprocal_condition = lu.rcond() * std::min(1.0, (A + D).cwiseAbs().maxCoeff() / size);
@@ -71,9 +70,9 @@ LogMultipliers log_multipliers(const std::vector<SegmentMap>& segments, double n
   for (int sweep = 0; sweep < num_sweeps; ++sweep) {
     Q0 = Q;
     for (std::size_t k = 0; k < segments.size(); ++k) {
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(segments[k].transition * Q);
-      Q = qr.householderQ();
-      R[k] = qr.matrixQR().triangularView<Eigen::Upper>();
+      dense::Qr qr = dense::qr(segments[k].transition * Q);
+      Q = std::move(qr.Q);
+      R[k] = std::move(qr.R);
       if (sweep < num_sweeps - num_counted) continue;
       const double largest = R[k].cwiseAbs().maxCoeff();
       for (Eigen::Index i = 0; i < n; ++i) {
@@ -105,7 +104,7 @@ LogMultipliers log_multipliers(const std::vector<SegmentMap>& segments, double n
       product /= norm;
       scale += std::log(norm);
     }
-    for (const std::complex<double>& mu : (S.block(first, first, size, size) * product).eigenvalues()) {
+    for (const std::complex<double>& mu : dense::eigenvalues(S.block(first, first, size, size) * product)) {
       const std::complex<double> log_mu = std::log(mu);
       const double angle = log_mu.imag() == -std::numbers::pi ? std::numbers::pi : log_mu.imag();
       result.values.push_back({{log_mu.real() + scale, angle}, amplification.segment(first, size).maxCoeff()});

@@ -9,6 +9,7 @@
 
 #include "hb/engine/time/floquet_product.hpp"
 #include "hb/engine/time/integration_cost.hpp"
+#include "hb/engine/time/run_comparison.hpp"
 
 namespace hb {
 
@@ -170,29 +171,6 @@ double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return size > 0 ? (a - b).cwiseAbs().maxCoeff() / size : 0;
 }
 
-// Distance of exponents (times a turn) whose imaginary parts count modulo 2 pi.
-double folded_distance(std::complex<double> a, std::complex<double> b) {
-  return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), turn));
-}
-
-// map_error: of the segment maps, relative to their largest entry; an exponent far below the leading one feels it
-// amplified, more than the difference of two runs shows.
-std::vector<Exponent> exponents_of(const Run& run, const Run* coarser, double map_error, double Omega) {
-  std::vector<Exponent> exponents;
-  for (const auto& [log_mu, amplification] : run.multipliers.values) {
-    double error = 0;
-    if (coarser != nullptr) {
-      error = INFINITY;
-      for (const LogMultiplier& other : coarser->multipliers.values)
-        error = std::min(error, difference_factor * folded_distance(log_mu, other.value));
-      error += map_error * amplification + 1e-14 * std::max(1.0, std::abs(log_mu.real())) +
-               1e-16 * static_cast<double>(run.steps);
-    }
-    exponents.push_back({log_mu * Omega / turn, error * Omega / turn});
-  }
-  return exponents;
-}
-
 int power_of_two_at_least(double number, int limit) {
   int power = 1;
   while (power < number && power < limit) power *= 2;
@@ -276,7 +254,7 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
       result.message = fine.message;
       fine = std::move(coarse);
       result.orbit = orbit_of(motion, fine.states);
-      result.exponents = exponents_of(fine, nullptr, 0, Omega);
+      result.exponents = exponents_of({fine.multipliers, nullptr, 0, plan.num_segments, fine.steps, Omega});
       result.q_error = result.q1_error = result.growth_error = INFINITY;
       if (!result.exponents.empty()) result.growth_rate = result.exponents.front().value.real();
       return;
@@ -291,9 +269,6 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
   const double map_error = collocation ? 1e-14
                                        : error_per_step(plan.integrator, plan.fine.tolerance) *
                                              static_cast<double>(fine.steps) / plan.num_segments;
-  result.exponents = exponents_of(fine, single ? nullptr : &coarse, map_error, Omega);
-  result.some_below = fine.multipliers.some_below;
-  if (result.some_below && !result.exponents.empty()) result.complete_above = result.exponents.back().value.real();
   if (!single) {
     result.coarser = orbit_of(motion, coarse.states);
     const double rounding = 1e-14 + eps * std::sqrt(static_cast<double>(fine.steps));
@@ -302,41 +277,11 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
     };
     result.q_error = error(result.orbit.q, result.coarser.q, fine.x_sensitivity);
     result.q1_error = error(result.orbit.q1, result.coarser.q1, fine.v_sensitivity);
-    // Exponents on which two accuracies disagree grossly are those of modes that were not resolved. Their growth, which
-    // comes before their phase, is compared rank by rank; of one that dies within a segment only that is known.
-    const auto resolved = [&](const Exponent& e) { return e.error <= 1e-3 * (Omega + std::abs(e.value.real())); };
-    while (result.exponents.size() > 1 && !resolved(result.exponents.back())) {
-      const std::size_t rank = result.exponents.size() - 1;
-      const LogMultiplier& last = fine.multipliers.values[rank];
-      const double other =
-          rank < coarse.multipliers.values.size() ? coarse.multipliers.values[rank].value.real() : last.value.real();
-      const double slower = std::max(last.value.real(), other);
-      const bool dies = slower < -2.0 * plan.num_segments;
-      const double growth = dies ? slower / 2
-                                 : last.value.real() + difference_factor * std::abs(last.value.real() - other) +
-                                       map_error * last.amplification;
-      result.complete_above = std::max(result.complete_above, growth * Omega / turn);
-      result.exponents.pop_back();
-      result.some_below = true;
-    }
   }
-  if (result.exponents.empty()) {
-    result.status = ShootingStatus::not_reached;
-    result.message = "every mode decays below the integrator's noise within a segment";
-    result.growth_error = INFINITY;
+  if (!judge_exponents({fine.multipliers, single ? nullptr : &coarse.multipliers, map_error, plan.num_segments,
+                        fine.steps, Omega},
+                       result))
     return;
-  }
-  result.growth_rate = result.exponents.front().value.real();
-  result.growth_error = result.exponents.front().error;
-  for (const Exponent& e : result.exponents)
-    if (e.value.real() + e.error > result.growth_rate)
-      result.growth_error = std::max(result.growth_error, e.value.real() + e.error - result.growth_rate);
-  // One that was not resolved may be the leading one.
-  if (result.complete_above > result.growth_rate)
-    result.growth_error = std::max(result.growth_error, result.complete_above - result.growth_rate);
-  result.verdict = result.growth_rate - result.growth_error > 0   ? Verdict::unstable
-                   : result.growth_rate + result.growth_error < 0 ? Verdict::stable
-                                                                  : Verdict::undecided;
   const double growth_scale = std::max(std::abs(result.growth_rate), Omega);
   const bool reached =
       single || (result.q_error <= options.tolerance && result.growth_error <= options.tolerance * growth_scale);

@@ -1,12 +1,5 @@
 #include "hb/engine/time/time_integration.hpp"
 
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sundials/sundials_context.h>
-#include <sundials/sundials_linearsolver.h>
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -14,6 +7,9 @@
 #include <numbers>
 #include <stdexcept>
 #include <utility>
+
+#include "hb/engine/time/sundials_session.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -35,7 +31,7 @@ ScaledMotion::ScaledMotion(const TimeDomainSystem& system)
     : system_(system), tau_(std::numeric_limits<double>::quiet_NaN()) {
   const Eigen::Index I = system.num_modes();
   const double Omega = system.speed;
-  mass_inverse_ = system.mass.inverse();
+  mass_inverse_ = dense::inverse(system.mass);
   C_.resize(I, I);
   h_.resize(I);
   // Sizes over the turn: |K_ii| for the frequencies, |h_i| against stiffness and inertia for the response.
@@ -74,7 +70,7 @@ Eigen::VectorXcd ScaledMotion::frozen_eigenvalues(double tau) {
   J.topRightCorner(I, I) = w_.asDiagonal();
   J.bottomLeftCorner(I, I) = -K_;
   J.bottomRightCorner(I, I) = -G_;
-  return J.eigenvalues();
+  return dense::eigenvalues(J);
 }
 
 namespace {
@@ -128,32 +124,9 @@ int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, real
   const auto B = problem.matrix(b);
   auto X = problem.matrix(x);
   const Eigen::MatrixXd right = B.bottomRows(I) - gamma * motion.K() * B.topRows(I);
-  X.bottomRows(I) = A.partialPivLu().solve(right);
+  X.bottomRows(I) = dense::Lu<double>(A).solve(right);
   X.topRows(I) = B.topRows(I) + gamma * w.asDiagonal() * X.bottomRows(I);
   return SUNLS_SUCCESS;
-}
-
-struct Sundials {
-  SUNContext context = nullptr;
-  N_Vector y = nullptr;
-  SUNLinearSolver solver = nullptr;
-  void* cvode = nullptr;
-
-  Sundials() {
-    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
-  }
-  Sundials(const Sundials&) = delete;
-  Sundials& operator=(const Sundials&) = delete;
-  ~Sundials() {
-    if (cvode != nullptr) CVodeFree(&cvode);
-    if (solver != nullptr) SUNLinSolFreeEmpty(solver);
-    if (y != nullptr) N_VDestroy(y);
-    SUNContext_Free(&context);
-  }
-};
-
-void require(int flag, const char* call) {
-  if (flag != CV_SUCCESS) throw std::runtime_error(std::string(call) + " failed with " + std::to_string(flag));
 }
 
 }  // namespace
@@ -162,7 +135,7 @@ Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double toler
                            const Eigen::MatrixXd& Y0, const Eigen::VectorXd& load, std::span<const double> outputs,
                            Deadline deadline) {
   Problem problem{motion, load, deadline};
-  Sundials sundials;
+  SundialsSession sundials;
   sundials.y = N_VNew_Serial(Y0.size(), sundials.context);
   sundials.solver = SUNLinSolNewEmpty(sundials.context);
   sundials.cvode = CVodeCreate(method == Integrator::adams ? CV_ADAMS : CV_BDF, sundials.context);
@@ -174,17 +147,17 @@ Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double toler
   problem.matrix(sundials.y) = Y0;
 
   void* cvode = sundials.cvode;
-  require(CVodeInit(cvode, right_hand_side, tau0, sundials.y), "CVodeInit");
-  require(CVodeSetErrHandlerFn(
+  require_success(CVodeInit(cvode, right_hand_side, tau0, sundials.y), "CVodeInit");
+  require_success(CVodeSetErrHandlerFn(
               cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
           "CVodeSetErrHandlerFn");
-  require(CVodeSetUserData(cvode, &problem), "CVodeSetUserData");
-  require(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
-  require(CVodeSetMaxNumSteps(cvode, std::numeric_limits<long>::max() / 2), "CVodeSetMaxNumSteps");
-  require(CVodeSetStopTime(cvode, outputs.back()), "CVodeSetStopTime");
-  require(CVodeSetLinearSolver(cvode, sundials.solver, nullptr), "CVodeSetLinearSolver");
+  require_success(CVodeSetUserData(cvode, &problem), "CVodeSetUserData");
+  require_success(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
+  require_success(CVodeSetMaxNumSteps(cvode, std::numeric_limits<long>::max() / 2), "CVodeSetMaxNumSteps");
+  require_success(CVodeSetStopTime(cvode, outputs.back()), "CVodeSetStopTime");
+  require_success(CVodeSetLinearSolver(cvode, sundials.solver, nullptr), "CVodeSetLinearSolver");
   // The linear solve is exact; never let CVODE skip it as "small enough".
-  require(CVodeSetEpsLin(cvode, 1e-14), "CVodeSetEpsLin");
+  require_success(CVodeSetEpsLin(cvode, 1e-14), "CVodeSetEpsLin");
 
   Trajectory trajectory;
   trajectory.states.reserve(outputs.size());
@@ -260,7 +233,7 @@ struct RadauTableau {
                       : (legendre(k + 1, s).first - legendre(k - 1, s).first) / (2 * (2 * static_cast<double>(k) + 1));
       }
     }
-    A = V.transpose().partialPivLu().solve(R.transpose()).transpose();
+    A = dense::Lu<double>(V.transpose()).solve(R.transpose()).transpose();
     A2 = A * A;
   }
 };
@@ -307,7 +280,7 @@ Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double
       }
       // Rows of fast modes are h^2 w^2 larger than the others: equal them before pivoting.
       const Eigen::VectorXd row_scale = system.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
-      const Eigen::MatrixXd a = (row_scale.asDiagonal() * system).partialPivLu().solve(row_scale.asDiagonal() * right);
+      const Eigen::MatrixXd a = dense::Lu<double>(row_scale.asDiagonal() * system).solve(row_scale.asDiagonal() * right);
       Eigen::MatrixXd dx = h * u, du = Eigen::MatrixXd::Zero(I, m);
       for (Eigen::Index k = 0; k < s; ++k) {
         dx += h * h * tableau.A2(s - 1, k) * a.middleRows(k * I, I);

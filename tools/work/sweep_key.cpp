@@ -1,4 +1,4 @@
-#include "tools/work/sweep_parts.hpp"
+#include "tools/work/sweep_key.hpp"
 
 #include <array>
 #include <complex>

@@ -1,12 +1,10 @@
-// Points of a sweep as lists of numbers (hb/part.hpp), and what tells one sweep from another.
+// Points of a sweep as lists of numbers (hb/engine/boundaries/part.hpp).
 #pragma once
-
-#include <cstdint>
 
 #include "hb/engine/boundaries/part.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 
-namespace hb::tools {
+namespace hb {
 
 template <class Visit>
 void visit_range(Visit& visit, TurnRange& range) {
@@ -27,6 +25,7 @@ void visit_point(Visit& visit, SweepPoint& point) {
     visit_elements(visit, rod.max_abs, visit);
     visit_if_there(visit, rod.deflection, visit);
     visit_if_there(visit, rod.bending_moment, visit);
+    visit_if_there(visit, rod.theory_error, visit);
     visit_if_there(visit, rod.stability, [&](StabilitySample& sample) { visit_sample(visit, sample); });
   });
   visit_elements(visit, point.joints, [&](TurnRange& range) { visit_range(visit, range); });
@@ -51,7 +50,4 @@ void visit_critical(Visit& visit, CriticalPoint& point) {
   visit_as_number(visit, point.peak.converged);
 }
 
-// Of everything that the points depend on: the scene's numbers, the axis, the flags.
-[[nodiscard]] std::uint64_t sweep_key(const SweepScene& scene);
-
-}  // namespace hb::tools
+}  // namespace hb

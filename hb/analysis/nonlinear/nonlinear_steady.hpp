@@ -1,0 +1,72 @@
+// The motion that the mechanism really makes at one speed: periodic motion of the exact model (lib/exact), all rods
+// together, with its stability, joint forces and errors; section "Motion without linearisation" of
+// hb/analysis/README.md.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "hb/engine/nonlinear/periodic_motion.hpp"
+
+namespace hb {
+
+struct NonlinearOptions {
+  int turns = 1;  // T: motions of period 2 pi T/Omega
+  std::function<bool()> stop = {};  // true ends the work with what is there
+};
+
+struct NonlinearRod {
+  std::string name;
+  int link = -1;
+  bool reported = true;
+  FourierSeries q;  // harmonic k is k Omega/T
+  std::vector<Extremum> max_abs;  // of each q_i; crank angles over the T turns
+  double error_bound = 0;  // estimate of max |error of q_i| / max |q_i|, for the number of modes kept
+  // Estimated max |error of w| / max |w| from cutting the Ritz series: the motion once more with more modes.
+  std::optional<double> modes_error;
+  std::optional<RodShape> shape;  // the moment EJ kappa, kappa = w''/cos psi
+};
+
+// Another motion of as many turns at the same speed.
+struct OtherMotion {
+  std::vector<std::vector<double>> max_abs;  // by rod and mode
+  std::optional<Verdict> verdict;
+};
+
+enum class MotionSearch {
+  found,
+  none,  // no motion; see `why`, and `last` if the branch was followed
+  stopped,
+};
+
+struct NonlinearResult {
+  double speed = 0;  // rad per unit time
+  int turns = 1;
+  Only computed;
+  MotionSearch search = MotionSearch::none;
+  std::string why;  // no motion: in words
+  std::optional<double> last_speed;  // of the last motion on the way
+  // By continuation from this speed, weakly bent; empty: the linear theory holds at all lower speeds that were looked
+  // at, and Newton's method started from its answer.
+  std::optional<double> followed_from;
+  int folds = 0;  // passed on the way
+  PeriodicMotion motion;  // of all rods
+  std::vector<NonlinearRod> rods;
+  std::optional<Stability> stability;  // of all rods together
+  std::optional<JointForces> forces;
+  std::optional<ForceErrors> force_errors;
+  std::vector<OtherMotion> others;
+  std::vector<std::string> shortfalls;
+  std::vector<Stage> stages;
+};
+
+// The branch followed in speed from the weakly bent motion at low speed, at its first passage of this speed; of T > 1
+// turns the first motion found on a branch that leaves it by period doubling. `model` with a fixed number of modes.
+// Throws RequestError for a [hill] scene, one without elastic links, and modes = "auto".
+[[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
+                                               const NonlinearOptions& options = {});
+
+}  // namespace hb

@@ -1,0 +1,77 @@
+// What is asked of a scene, and what is refused. No files, streams, flags or threads: those are the caller's.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/steady/steady_state.hpp"
+#include "lib/scene/scene.hpp"
+
+namespace hb {
+
+// A request that cannot be met. what() is "field: found ..., allowed: ..."; `sentence` is what stands behind the field,
+// where "@name" stands for another field of the request (what() leaves the mark out).
+class RequestError : public std::runtime_error {
+ public:
+  RequestError(std::string field, std::string found, std::string allowed);
+  // In other words than "found FOUND, allowed: ALLOWED".
+  RequestError(std::string field, std::string found, std::string allowed, std::string sentence);
+
+  std::string field, found, allowed, sentence;
+};
+
+// A speed of the crank as it was given: the other number is converted from it.
+struct Speed {
+  double omega = 0;  // rad per the scene's unit of time
+  double rpm = 0;
+  bool in_rpm = true;  // rpm is the one that was given
+
+  [[nodiscard]] static Speed from_rpm(double rpm, const Units& units);
+  [[nodiscard]] static Speed from_omega(double omega, const Units& units);
+};
+
+// Largest number of Ritz terms: what the Ritz matrices are made for.
+inline constexpr int max_modes = 60;
+
+// What is wanted; only that is computed.
+struct Only {
+  bool steady = true;  // Fourier coefficients and peaks of q
+  bool stability = true;  // exponents and verdict
+  bool reactions = true;  // joint forces and driving torque
+  bool shape = true;  // deflection and bending moment
+  bool verdict = false;  // of stability the verdict alone, from bounds where they prove it
+};
+
+// What is left open is taken from the scene's [analysis].
+struct Request {
+  std::optional<double> rpm, omega;  // one of them; omega in rad per the scene's unit of time
+  std::optional<std::variant<int, AutoModes>> modes;  // Ritz terms per elastic link
+  std::optional<double> tolerance;  // relative error wanted
+  std::vector<std::string> rods;  // names of elastic links; empty: all
+  Only only;
+  SteadyMethod steady_method = SteadyMethod::automatic;
+  SteadyBound bound = SteadyBound::estimated;
+  StabilityMethod stability_method = StabilityMethod::automatic;
+};
+
+// A request with nothing left open but the speed.
+struct Settings {
+  std::variant<int, AutoModes> modes = 5;
+  double tolerance = 1e-10;
+  std::vector<std::string> rods;
+  Only only;
+  SteadyMethod steady_method = SteadyMethod::automatic;
+  SteadyBound bound = SteadyBound::estimated;
+  StabilityMethod stability_method = StabilityMethod::automatic;
+};
+
+// Throw RequestError for what cannot be: modes beyond 1 to 60 (a [hill] scene has its own number), a tolerance beyond
+// 1e-14 to 0.1, no speed or two or one that is not positive.
+[[nodiscard]] Settings settings_of(const Request& request, const Scene& scene);
+[[nodiscard]] Speed speed_of(const Request& request, const Scene& scene);
+
+}  // namespace hb

@@ -1,0 +1,60 @@
+// Products of small matrices over the cells of a turn, each known to an error.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <optional>
+
+#include "hb/engine/exponents/inexact_eigenvalues.hpp"
+
+namespace hb {
+
+// How errors of the cells add up, hb/engine/README.md (E14): rounding errors are independent from cell to cell for the
+// most part, what is wrong with the coefficients is alike in all of them. The factors are choices, which tools/attack
+// puts to the test.
+struct CellErrors {
+  double squares = 0;  // sum of the squares of rounding errors, in units of the machine epsilon
+  double sizes = 0;  // sum of their sizes
+  double given = 0;  // sum of the effects of wrong coefficients
+
+  void add(double rounding_square, double coefficient) {
+    squares += rounding_square;
+    sizes += std::sqrt(rounding_square);
+    given += coefficient;
+  }
+  [[nodiscard]] double total() const;
+};
+
+// M = closing D_N .. D_1.
+struct CellChain {
+  Eigen::MatrixXd factors;  // D_1 .. D_N, p x p each, side by side
+  Eigen::MatrixXd rounding;  // of the entries of D_i: squares of their sizes in units of the machine epsilon
+  Eigen::MatrixXd given;  // bound on the effect of wrong coefficients on the entries of D_i
+  Eigen::MatrixXd closing;
+
+  Eigen::Index size() const { return factors.rows(); }
+  Eigen::Index num_cells() const { return factors.cols() / factors.rows(); }
+};
+
+// |M| = 1 but for its size, kept apart as a logarithm.
+struct ChainProduct {
+  Eigen::MatrixXd M;
+  double log_size = 0;
+  double change = 0;  // of M, sum_i |D_N .. D_(i+1)| |dD_i| |D_(i-1) .. D_1|
+  double trace_change = 0;  // of tr M, sum_i |tr D_N .. D_(i+1) dD_i D_(i-1) .. D_1|
+  double log_bound = 0;  // log of the product of |D_i| + |dD_i|
+};
+[[nodiscard]] ChainProduct product_of(const CellChain& chain);
+
+// Eigenvalues of the product, over e^log_size, in frames that move with its eigenvectors (E13): growth inside the turn
+// that is taken back before its end does not count as it does in norms of partial products. Those that are not known
+// apart share a disc. Empty where eigenvectors are too close.
+[[nodiscard]] std::optional<InexactEigenvalues> framed_eigenvalues(const CellChain& chain, const ChainProduct& product);
+
+// Relative change of the eigenvalue mu of the product to first order,
+//     sum_i |w_i dD_i v_(i-1)|/|w_i D_i v_(i-1)|,     v and w its right and left vectors,
+// carried through the cells. No other eigenvalue lies within ten times `radius`.
+[[nodiscard]] double first_order_change(const CellChain& chain, const ChainProduct& product, std::complex<double> mu,
+                                        double radius);
+
+}  // namespace hb

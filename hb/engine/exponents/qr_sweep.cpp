@@ -1,0 +1,99 @@
+#include "hb/engine/exponents/qr_sweep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "hb/engine/exponents/small_matrix.hpp"
+
+namespace hb {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
+  const Index n = maps.num_states(), N = maps.num_cells;
+  constexpr int most_sweeps = 16;
+  const double apart = std::log(10.0);
+  QrSweep result{MatrixXd(n, n * N), {}, {}, MatrixXd(n, n * (N + 1))};
+  MatrixXd Q = MatrixXd::Zero(n, n), start(n, n), next(n, n);
+  if (from.rows() == n)
+    Q = from;
+  else
+    for (Index i = 0; i < n; ++i) Q(i % 2 == 0 ? i / 2 : n / 2 + i / 2, i) = 1;
+  for (int count = 0; count < most_sweeps; ++count) {
+    start = Q;
+    result.frames.leftCols(n) = Q;
+    VectorXd logs = VectorXd::Zero(n);
+    for (Index i = 0; i < N; ++i) {
+      multiply_columns(maps.cells, n * i, Q, next);
+      orthogonalise(next, Q);
+      result.R.middleCols(n * i, n) = next;
+      result.frames.middleCols(n * (i + 1), n) = Q;
+      logs += next.diagonal().cwiseAbs().cwiseMax(1e-300).array().log().matrix();
+    }
+    // Split where the growth over the turn differs by 10 and the leading subspace has come back onto itself.
+    result.turned = start.transpose() * Q;
+    result.ends.clear();
+    bool settled = true;
+    for (Index j = 1; j < n; ++j) {
+      if (!(logs(j - 1) - logs(j) > apart)) continue;
+      if (result.turned.bottomLeftCorner(n - j, j).norm() <= 1e-13 * std::sqrt(double(n)))
+        result.ends.push_back(j);
+      else
+        settled = false;
+    }
+    result.ends.push_back(n);
+    if (settled && count > 0) break;
+  }
+  return result;
+}
+
+// Solved from the last cell to the first, which contracts, since what leads grows more over a turn.
+std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
+  const auto blocks = Index(sweep.ends.size());
+  SubspaceBases bases{MatrixXd::Identity(n, n).replicate(1, N), MatrixXd::Identity(n, n).replicate(1, N)};
+  if (blocks == 1) return bases;
+  const auto begin = [&](Index b) { return b == 0 ? 0 : sweep.ends[std::size_t(b - 1)]; };
+  const auto width = [&](Index b) { return sweep.ends[std::size_t(b)] - begin(b); };
+  Rows V = Rows::Identity(n, n), W(n, n), product(n, n), before;
+  constexpr int most_turns = 8;
+  for (int turn = 0; turn < most_turns; ++turn) {
+    before = V;
+    V = sweep.turned.transpose() * (V * sweep.turned).eval();
+    for (Index b = 0; b < blocks; ++b) {
+      V.block(begin(b), 0, n - begin(b), sweep.ends[std::size_t(b)]).setZero();
+      V.diagonal().segment(begin(b), width(b)).setOnes();
+    }
+    for (Index i = N - 1; i >= 0; --i) {
+      const auto R = sweep.R.middleCols(n * i, n);
+      W.setIdentity();
+      for (Index r = n - 2; r >= 0; --r)
+        for (Index c = r + 1; c < n; ++c) W.row(r) -= V(r, c) * W.row(c);
+      bases.left.middleCols(n * i, n) = W;
+      for (Index b = 0; b < blocks; ++b) {
+        const auto D = R.block(begin(b), begin(b), width(b), width(b));
+        product.middleCols(begin(b), width(b)) = V.middleCols(begin(b), width(b)).lazyProduct(D);
+      }
+      V.swap(product);
+      for (Index r = n - 1; r >= 0; --r) {
+        for (Index c = r + 1; c < n; ++c) V.row(r) -= R(r, c) * V.row(c);
+        const bool vanishes = !(std::abs(R(r, r)) > 1e-290);
+        V.row(r) *= vanishes ? 0 : 1 / R(r, r);
+        if (vanishes) V(r, r) = 1;
+      }
+      bases.right.middleCols(n * i, n) = V;
+    }
+    bool settled = turn > 0;
+    for (Index b = 0; b < blocks; ++b) {
+      const auto columns = V.middleCols(begin(b), width(b));
+      settled = settled && (columns - before.middleCols(begin(b), width(b))).norm() <= 0.1 * columns.norm();
+    }
+    if (settled) return bases;
+  }
+  return std::nullopt;
+}
+
+}  // namespace hb

@@ -1,0 +1,178 @@
+#include "lib/scene/plausibility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "lib/scene/quantity.hpp"
+
+namespace hb {
+
+namespace {
+
+struct Window {
+  double least, most;  // in m, kg, s, rad
+  bool holds(double value) const { return value >= least && value <= most; }
+};
+
+double in_si(double value, Dimension dimension, const Units& units) {
+  return converted(value, base_unit({dimension}, units), Unit{1, 0, dimension});
+}
+
+void remark(const TableView& table, std::string_view key, Concern concern, const std::string& words,
+            const SceneContext& context) {
+  const toml::node* node = table.node(key);
+  context.remarks.push_back({concern, fmt::format("{}: {}: {}", table.problems().place(node ? *node : table.table()),
+                                                  table.path_of(key), words)});
+}
+
+// A value of SI size in the largest of these units that leaves it at least 1.
+std::string in_best_unit(double si, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    const double value = si / size_of(*parse_unit(name).unit);
+    if (std::abs(value) >= 1 || name == *(names.end() - 1)) return fmt::format("{:.4g} {}", value, name);
+  }
+  return "";
+}
+
+// "; 210 GPa if the number was in MPa": the first unit in which the number as written is likely.
+std::string likely_slip(const TableView& table, std::string_view key, const Window& likely,
+                        std::initializer_list<const char*> units, std::initializer_list<const char*> shown) {
+  const toml::node* node = table.node(key);
+  if (!node) return "";
+  std::optional<double> number;
+  if (node->is_number()) number = node->value<double>();
+  if (const auto* text = node->as_string()) {
+    if (const auto written = number_and_unit(text->get())) number = written->value;
+  }
+  if (!number) return "";
+  for (const char* name : units) {
+    const double si = *number * size_of(*parse_unit(name).unit);
+    if (likely.holds(si)) return fmt::format("; {} if the number was in {}", in_best_unit(si, shown), name);
+  }
+  return "";
+}
+
+void remark_on_density(const TableView& link, const TableView& elastic, const Body& body, const SceneContext& context) {
+  constexpr Window solid{100, 25000}, with_mass{20, 500000};
+  const double density = in_si(body.elastic->density, dimension::density, context.units);
+  if (elastic.has("density") && !link.has("mass") && !solid.holds(density)) {
+    remark(elastic, "density", Concern::material,
+           fmt::format("found {:.4g} kg/m^3{} (solids have 100 to 25000), allowed", density,
+                       likely_slip(elastic, "density", {500, 23000},
+                                   {"kg/m^3", "g/cm^3", "t/mm^3", "kg/mm^3", "lb/in^3"}, {"kg/m^3"})),
+           context);
+  }
+  if (link.has("mass") && !elastic.has("density") && !elastic.has("material") && !with_mass.holds(density)) {
+    remark(link, "mass", Concern::material,
+           fmt::format("found {:.4g} kg, which over length and area is a density of {:.4g} kg/m^3 (solids have 100 to "
+                       "25000), allowed",
+                       in_si(body.mass, dimension::mass, context.units), density),
+           context);
+  }
+}
+
+}  // namespace
+
+void remark_on_elastic(const TableView& link, const TableView& elastic, const Body& body, const SceneContext& context) {
+  const Elastic& rod = *body.elastic;
+  constexpr Window stiff{1e9, 1.5e12}, likely{5e9, 7e11};
+  const double E = in_si(rod.youngs_modulus, dimension::pressure, context.units);
+  if (elastic.has("E") && !stiff.holds(E)) {
+    const std::initializer_list<const char*> shown = {"GPa", "MPa", "kPa", "Pa"};
+    remark(elastic, "E", Concern::material,
+           fmt::format("found {}{} (solids have 1 GPa to 1.5 TPa), allowed", in_best_unit(E, shown),
+                       likely_slip(elastic, "E", likely, {"MPa", "GPa", "psi", "ksi", "kPa", "Pa"}, shown)),
+           context);
+  }
+  remark_on_density(link, elastic, body, context);
+  if (rod.shear) {
+    remark(elastic, "shear", Concern::section,
+           "found shear data, allowed; they are checked and kept, and the equations solved leave shear out", context);
+  }
+
+  // A square has J/F^2 = 1/12, a strip on edge or flat h/b times as much or as little.
+  constexpr Window solid{1.0 / 240, 4};
+  const double F = rod.area, J = rod.second_moment;
+  if (!elastic.has("section") && !solid.holds(J / (F * F))) {
+    remark(elastic, "J", Concern::section,
+           fmt::format("found J/area^2 = {:.4g} (sections have 1/240 to 4, a square 1/12), allowed; are J and area in "
+                       "the scene's unit of length?",
+                       J / (F * F)),
+           context);
+  }
+  const double slenderness = body.length / std::sqrt(J / F);
+  if (!(slenderness >= 20) && (elastic.has("section") || solid.holds(J / (F * F)))) {
+    remark(elastic, elastic.has("J") ? "J" : "section", Concern::slenderness,
+           fmt::format("found length/sqrt(J/area) = {:.3g} (slender rods have more than 20), allowed; so thick a rod "
+                       "bends by shear too, which the elastic data take as shear = {{ G, k }}",
+                       slenderness),
+           context);
+  }
+}
+
+void remark_on_linkage(const TableView& scene, const Linkage& linkage, const SceneContext& context) {
+  const double g = std::abs(in_si(linkage.gravity, dimension::acceleration, context.units));
+  if (scene.has("gravity") && g > 0 && !Window{1, 30}.holds(g)) {
+    remark(scene, "gravity", Concern::gravity,
+           fmt::format(
+               "found {:.4g} m/s^2{}, allowed", g,
+               likely_slip(scene, "gravity", {9, 10.5}, {"m/s^2", "mm/s^2", "in/s^2", "ft/s^2", "cm/s^2"}, {"m/s^2"})),
+           context);
+  }
+  double longest = linkage.crank.body.length;
+  std::string name = "crank";
+  for (int b = 1; b < linkage.num_bodies(); ++b) {
+    const Body* body = body_at(linkage, b);
+    if (body && body->length > longest) longest = body->length, name = body->name;
+  }
+  const double metres = in_si(longest, dimension::length, context.units);
+  if (Window{5e-4, 50}.holds(metres)) return;
+  std::string slip;
+  for (const char* unit : {"mm", "m", "in", "cm"}) {
+    if (!slip.empty() || !Window{0.01, 5}.holds(longest * size_of(*parse_unit(unit).unit))) continue;
+    slip = fmt::format("; {:.4g} {} if the numbers were in {} ([units] length = \"{}\")", longest, unit, unit, unit);
+  }
+  remark(
+      scene, "crank", Concern::size,
+      fmt::format("found {} with a length of {}{}, allowed", name, in_best_unit(metres, {"km", "m", "mm", "um"}), slip),
+      context);
+}
+
+void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults, const Linkage& linkage,
+                     const SceneContext& context) {
+  double omega = defaults.omega ? defaults.omega->to : 0;
+  if (defaults.rpm) omega = speed_from_rpm(defaults.rpm->to, context.units);
+  const double tip =
+      omega / context.units.time_in_s * in_si(linkage.crank.body.length, dimension::length, context.units);
+  if (!(tip > 300)) return;
+  remark(
+      analysis, defaults.rpm ? "rpm" : "omega", Concern::speed,
+      fmt::format("found a crank whose tip moves at {:.4g} m/s, allowed; are speed and lengths in their units?", tip),
+      context);
+}
+
+std::vector<std::string> warnings(std::vector<Remark> remarks) {
+  std::erase_if(remarks, [](const Remark& remark) { return remark.concern == Concern::note; });
+  std::ranges::stable_sort(remarks, std::greater{}, &Remark::concern);
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < remarks.size();) {
+    const Concern concern = remarks[i].concern;
+    const auto others = std::ranges::count(remarks, concern, &Remark::concern) - 1;
+    lines.push_back(remarks[i].line + (others == 0 ? "" : fmt::format(" (and {} more of this kind)", others)));
+    i += static_cast<std::size_t>(others) + 1;
+  }
+  return lines;
+}
+
+std::vector<std::string> notes(const std::vector<Remark>& remarks) {
+  std::vector<std::string> lines;
+  for (const Remark& remark : remarks) {
+    if (remark.concern == Concern::note) lines.push_back(remark.line);
+  }
+  return lines;
+}
+
+}  // namespace hb

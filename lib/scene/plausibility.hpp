@@ -1,0 +1,25 @@
+// Numbers that are possible but hardly meant: a wrong unit, a slip of a power of ten. Each is told with the likely
+// slip.
+#pragma once
+
+#include "lib/scene/scene_parts.hpp"
+
+namespace hb {
+
+// Young's modulus outside 1 GPa to 1.5 TPa, a density no solid has, J/area^2 outside 1/240 to 4, length/sqrt(J/area)
+// below 20; shear, which the equations leave out.
+void remark_on_elastic(const TableView& link, const TableView& elastic, const Body& body, const SceneContext& context);
+
+// Gravity a thousand times off, links of less than half a millimetre or more than 50 m.
+void remark_on_linkage(const TableView& scene, const Linkage& linkage, const SceneContext& context);
+
+// A crank whose tip is faster than 300 m/s.
+void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults, const Linkage& linkage,
+                     const SceneContext& context);
+
+// Most likely to spoil the answer first; of several of one kind the first, with their number. Notes are left out of
+// `warnings` and are the only ones in `notes`.
+[[nodiscard]] std::vector<std::string> warnings(std::vector<Remark> remarks);
+[[nodiscard]] std::vector<std::string> notes(const std::vector<Remark>& remarks);
+
+}  // namespace hb

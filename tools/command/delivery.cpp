@@ -1,0 +1,65 @@
+#include "tools/command/delivery.hpp"
+
+#include <fmt/core.h>
+
+#include <exception>
+
+#include "tools/command/command.hpp"
+#include "tools/output/printable.hpp"
+#include "tools/output/standard_output.hpp"
+#include "tools/report/page_pictures.hpp"
+
+namespace hb::tools {
+namespace {
+
+void warn(const OutputFolder& folder, const std::exception& error) {
+  fmt::print(stderr, "hb {}: {}\n", folder.command(), printable(error.what()));
+}
+
+// One stage: data, their script, the pictures.
+std::vector<Figure> write_stage(OutputFolder& folder, bool pictures, std::vector<Figure> figures,
+                                const std::function<std::vector<Figure>(OutputFolder&)>& write) {
+  for (Figure& figure : write(folder)) figures.push_back(std::move(figure));
+  if (!pictures) figures.clear();
+  if (!figures.empty()) folder.write(script_name(folder.command()), plot_script(figures));
+  folder.commit();
+  return figures;
+}
+
+}  // namespace
+
+int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& delivery) {
+  std::vector<Figure> figures;
+  bool written = false;
+  if (folder != nullptr) {
+    try {
+      figures = write_stage(*folder, pictures, {}, delivery.write_data);
+      written = true;
+      if (delivery.committed) delivery.committed();
+    } catch (const std::exception& error) {
+      warn(*folder, error);
+      status = exit_wrong_input;
+    }
+  } else if (delivery.committed) {
+    delivery.committed();
+  }
+  print_out(delivery.printed);
+  if (!written) return status;
+  bool drawn = true;
+  try {
+    if (pictures && delivery.write_more)
+      figures = write_stage(*folder, pictures, std::move(figures), delivery.write_more);
+    if (!figures.empty()) drawn = draw_figures(figures, *folder);
+    if (delivery.page) {
+      const std::string page = delivery.page(drawn ? page_pictures(figures, *folder) : std::vector<PageText::Picture>());
+      folder->write("report.html", page);
+      folder->commit();
+    }
+  } catch (const std::exception& error) {
+    warn(*folder, error);
+    drawn = false;
+  }
+  return drawn || status != exit_ok ? status : exit_no_pictures;
+}
+
+}  // namespace hb::tools

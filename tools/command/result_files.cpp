@@ -1,0 +1,63 @@
+#include "tools/command/result_files.hpp"
+
+#include <fmt/core.h>
+
+#include "tools/output/sweep_output.hpp"
+#include "tools/pictures/sweep_figures.hpp"
+
+namespace hb::tools {
+
+std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder) {
+  std::vector<Figure> figures;
+  const Only& only = result.computed;
+  const CsvFile critical = critical_csv(scene, result);
+  if (only.steady) folder.write(critical.name, csv_text(critical));
+  if (only.stability) {
+    const CsvFile bands = bands_csv(scene, result);
+    folder.write(bands.name, csv_text(bands));
+  }
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    if (!result.rods[r].reported || !(only.steady || only.stability || only.shape)) continue;
+    const CsvFile rod = sweep_rod_csv(scene, result, r);
+    folder.write(rod.name, csv_text(rod));
+    if (only.stability) {
+      figures.push_back(campbell_figure(scene, result, r, rod, critical.name));
+      figures.push_back(growth_figure(scene, result, r, rod));
+    }
+    if (only.steady) figures.push_back(peaks_figure(scene, result, r, rod));
+    if (only.shape) figures.push_back(strain_figure(scene, result, r, rod));
+  }
+  if (only.reactions) {
+    const CsvFile forces = sweep_forces_csv(scene, result);
+    folder.write(forces.name, csv_text(forces));
+    for (Figure& figure : sweep_force_figures(scene, result, forces)) figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder) {
+  const MapResult& result = document.result;
+  const auto write = [&](const CsvFile& file) {
+    folder.write(file.name, csv_text(file));
+    return file.name;
+  };
+  MapFiles files;
+  files.grid = write(map_grid_csv(document));
+  files.boundaries = write(
+      map_boundary_csv(document, result.boundaries, "map_boundaries.csv", "boundaries of stability of the worst rod"));
+  for (std::size_t r = 0; r < result.rods.size() && result.rods.size() > 1; ++r) {
+    std::vector<RodCurve> own;
+    for (const BoundaryCurve& curve : result.maps[r].boundaries) own.push_back({r, curve});
+    write(map_boundary_csv(document, own, file_name("map_boundaries_" + result.rods[r]) + ".csv",
+                           "boundaries of stability of " + result.rods[r]));
+  }
+  files.resonance = write(map_resonance_csv(document));
+  for (const DampingCurves& damping : result.damping) {
+    files.damping.push_back(write(map_boundary_csv(
+        document, damping.boundaries, file_name(fmt::format("map_boundaries_damping_{:g}", damping.factor)) + ".csv",
+        fmt::format("boundaries of stability of the worst rod with damping times {:g}", damping.factor))));
+  }
+  return {map_figure(document, files, colour)};
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,17 @@
+// The CSV files of a sweep and of a map, and what is drawn of them.
+#pragma once
+
+#include <vector>
+
+#include "hb/analysis/sweep_analysis.hpp"
+#include "tools/output/map_output.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/pictures/gnuplot.hpp"
+#include "tools/pictures/map_plot.hpp"
+
+namespace hb::tools {
+
+[[nodiscard]] std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder);
+[[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
+
+}  // namespace hb::tools

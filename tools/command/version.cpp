@@ -1,0 +1,7 @@
+#include "tools/command/version.hpp"
+
+namespace hb::tools {
+
+const char* version() { return HB_VERSION; }
+
+}  // namespace hb::tools

@@ -1,0 +1,70 @@
+#include "tools/output/json_parts.hpp"
+
+#include "tools/output/output_units.hpp"
+
+namespace hb::tools {
+
+// No "-0.0".
+Json pair(std::complex<double> value) { return Json::array({value.real() + 0.0, value.imag() + 0.0}); }
+
+Json range_json(const FourierSeries& series, Eigen::Index component) {
+  const Range range = fourier::range(series, component);
+  return {{"min", range.min.value}, {"max", range.max.value}};
+}
+
+Json fourier_json(const FourierSeries& series) {
+  Json modes = Json::array();
+  for (Eigen::Index i = 0; i < series.num_components(); ++i) {
+    Json coefficients = Json::array();
+    for (Eigen::Index n = 0; n <= series.num_harmonics(); ++n) coefficients.push_back(pair(series.c(i, n)));
+    modes.push_back(std::move(coefficients));
+  }
+  return modes;
+}
+
+Json peak_json(const RodPeak& peak, const Units& units) {
+  return {{"max_abs", peak.max_abs}, {"x", peak.x}, {"crank_angle", scene_angle(peak.crank_angle, units)}};
+}
+
+Json stability_json(const Stability& stability, Eigen::Index num_exponents) {
+  Json json;
+  Json exponents = Json::array(), errors = Json::array();
+  for (const Exponent& exponent : stability.exponents) {
+    exponents.push_back(pair(exponent.value));
+    errors.push_back(exponent.error);
+  }
+  json["exponents"] = std::move(exponents);
+  json["exponent_errors"] = std::move(errors);
+  json["exponents_unresolved"] = stability.method == StabilityMethod::bound
+                                     ? 0
+                                     : num_exponents - static_cast<Eigen::Index>(stability.exponents.size());
+  Json& uncertain = json["exponents_uncertain"] = Json::array();
+  for (const Exponent& exponent : stability.uncertain)
+    uncertain.push_back({{"exponent", pair(exponent.value)}, {"error", exponent.error}});
+  json["growth_rate"] = stability.growth_rate + 0.0;
+  json["exponent_error"] = stability.growth_error;
+  json["growth_interval"] = {stability.growth_low + 0.0, stability.growth_high + 0.0};
+  json["verdict"] = to_string(stability.verdict);
+  json["stability_method"] = to_string(stability.method);
+  json["stability_converged"] = stability.converged;
+  return json;
+}
+
+Json joints_json(const JointForces& forces) {
+  Json joints = Json::object();
+  for (const JointForce& joint : forces.joints) {
+    Json& entry = joints[joint.name];
+    if (joint.rigid.num_components() == 1) {
+      entry["n"] = range_json(joint.elastic, 0);
+      entry["n_rigid"] = range_json(joint.rigid, 0);
+      continue;
+    }
+    entry["x"] = range_json(joint.elastic, 0);
+    entry["y"] = range_json(joint.elastic, 1);
+    entry["x_rigid"] = range_json(joint.rigid, 0);
+    entry["y_rigid"] = range_json(joint.rigid, 1);
+  }
+  return joints;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,28 @@
+// Pieces that several JSON documents have.
+#pragma once
+
+#include <complex>
+#include <nlohmann/json.hpp>
+
+#include "hb/engine/exponents/stability.hpp"
+#include "lib/linkage/joint_forces.hpp"
+#include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
+
+namespace hb::tools {
+
+using Json = nlohmann::ordered_json;
+
+// [re, im], no "-0.0".
+[[nodiscard]] Json pair(std::complex<double> value);
+// {"min":, "max":} over the turn.
+[[nodiscard]] Json range_json(const FourierSeries& series, Eigen::Index component);
+// Per component [[re, im], ...].
+[[nodiscard]] Json fourier_json(const FourierSeries& series);
+[[nodiscard]] Json peak_json(const RodPeak& peak, const Units& units);
+// Exponents with their errors, growth rate, verdict; of `num_exponents` that there are.
+[[nodiscard]] Json stability_json(const Stability& stability, Eigen::Index num_exponents);
+// By joint and component, elastic beside rigid.
+[[nodiscard]] Json joints_json(const JointForces& forces);
+
+}  // namespace hb::tools

@@ -1,0 +1,224 @@
+#include "tools/output/nonlinear_output.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "tools/output/json_output.hpp"
+#include "tools/output/json_parts.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Text = fmt::memory_buffer;
+
+template <class... Args>
+void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
+}
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json rod_json(const NonlinearRod& rod, const NonlinearResult& result, const Units& units) {
+  Json json;
+  json["modes"] = rod.q.num_components();
+  json["harmonics"] = rod.q.num_harmonics();
+  Json max_abs = Json::array(), angles = Json::array();
+  for (const Extremum& peak : rod.max_abs) {
+    max_abs.push_back(peak.value);
+    angles.push_back(scene_angle(peak.crank_angle, units));
+  }
+  if (result.computed.steady)
+    json["q"] = {{"max_abs", std::move(max_abs)}, {"crank_angle", std::move(angles)}, {"fourier", fourier_json(rod.q)}};
+  json["error_bound"] = number(rod.error_bound);
+  if (rod.modes_error) {
+    json["modes_error"] = *rod.modes_error;
+    json["more_modes_needed"] = !(*rod.modes_error <= 0.01);
+  }
+  if (rod.shape) {
+    json["deflection"] = peak_json(rod.shape->deflection, units);
+    json["bending_moment"] = peak_json(rod.shape->bending_moment, units);
+  }
+  return json;
+}
+
+std::string way_text(const NonlinearResult& result, const Scene& scene) {
+  if (!result.followed_from) return "weakly bent at all lower speeds: Newton's method from the linear answer";
+  return fmt::format("branch followed from {}, {} on the way", speed_text(*result.followed_from, scene),
+                     result.folds == 1 ? "1 fold" : fmt::format("{} folds", result.folds));
+}
+
+void add_rod(Text& text, const NonlinearRod& rod, const OutputUnits& units) {
+  add(text, "{}: {} {}, {} harmonics\n", rod.name, rod.max_abs.size(), rod.max_abs.size() == 1 ? "mode" : "modes",
+      rod.q.num_harmonics());
+  add(text, "  q_i: amplitude of sin(i pi x/l), largest over the motion\n");
+  add(text, "    {:>3}  {:>18}  {:>18}\n", "i", "max |q_i| [" + units.length + "]", "crank angle [deg]");
+  for (std::size_t i = 0; i < rod.max_abs.size(); ++i)
+    add(text, "    {:>3}  {:>18.10g}  {:>18.3f}\n", i + 1, rod.max_abs[i].value,
+        rod.max_abs[i].crank_angle * degrees_per_radian);
+  add(text, "  error bound       {:.1e} of the largest |q|, estimated\n", rod.error_bound);
+  if (rod.modes_error)
+    add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
+        *rod.modes_error <= 0.01 ? "" : "; MORE MODES ARE NEEDED (--modes)");
+  const auto peak = [&](const char* name, const RodPeak& at, double factor, const std::string& unit) {
+    add(text, "  {:<16}  {:.8g} {} at x = {:.5g} {}, crank angle {:.3f} deg\n", name, at.max_abs * factor, unit, at.x,
+        units.length, at.crank_angle * degrees_per_radian);
+  };
+  if (rod.shape) {
+    peak("deflection", rod.shape->deflection, 1, units.length);
+    peak("bending moment", rod.shape->bending_moment, units.moment, "N m");
+  }
+  add(text, "\n");
+}
+
+void add_stability(Text& text, const NonlinearResult& result, const Scene& scene) {
+  constexpr std::size_t most = 8;
+  const Stability& stability = *result.stability;
+  const OutputUnits units = output_units(scene);
+  add(text, "All rods together\n  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate),
+      "real part", "imaginary part", "error");
+  for (std::size_t k = 0; k < std::min(most, stability.exponents.size()); ++k) {
+    const Exponent& exponent = stability.exponents[k];
+    const auto shown = [&](double value) {
+      return fmt::format("{:.{}g}", value + 0.0, trusted_digits(value, exponent.error));
+    };
+    add(text, "  {:>16}  {:>18}  {:>18}  {:>8.1e}\n", "", shown(exponent.value.real()), shown(exponent.value.imag()),
+        exponent.error);
+  }
+  if (stability.exponents.size() > most)
+    add(text, "    ... {} more (--json has all)\n", stability.exponents.size() - most);
+  add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
+      stability.converged ? "" : "  NOT REACHED");
+  add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene.units));
+}
+
+void add_forces(Text& text, const NonlinearResult& result, const OutputUnits& units) {
+  const JointForces& forces = *result.forces;
+  const auto range = [&](const FourierSeries& series, Eigen::Index c, double factor) {
+    const Range of = fourier::range(series, c);
+    return fmt::format("{:>12.6g} .. {:<12.6g}", of.min.value * factor, of.max.value * factor);
+  };
+  add(text,
+      "Joint forces, smallest .. largest, in the frames of the bent couplers' chords.\n  {:<22}  {:^28}  {:^28}\n",
+      "[N]", "rigid", "elastic");
+  for (const JointForce& joint : forces.joints)
+    for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c)
+      add(text, "  {:<20} {}  {}  {}\n", c == 0 ? joint.name : "",
+          joint.rigid.num_components() == 1 ? "n"
+          : c == 0                          ? "x"
+                                            : "y",
+          range(joint.rigid, c, units.force), range(joint.elastic, c, units.force));
+  add(text, "  {:<22}  {}  {}\n", "driving torque [N m]", range(forces.torque_rigid, 0, units.moment),
+      range(forces.torque, 0, units.moment));
+  if (result.force_errors)
+    add(text, "  estimated errors: forces {:.1e} of the largest, torque {:.1e}\n", result.force_errors->force,
+        result.force_errors->torque);
+}
+
+}  // namespace
+
+Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, const Settings& settings, bool stats) {
+  const Units& units = model.scene.units;
+  Json json;
+  json["title"] = model.scene.title;
+  json["theory"] = "nonlinear";
+  json["rpm"] = rpm_of(result.speed, units);
+  json["omega"] = result.speed;
+  json["period"] = result.turns;
+  json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
+  if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
+  json["tolerance"] = settings.tolerance;
+  if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
+  json["units"] = units_json(units);
+  json["found"] = result.search == MotionSearch::found;
+  if (result.followed_from) json["followed_from_rpm"] = rpm_of(*result.followed_from, units);
+  if (result.search != MotionSearch::found && result.last_speed) json["last_rpm"] = rpm_of(*result.last_speed, units);
+  json["folds_passed"] = result.folds;
+  Json& rods = json["rods"] = Json::object();
+  for (const NonlinearRod& rod : result.rods)
+    if (rod.reported) rods[rod.name] = rod_json(rod, result, units);
+  if (result.stability) {
+    json["system"] = stability_json(*result.stability, 2 * result.motion.q.num_components());
+    json["verdict"] = to_string(result.stability->verdict);
+  }
+  if (result.forces) {
+    json["joints"] = joints_json(*result.forces);
+    json["torque"] = range_json(result.forces->torque, 0);
+    json["torque"]["rigid"] = range_json(result.forces->torque_rigid, 0);
+    json["joints_error"] = number(result.force_errors->force);
+    json["torque_error"] = number(result.force_errors->torque);
+  }
+  Json& others = json["other_motions"] = Json::array();
+  for (const OtherMotion& other : result.others) {
+    Json entry;
+    for (std::size_t r = 0; r < result.rods.size(); ++r)
+      if (result.rods[r].reported) entry["rods"][result.rods[r].name] = {{"max_abs", other.max_abs[r]}};
+    if (other.verdict) entry["verdict"] = to_string(*other.verdict);
+    others.push_back(std::move(entry));
+  }
+  if (stats) {
+    std::vector<Stage> stages = model.stages;
+    stages.insert(stages.end(), result.stages.begin(), result.stages.end());
+    json["stats"] = stages_json(stages);
+  }
+  return json;
+}
+
+std::string nonlinear_table(const SceneModel& model, const NonlinearResult& result) {
+  const Scene& scene = model.scene;
+  const OutputUnits units = output_units(scene);
+  Text text;
+  add(text, "{}: {} (omega = {:.10g} rad/{}), motion without linearisation{}\n", scene_name(scene),
+      speed_text(result.speed, scene), result.speed, units.time,
+      result.turns == 1 ? "" : fmt::format(", period of {} turns", result.turns));
+  if (result.search == MotionSearch::found) add(text, "  {}\n\n", way_text(result, scene));
+  for (const NonlinearRod& rod : result.rods)
+    if (rod.reported) add_rod(text, rod, units);
+  if (result.stability) add_stability(text, result, scene);
+  if (result.forces) add_forces(text, result, units);
+  for (const OtherMotion& other : result.others) {
+    add(text, "Another motion at this speed{}:",
+        other.verdict ? fmt::format(", {}", to_string(*other.verdict)) : std::string());
+    for (std::size_t r = 0; r < result.rods.size(); ++r)
+      if (result.rods[r].reported)
+        add(text, " {} max |q_1| = {:.6g} {}", result.rods[r].name, other.max_abs[r].front(), units.length);
+    add(text, "\n");
+  }
+  for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  if (result.search != MotionSearch::found && result.last_speed)
+    add(text, "  the last motion on the way is at {}\n", speed_text(*result.last_speed, scene));
+  for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
+  return fmt::to_string(text);
+}
+
+SpeedResult as_speed_result(const NonlinearResult& result) {
+  SpeedResult speed;
+  speed.speed = result.speed;
+  speed.computed = result.computed;
+  speed.computed.stability = false;
+  for (const NonlinearRod& from : result.rods) {
+    RodResult rod;
+    rod.name = from.name;
+    rod.link = from.link;
+    rod.reported = from.reported;
+    rod.num_modes = from.q.num_components();
+    SteadyState state;
+    state.status = SteadyStatus::converged;
+    state.q = from.q;
+    state.num_harmonics = static_cast<int>(from.q.num_harmonics());
+    state.error_bound = from.error_bound;
+    rod.steady = std::move(state);
+    rod.max_abs = from.max_abs;
+    rod.shape = from.shape;
+    speed.rods.push_back(std::move(rod));
+  }
+  speed.forces = result.forces;
+  speed.force_errors = result.force_errors;
+  return speed;
+}
+
+}  // namespace hb::tools

@@ -1,0 +1,63 @@
+#include "tools/output/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+
+#include "tools/command/command.hpp"
+
+namespace hb::tools {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
+  throw OutputError(fmt::format("--out: {} cannot be written: {}", path.string(), reason));
+}
+
+}  // namespace
+
+OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
+  std::error_code error;
+  if (fs::is_directory(path_, error)) fail(path_, "it is a folder");
+  std::string name = (fs::absolute(path_).parent_path() / (".hb-" + path_.filename().string() + "-XXXXXX")).string();
+  file_ = mkostemp(name.data(), O_CLOEXEC);
+  if (file_ < 0) fail(path_, std::strerror(errno));
+  scratch_ = name;
+  removed_on_signal_.emplace(scratch_, Unfinished::Kind::file);
+  // mkostemp's file is for its owner alone; a usual new file is not.
+  const mode_t mask = umask(0);
+  umask(mask);
+  fchmod(file_, 0666 & ~mask);
+}
+
+OutputFile::~OutputFile() {
+  if (file_ >= 0) close(file_);
+  std::error_code ignored;
+  if (!scratch_.empty()) fs::remove(scratch_, ignored);
+}
+
+void OutputFile::commit(const std::string& text) {
+  const char* next = text.data();
+  for (std::size_t left = text.size(); left > 0;) {
+    const ssize_t written = ::write(file_, next, left);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, std::strerror(errno));
+    next += written;
+    left -= static_cast<std::size_t>(written);
+  }
+  const int closed = close(file_);
+  file_ = -1;
+  if (closed != 0) fail(path_, std::strerror(errno));
+  std::error_code error;
+  fs::rename(scratch_, path_, error);
+  if (error) fail(path_, error.message());
+  removed_on_signal_.reset();
+  scratch_.clear();
+}
+
+}  // namespace hb::tools

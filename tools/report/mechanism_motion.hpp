@@ -1,0 +1,15 @@
+// How a mechanism moves, for a page that draws it.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "lib/linkage/linkage.hpp"
+#include "tools/report/byte_block.hpp"
+
+namespace hb::tools {
+
+// Bodies with the motion of their frames over the crank angle (series of x, y of joint 0, then of the unit vector
+// toward joint 1) and their points in these frames; guides of sliders.
+[[nodiscard]] nlohmann::ordered_json motion_json(const Linkage& linkage, ByteBlock& block);
+
+}  // namespace hb::tools

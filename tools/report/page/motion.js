@@ -1,0 +1,58 @@
+// Where the bodies are: joint 0 and direction of each as Fourier series of the crank angle, their points in their own
+// frames.
+const motionAt = (motion, angle) => motion.bodies.map((body, k) => {
+  const series = motionSeries(motion, k);
+  const [x, y, ex, ey] = series.map((component) => valueAt(component, angle));
+  return {
+    body, origin: [x, y], direction: [ex, ey],
+    at: (p) => [x + ex * p[0] - ey * p[1], y + ey * p[0] + ex * p[1]],
+  };
+});
+const motionSeries = (motion, k) => {
+  if (!motion.series) motion.series = motion.bodies.map((body) => seriesOf(body.frame));
+  return motion.series[k];
+};
+
+// Motion of the chosen point: one for all where only the speed differs.
+const motionHere = () => {
+  const here = place(state.index);
+  if (here && here.motion !== undefined && here.motion !== null) return report.motions[here.motion];
+  return here && here.problem ? null : (report.motions || [])[0] || null;
+};
+
+// Shape of one rod: w(x) = sum q_i sin(i pi x/l), to the left of joint 0 -> joint 1 positive.
+const deflection = (q, share) => {
+  let w = 0;
+  for (let i = 0; i < q.length; ++i) w += q[i] * Math.sin((i + 1) * Math.PI * share);
+  return w;
+};
+
+// Ritz coordinates of a rod at the chosen speed as series; null where there is no periodic motion.
+let responseCache = {index: -1, of: {}};
+const responseOf = (name) => {
+  if (responseCache.index !== state.index) responseCache = {index: state.index, of: {}};
+  if (!(name in responseCache.of)) {
+    const here = place(state.index), curves = here && here.curves && here.curves.rods[name];
+    responseCache.of[name] = curves && curves.q ? seriesOf(curves.q) : null;
+  }
+  return responseCache.of[name];
+};
+const coordinatesAt = (name, angle) => {
+  const q = responseOf(name);
+  return q ? q.map((component) => valueAt(component, angle / turns())) : null;
+};
+
+// The rod's answer at the chosen speed lies beyond the linear theory: drawn dashed and grey.
+const isBeyond = (name) => {
+  const here = place(state.index), own = here && here.numbers && here.numbers.rods && here.numbers.rods[name];
+  return !!own && (own.theory === "beyond" || own.theory_error > 0.05);
+};
+
+// Why a plot of this speed is empty.
+const whyEmpty = (what) => {
+  if (points.count === 0) return `This page holds no single speeds: ${what} comes with hb report, sweep or steady.`;
+  const here = place(state.index);
+  if (!isKept(state.index)) return `Left out here: of ${points.count} speeds the page keeps curves of every ${report.points.every}th. Verdict and growth rate are those of this speed.`;
+  if (here && here.problem) return here.problem;
+  return `No ${what} at this speed: there is no periodic motion, or it was not asked for.`;
+};

@@ -1,0 +1,85 @@
+// Tables along the speed: verdicts, unstable bands, critical speeds, errors of every speed.
+const period = isLinkage ? "the crank's period" : "the period";
+const kindText = (kind) => ({"+1": `with ${period} (+1)`, "-1": `with twice ${period} (−1)`, complex: "two frequencies (complex pair)"}[kind] || kind || "open: the sweep ends inside");
+const axisName = () => withUnit(report.axis.label, report.axis.unit);
+const tableOf = (caption, heads, rows) => {
+  const wordy = (column) => rows.length > 0 && rows[0].children[column] && rows[0].children[column].classList.contains("words");
+  return element("div", {class: "scroll"}, element("table", {}, element("caption", {}, caption),
+    element("thead", {}, element("tr", {}, heads.map((h, c) => element("th", {scope: "col", class: wordy(c) ? "words" : ""}, h)))), element("tbody", {}, rows)));
+};
+const textCell = (text) => element("td", {class: "words"}, text);
+
+const verdictTable = () => {
+  const names = ["stable", "bounded", "unstable", "undecided"];
+  const rows = rods.filter((rod) => report.verdicts[rod.name]).map((rod) => {
+    const letters = report.verdicts[rod.name], count = (name) => [...letters].filter((l) => verdictNames[l] === name).length;
+    const missing = [...letters].filter((l) => l === "-").length;
+    return element("tr", {}, element("td", {}, rod.name), names.map((name) => element("td", {}, String(count(name)))), element("td", {}, String(missing)));
+  });
+  return rows.length ? tableOf("Verdicts of the computed speeds", ["link", ...names, "no answer"], rows) : null;
+};
+
+const bandTable = () => {
+  const details = (report.sweep && report.sweep.band_details) || null;
+  if (!details) return null;
+  const rows = Object.entries(details).flatMap(([rod, bands]) => bands.map((band) => element("tr", {}, element("td", {}, rod),
+    band.from_kind === null ? element("td", {"data-value": band.from}, "before ", short(band.from, 8)) : cell(band.from, {error: band.from_error}),
+    band.to_kind === null ? element("td", {"data-value": band.to}, "beyond ", short(band.to, 8)) : cell(band.to, {error: band.to_error}),
+    cell(band.fastest_growth, {digits: 5}), cell(band.fastest_at, {digits: 7}), textCell(kindText(band.from_kind)), textCell(kindText(band.to_kind)))));
+  if (rows.length === 0) return element("p", {class: "caption"}, "No unstable band among the computed speeds and between them.");
+  return tableOf(`Unstable bands, ${axisName()}`, ["link", "from", "to", `fastest growth of its points [${units.rate}]`, "at", "begins", "ends"], rows);
+};
+
+const criticalTable = () => {
+  const critical = (report.sweep && report.sweep.critical) || null;
+  if (!critical) return null;
+  if (critical.length === 0) return element("p", {class: "caption"}, "No resonance peak.");
+  return tableOf(`Critical speeds: peaks of the response, ${axisName()}`, ["link", "at", "of", withUnit("max |q|", units.response), "mode", "order n", "frequency [Hz]", `damping [${units.rate}]`],
+    critical.map((c) => element("tr", {}, element("td", {}, c.rod), cell(c.x, {error: c.error}), textCell("q" + subscript(c.q)), c.unbounded ? element("td", {}, "unbounded") : cell(c.max_abs, {digits: 6}),
+      element("td", {}, c.mode === undefined ? "–" : String(c.mode)), element("td", {}, c.order === undefined ? "–" : String(c.order)),
+      cell(c.frequency === undefined ? null : c.frequency * units.hertz, {digits: 6}), cell(c.damping === undefined ? null : c.damping, {digits: 5}))));
+};
+
+const foldTable = () => {
+  const sweep = report.sweep || {};
+  const rows = [...(sweep.folds || []).map((rpm) => [rpm, "fold: the motion turns back in speed"]), ...(sweep.bifurcations || []).map((b) => [b.rpm, kindText(b.kind)])];
+  return rows.length ? tableOf("Folds and bifurcations of the branches [rpm]", ["at", "what"], rows.map(([rpm, what]) => element("tr", {}, cell(rpm, {digits: 8}), textCell(what)))) : null;
+};
+
+// One row for each computed speed; made when it is opened, as it may be long.
+const speedTable = () => {
+  const make = () => {
+    const heads = [axisName()];
+    for (const rod of rods) heads.push(`${rod.name}: verdict`, `growth rate [${units.rate}]`, withUnit("max |q₁|", units.response), "error of q", "error of modes", ...(report.has_theory ? ["error of theory"] : []));
+    const rows = [];
+    for (let k = 0; k < points.count; ++k) {
+      const here = place(k), numbers = here && here.numbers;
+      const row = element("tr", {}, element("td", {"data-value": points.x[k]}, element("a", {href: "#controls", onclick: () => chooseSpeed(k)}, short(points.x[k], 10))));
+      for (const rod of rods) {
+        const own = (numbers && numbers.rods && numbers.rods[rod.name]) || {}, known = report.growth && report.growth[rod.name];
+        const rate = own.growth_rate !== undefined ? own.growth_rate : known ? doubles(known.rate)[k] : null;
+        const error = own.exponent_error !== undefined ? own.exponent_error : known ? doubles(known.error)[k] : undefined;
+        const q = own.q && own.q.max_abs ? own.q.max_abs[0] : own.max_abs ? own.max_abs[0] : null;
+        row.append(element("td", {}, verdictMark(verdictOf(rod.name, k))), cell(rate, {error}), cell(q, {digits: 6}), cell(own.error_bound === undefined ? null : own.error_bound, {digits: 2}), cell(own.modes_error === undefined ? null : own.modes_error, {digits: 2}));
+        if (report.has_theory) row.append(own.theory_error === null || own.theory_error === undefined ? element("td", {}, own.theory === "beyond" ? "beyond" : "not judged") : cell(own.theory_error, {digits: 2}));
+      }
+      rows.push(row);
+    }
+    return tableOf("Every computed speed", heads, rows);
+  };
+  let made = false;
+  return element("details", {ontoggle: (event) => { if (event.target.open && !made) { made = true; event.target.append(make()); } }}, element("summary", {}, `Every computed speed (${points.count})`));
+};
+
+const boundaryTable = () => {
+  if (!report.map || report.map.boundaries.length === 0) return null;
+  return tableOf(`Boundary curves of the map`, ["link", "kind", "points", "largest error, along x or y"], report.map.boundaries.slice(0, 60).map((curve) => element("tr", {}, element("td", {}, curve.rod || ""), textCell(kindText(curve.kind)),
+    element("td", {}, String(Array.isArray(curve.points[0]) ? curve.points.length : curve.count)), cell(curve.error, {digits: 2}))));
+};
+
+const setUpTables = () => {
+  const host = document.getElementById("tables-views");
+  host.className = "tables";
+  const all = [verdictTable(), bandTable(), criticalTable(), foldTable(), boundaryTable(), points.count > 0 ? speedTable() : null].filter(Boolean);
+  host.append(...(all.length ? all : [element("p", {class: "missing"}, "No tables: nothing was computed along the speed.")]));
+};

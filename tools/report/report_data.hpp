@@ -1,0 +1,54 @@
+// The data document of a report, from what the commands computed and from the documents that they print: the page's
+// numbers are those of --json, its curves are Fourier series.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/sweep_analysis.hpp"
+#include "tools/report/byte_block.hpp"
+#include "tools/report/packed_numbers.hpp"
+#include "tools/report/report_page.hpp"
+#include "tools/report/report_places.hpp"
+
+namespace hb::tools {
+
+class ReportData {
+ public:
+  explicit ReportData(const Scene& scene);
+
+  // One speed: its place alone.
+  void add_speed(const ReportPlace& place, const Settings& settings);
+  // Points along an axis: places at kept_points(), in that order.
+  void add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places);
+  // `map` as map_json has it; values of the scene's own numbers where they are known.
+  void add_map(nlohmann::ordered_json map, const SceneSource& source);
+
+  // The way from one design to another: `tune` as tune_json has it, `words` as the table says it. The page's points are
+  // those of the design after.
+  struct DesignCurve {
+    std::string title, unit;
+    std::vector<double> before_x, before, after_x, after;  // along the page's axis
+  };
+  void add_design(nlohmann::ordered_json tune, const std::string& words, const Scene& before,
+                  const std::vector<DesignCurve>& curves);
+
+  // The page; `text` holds what only the caller knows (subtitle, provenance, the scene's file, pictures).
+  [[nodiscard]] std::string page(PageText text) const;
+
+ private:
+  void add_rods(const SceneModel& model, const Scene& scene);
+  void add_places(const std::vector<ReportPlace>& places, const Settings& settings, bool one_scene);
+  nlohmann::ordered_json curves(const ReportPlace& place, const nlohmann::ordered_json& steady);
+  void add_along(const SweepScene& scene, const SweepResult& result);
+
+  Scene scene_;
+  nlohmann::ordered_json data_;
+  ByteBlock block_;
+  PackedNumbers packed_;
+  std::vector<std::string> rods_;
+  std::string subtitle_;
+};
+
+}  // namespace hb::tools
