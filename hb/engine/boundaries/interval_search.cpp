@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <memory>
-#include <numbers>
+#include <queue>
 
+#include "hb/engine/boundaries/encounters.hpp"
 #include "hb/engine/boundaries/growth_model.hpp"
-#include "hb/engine/boundaries/strands.hpp"
+#include "hb/engine/exponents/growth_bound.hpp"
 
 namespace hb {
 
@@ -28,28 +28,20 @@ constexpr double most_motion_of_models = 0.5;
 // Intervals are not divided below this, relative to x: narrower bands are not looked for.
 constexpr double least_width = 2e-9;
 constexpr int most_divisions = 48;
-constexpr int most_evaluations = 1000;
-
-struct Place {
-  StabilitySample sample;
-  Strands strands;
-  std::vector<MeanExponent> mean;
-  std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
-  bool unstable = false;
-
-  double x() const { return sample.x; }
-  double growth() const { return sample.stability.growth_rate / sample.speed; }
-  double growth_error() const { return sample.stability.growth_error / sample.speed; }
-};
+constexpr int most_evaluations = 100, most_evaluations_per_boundary = 40;
 
 struct Cell {
   double from, to;  // places
   int divisions = 0;
+  bool operator<(const Cell& other) const {
+    const double width = to - from, other_width = other.to - other.from;
+    return width != other_width ? width < other_width : from > other.from;
+  }
 };
 
 class Search {
  public:
-  Search(const SystemAt& at, const SweepOptions& options) : at_(at), options_(options) {
+  Search(const SystemAt& at, const SweepOptions& options) : at_(at), options_(options), encounters_(at, options) {
     located_ = options;
     located_.stability.leading_only = true;
   }
@@ -57,13 +49,13 @@ class Search {
   SearchedInterval run(const StabilitySample& a, const StabilitySample& b, const StabilitySample* before,
                        const StabilitySample* after) {
     for (const StabilitySample* sample : {before, &a, &b, after})
-      if (sample != nullptr) places_.emplace(sample->x, place(*sample));
+      if (sample != nullptr) places_.emplace(sample->x, encounters_.place(*sample));
     first_ = a.x;
     last_ = b.x;
-    cells_.push_back({a.x, b.x, 0});
+    cells_.push({a.x, b.x, 0});
     while (!cells_.empty()) {
-      const Cell cell = cells_.back();
-      cells_.pop_back();
+      const Cell cell = cells_.top();
+      cells_.pop();
       if (places_.at(cell.from).unstable != places_.at(cell.to).unstable)
         split_at_boundary(cell);
       else
@@ -74,27 +66,6 @@ class Search {
 
  private:
   using Node = std::map<double, Place>::iterator;
-
-  Place place(const StabilitySample& sample) const {
-    Place made;
-    made.sample = sample;
-    made.mean = sample.mean;
-    if (made.mean.empty()) {
-      if (const std::optional<ScaledSystem> system = at_(sample.x)) made.mean = mean_exponents(*system);
-    }
-    made.strands = strands_of(sample, made.mean);
-    made.unstable = is_unstable(sample);
-    return made;
-  }
-
-  const ParametricCoupling* coupling(Place& p) const {
-    if (!p.coupling) {
-      const std::optional<ScaledSystem> system = at_(p.x());
-      if (!system) return nullptr;
-      p.coupling = std::make_shared<ParametricCoupling>(*system, options_.max_order);
-    }
-    return p.coupling.get();
-  }
 
   // A growth that is not told from none between two places.
   double least_growth(const Place& p, const Place& q) const {
@@ -109,7 +80,7 @@ class Search {
     ++counts[why];
     const std::optional<StabilitySample> sample = stability_sample(at_, x, options_.stability);
     if (!sample || !std::isfinite(sample->stability.growth_rate)) return false;
-    places_.emplace(x, place(*sample));
+    places_.emplace(x, encounters_.place(*sample));
     return true;
   }
 
@@ -124,8 +95,8 @@ class Search {
     const StabilitySample& inside = places_.at(boundary.unstable_above ? right : left).sample;
     if (leading_resolved(inside.stability)) boundary.kind = boundary_kind(inside.stability, inside.speed);
     boundaries_.push_back(boundary);
-    if (right < cell.to) cells_.push_back({right, cell.to, cell.divisions + 1});
-    if (left > cell.from) cells_.push_back({cell.from, left, cell.divisions + 1});
+    if (right < cell.to) cells_.push({right, cell.to, cell.divisions + 1});
+    if (left > cell.from) cells_.push({cell.from, left, cell.divisions + 1});
   }
 
   // The nearest place on one side of the boundary that shows the verdict of that side.
@@ -149,16 +120,19 @@ class Search {
     const double width = cell.to - cell.from;
     if (width <= least_width * std::max(std::abs(cell.from), std::abs(cell.to))) return;
     Place &p = places_.at(cell.from), &q = places_.at(cell.to);
+    static const bool dbg = getenv("DBG");
+    const int why_before = why; why = -1;
     const double x = p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
+    if (dbg && cell.from < atof(getenv("HI")) && cell.to > atof(getenv("LO"))) fprintf(stderr, "cell %.12g %.12g %s -> %.12g why %d\n", cell.from, cell.to, p.unstable ? "unstable" : "stable", x, why);
     if (std::isnan(x)) return;
-    if (cell.divisions >= most_divisions || evaluations_ >= most_evaluations || !(x > cell.from && x < cell.to) ||
+    if (cell.divisions >= most_divisions || evaluations_ >= most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size()) || !(x > cell.from && x < cell.to) ||
         !evaluate(x)) {
       if (getenv("DBG")) fprintf(stderr, "give up %.15g %.15g x %.17g div %d ev %d\n", cell.from, cell.to, x, cell.divisions, evaluations_);
       give_up(cell);
       return;
     }
-    cells_.push_back({x, cell.to, cell.divisions + 1});
-    cells_.push_back({cell.from, x, cell.divisions + 1});
+    cells_.push({x, cell.to, cell.divisions + 1});
+    cells_.push({cell.from, x, cell.divisions + 1});
   }
 
   // NaN: settled; otherwise where to look.
@@ -166,13 +140,13 @@ class Search {
     const double middle = 0.5 * (p.x() + q.x());
     if (bounded(p, q)) return nan;
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
-    if (!resolved(p, q, most_motion)) return WHY(0, middle);
+    if (!encounters_.resolved(p, q, most_motion)) return WHY(0, middle);
     const double least = least_growth(p, q);
     double worst = least, where = nan;
-    const auto meeting = meetings(p, q, least);
+    const auto meeting = encounters_.meetings(p, q, least);
     for (const Meeting& m : meeting) {
       const std::optional<GrowthModel> model = pair_model(p, m.a, m.b, q);
-      if (!model) return WHY(1, m.x);
+      if (!model) return WHY(1, clamped(m.x, p, q));
       worst = std::max(worst, 2 * model->error());
       const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
       if (centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width && model->rise() > 0.25 * far * far)
@@ -208,16 +182,15 @@ class Search {
   double doubtful_while_unstable(Place& p, Place& q) {
     const double middle = 0.5 * (p.x() + q.x());
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
-    if (!resolved(p, q, most_motion_while_unstable)) return WHY(5, middle);
-    if (keeps_growing(p, q)) return nan;
+    if (!encounters_.resolved(p, q, most_motion_while_unstable)) return WHY(5, middle);
+    if (encounters_.lock_holds(p, q)) return nan;
+    // Exponents that grow by themselves.
     std::vector<GrowthModel> models;
     for (Place* place : {&p, &q}) {
-      for (std::size_t k = 0; k < place->strands.all.size(); ++k) {
-        if (!(place->strands.all[k].s.real() > 0)) break;
-        const Place& other = place == &p ? q : p;
-        for (const std::optional<GrowthModel>& model :
-             {single_model(*place, k, other), partner_model(*place, k, other)})
-          if (model) models.push_back(*model);
+      Place& other = place == &p ? q : p;
+      for (std::size_t k = 0; k < place->strands.all.size() && place->strands.all[k].s.real() > 0; ++k) {
+        if (!encounters_.alone(*place, other, k)) continue;
+        if (const std::optional<GrowthModel> model = single_model(*place, k, other)) models.push_back(*model);
       }
     }
     if (models.empty()) return WHY(6, middle);
@@ -234,163 +207,15 @@ class Search {
     return worst > 0 ? nan : clamped(where, p, q);
   }
 
-  // A closed-form bound on the growth proves stability at both ends with more to spare than it changes.
-  static bool bounded(const Place& p, const Place& q) {
+  // A closed-form bound on the growth proves stability at both ends and between them with more to spare than it
+  // changes.
+  bool bounded(const Place& p, const Place& q) const {
     const double a = p.sample.growth_bound, b = q.sample.growth_bound;
-    return std::max(a, b) + std::abs(a - b) < 0;
-  }
-
-  // No two exponents that may excite each other move farther than that.
-  bool resolved(Place& p, Place& q, double most) {
-    if (p.mean.size() != q.mean.size()) return true;
-    const std::size_t n = p.mean.size();
-    const std::vector<double> growth = growth_by_mean(p, q);
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = i + 1; j < n; ++j) {
-        const double at_p = p.mean[j].value.imag() - p.mean[i].value.imag();
-        const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
-        if (!(std::abs(at_p - at_q) > most)) continue;
-        // Two of which one grows leave a gap only if they decay together.
-        const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
-        if (p.unstable && (larger < 0 || larger + smaller > 0)) continue;
-        const double needed = p.unstable ? larger : needed_coupling(larger, smaller);
-        if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling),
-                     std::min(q.mean[i].coupling, q.mean[j].coupling)) < needed)
-          continue;
-        const ParametricCoupling *of_p = coupling(p), *of_q = coupling(q);
-        if (of_p == nullptr || of_q == nullptr) return false;
-        const int first = std::max(1, static_cast<int>(std::ceil(std::min(at_p, at_q) - 0.5)));
-        const int last = std::min(options_.max_order, static_cast<int>(std::floor(std::max(at_p, at_q) + 0.5)));
-        for (int k = first; k <= last; ++k)
-          if (!(std::max((*of_p)(i, j, k), (*of_q)(i, j, k)) < needed)) return false;
-      }
-    }
-    return true;
-  }
-
-  // Growth of the exponents that belong to each mean exponent, the larger one of both places. One that is locked to
-  // another belongs to either: while unstable those without any count as its partners.
-  static std::vector<double> growth_by_mean(const Place& p, const Place& q) {
-    std::vector<double> growth(p.mean.size(), -HUGE_VAL);
-    for (const Place* place : {&p, &q})
-      for (const Strand& strand : place->strands.all)
-        if (!strand.mean.empty())
-          growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
-    for (std::size_t k = 0; k < growth.size(); ++k)
-      if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
-    return growth;
-  }
-
-  // Two exponents that meet grow if their coupling exceeds the root of the product of their decays.
-  double needed_coupling(double growth, double other) const {
-    return std::max(std::sqrt(std::max(-growth, 0.0) * std::max(-other, 0.0)), options_.least_growth);
-  }
-
-  // How far two strands of p that may excite each other move against each other on the way to q at most, twice as far
-  // as their mean exponents; negative: they do not excite each other.
-  double exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const {
-    const Strand &s = p.strands.all[a], &t = p.strands.all[b];
-    const bool comparable = p.mean.size() == q.mean.size();
-    double motion = s.mean.empty() || t.mean.empty() ? HUGE_VAL : -1;
-    for (const std::size_t n : s.mean) {
-      for (const std::size_t r : t.mean) {
-        const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
-        const double moved = !comparable ? HUGE_VAL
-                                         : 2 * (std::abs(q.mean[n].value.imag() - in) +
-                                                std::abs(q.mean[r].value.imag() - ir));
-        if (n == r || moved <= motion || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
-        const ParametricCoupling* strength = coupling(p);
-        if (strength == nullptr) return HUGE_VAL;
-        const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
-        const int k = static_cast<int>(std::round(to - from));
-        const bool excites = k == 0 ? !(strength->symmetric() && in * ir > 0)
-                                    : !((k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k)) < needed);
-        if (excites) motion = moved;
-      }
-    }
-    return motion;
-  }
-
-  // Twice what each strand of p may move on its way to q, and what it seems to have moved.
-  static std::vector<double> motions(const Place& p, const Place& q) {
-    const std::vector<std::size_t> onward = continued(p.strands, q.strands);
-    std::vector<double> motion(p.strands.all.size());
-    for (std::size_t k = 0; k < motion.size(); ++k) {
-      motion[k] = 2 * mean_motion(p.strands, q.strands, k);
-      if (onward[k] != no_strand)
-        motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
-    }
-    return motion;
-  }
-
-  // The leading strand grows so fast at both ends that what it moves against any other one which may quench it cannot
-  // unlock it on the way.
-  bool keeps_growing(Place& p, const Place& q) const {
-    const std::vector<Strand>& all = p.strands.all;
-    const std::vector<double> motion = motions(p, q);
-    const double growth = std::min(p.growth(), q.growth());
-    for (std::size_t b = 1; b < all.size(); ++b) {
-      if (all[0].s.real() + all[b].s.real() > 0) continue;
-      const double most = motion[0] + motion[b];
-      if (most < growth || apart(p.strands, 0, b) > most) continue;
-      if (exciting_motion(p, q, 0, b, std::sqrt(all[0].s.real() * std::abs(all[b].s.real()))) >= 0) return false;
-    }
-    return growth > motion[0];
-  }
-
-  struct Meeting {
-    std::size_t a, b;  // strands at p
-    double x;  // where they meet, roughly
-  };
-
-  static double apart(const Strands& s, std::size_t a, std::size_t b) {
-    return std::abs(folded(s.all[a].s - s.all[b].s).imag());
-  }
-  // Imaginary part modulo 1/2 of where two strands meet.
-  static double meeting_point(const Strands& s, std::size_t a, std::size_t b) {
-    const double m = s.all[b].s.imag() + 0.5 * folded(s.all[a].s - s.all[b].s).imag();
-    return m - 0.5 * std::round(2 * m);
-  }
-
-  // Pairs that may come together between p and q and excite each other: the distances at both ends add up to no more
-  // than they may have moved.
-  std::vector<Meeting> meetings(Place& p, Place& q, double least) {
-    std::vector<Meeting> found;
-    const Strands &sp = p.strands, &sq = q.strands;
-    const std::vector<double> motion = motions(p, q);
-    std::vector<double> mean_part;
-    for (std::size_t k = 0; k < motion.size(); ++k) mean_part.push_back(2 * mean_motion(sp, sq, k));
-    for (std::size_t a = 0; a < sp.all.size(); ++a) {
-      for (std::size_t b = a + 1; b < sp.all.size(); ++b) {
-        const double most = motion[a] + motion[b] + 1e-12, here = apart(sp, a, b);
-        if (here > most) continue;
-        // What they move is more than what locks them, and than the growth that this gives.
-        const double mean = 0.5 * (sp.all[a].s.real() + sp.all[b].s.real());
-        if (mean + 0.5 * (most + std::abs(sp.all[a].s.real() - sp.all[b].s.real())) < 0) continue;
-        const double point = meeting_point(sp, a, b);
-        if (point < -1e-12) continue;  // the conjugate pair's
-        double there = HUGE_VAL, there_all = HUGE_VAL;  // along the axis; in all
-        for (std::size_t c = 0; c < sq.all.size(); ++c)
-          for (std::size_t d = c + 1; d < sq.all.size(); ++d) {
-            const double away = meeting_point(sq, c, d) - point;
-            if (std::abs(away - 0.5 * std::round(2 * away)) > most || apart(sq, c, d) > there) continue;
-            there = apart(sq, c, d);
-            there_all = std::abs(folded(sq.all[c].s - sq.all[d].s));
-          }
-        if (!(here + there <= most)) continue;
-        // Two that stay together, so near that nothing grows.
-        constexpr double together = 0.2, far = 0.9;
-        if (std::max(std::abs(folded(sp.all[a].s - sp.all[b].s)), there_all) < -together * mean && most < far) continue;
-        const double needed = needed_coupling(sp.all[a].s.real(), sp.all[b].s.real());
-        const double exciting = exciting_motion(p, q, a, b, std::max(needed, least));
-        const double sum = here + there, moved = exciting + motion[a] + motion[b] - mean_part[a] - mean_part[b];
-        if (exciting < 0 || sum > moved + 1e-12) continue;
-        // Where they have hardly come nearer than they may have moved, nothing is known of the place.
-        const double part = sum > 0.15 * moved ? here / sum : 0.5;
-        found.push_back({a, b, clamped(p.x() + (q.x() - p.x()) * part, p, q)});
-      }
-    }
-    return found;
+    if (!(std::max(a, b) + std::abs(a - b) < 0)) return false;
+    const std::optional<ScaledSystem> between = at_(0.5 * (p.x() + q.x()));
+    if (!between) return false;
+    const double m = growth_bound(*between);
+    return std::max({a, b, m}) + std::max(std::abs(a - m), std::abs(b - m)) < 0;
   }
 
   // Growth that hardly changes.
@@ -568,9 +393,10 @@ class Search {
 
   const SystemAt& at_;
   const SweepOptions& options_;
+  Encounters encounters_;
   SweepOptions located_;
   std::map<double, Place> places_;
-  std::vector<Cell> cells_;
+  std::priority_queue<Cell> cells_;  // the widest first
   std::vector<StabilityBoundary> boundaries_;
   std::vector<std::array<double, 2>> not_excluded_;
   double first_ = 0, last_ = 0;

@@ -29,6 +29,26 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
   return found;
 }
 
+// Of several that are locked at one place the fastest goes with the one that decays likewise.
+void find_partners(std::vector<Strand>& all) {
+  constexpr double same_place = 1e-7;
+  for (std::size_t a = 0; a < all.size(); ++a) {
+    if (all[a].partner != no_strand) continue;
+    double least = HUGE_VAL;
+    for (std::size_t b = a + 1; b < all.size(); ++b) {
+      const cplx apart = folded(all[a].s - all[b].s);
+      const double error = all[a].error + all[b].error;
+      if (all[b].partner != no_strand || std::abs(apart.imag()) > same_place + 2 * error || apart.real() <= 4 * error)
+        continue;
+      if (const double sum = std::abs(all[a].s.real() + all[b].s.real()); sum < least) {
+        least = sum;
+        all[a].partner = b;
+      }
+    }
+    if (all[a].partner != no_strand) all[all[a].partner].partner = a;
+  }
+}
+
 }  // namespace
 
 cplx folded(cplx s) {
@@ -51,6 +71,7 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
   }
   std::stable_sort(strands.all.begin(), strands.all.end(),
                    [](const Strand& a, const Strand& b) { return a.s.real() > b.s.real(); });
+  find_partners(strands.all);
   return strands;
 }
 

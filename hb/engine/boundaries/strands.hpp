@@ -10,10 +10,13 @@
 
 namespace hb {
 
+constexpr std::size_t no_strand = static_cast<std::size_t>(-1);
+
 struct Strand {
   std::complex<double> s;  // lambda/Omega, imaginary part in (-1/2, 1/2]
   double error = 0;
   std::vector<std::size_t> mean;  // mean exponents that it may have come from, the nearest first
+  std::size_t partner = no_strand;  // at the same place of the axis, one growing faster than the other: locked
 };
 
 struct Strands {
@@ -31,8 +34,6 @@ struct Strands {
 
 // How far strand k of p moves on its way to q if the mean exponents tell, in either direction; modulo nothing.
 [[nodiscard]] double mean_motion(const Strands& p, const Strands& q, std::size_t k);
-
-constexpr std::size_t no_strand = static_cast<std::size_t>(-1);
 
 // For each strand of p the one of q that it goes on as: nearest to where it is, or to where its mean exponent's motion
 // takes it; each is taken once.
