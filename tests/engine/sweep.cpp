@@ -178,19 +178,21 @@ TEST(Sweep, BandsDoNotDependOnWhereTheRangeBeginsNorOnTheStep) {
     }
 }
 
-// A stable gap inside a band, narrower than the step, was missed.
-TEST(Sweep, FindsTheGapBetweenTwoBandsOfTheSixLinkMechanismAtAnyStep) {
+// Stable gaps inside bands, narrower than the step, were missed.
+TEST(Sweep, FindsTheGapsBetweenTheBandsOfTheSixLinkMechanismAtAnyStep) {
   const Linkage linkage = six_link::linkage({.J = 45});
   const LinkageCoefficients coefficients = linkage_coefficients(linkage);
   const HillSystem system = ritz_system(*body_at(linkage, coefficients.links[0]), coefficients.rods[0], 5);
   constexpr double rpm = std::numbers::pi / 30;
   for (const int intervals : {1, 3, 8}) {
     const Sweep found = sweep(system, 1500 * rpm, 3500 * rpm, intervals);
-    ASSERT_EQ(found.bands.size(), 2u) << intervals;
+    ASSERT_EQ(found.bands.size(), 3u) << intervals;
     EXPECT_NEAR(found.bands[0].to / rpm, 1895.07, 0.01);
     EXPECT_EQ(found.bands[0].kind_to, BoundaryKind::minus_one);
     EXPECT_NEAR(found.bands[1].from / rpm, 1909.98, 0.01);
     EXPECT_EQ(found.bands[1].kind_from, BoundaryKind::plus_one);
+    EXPECT_NEAR(found.bands[1].to, 280.872514, 1e-5);
+    EXPECT_NEAR(found.bands[2].from, 281.036195, 1e-5);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -180,6 +181,26 @@ std::string about(const SweepScene& scene, const std::string& what) {
   return fmt::format("{}: {}", scene_name(scene.scene()), what);
 }
 
+// What the theory does not hold for, and where the search for bands was not settled.
+std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResult& result) {
+  std::vector<std::string> warnings = theory_warnings(scene, result);
+  const std::vector<double>& values = scene.axis().values;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const std::vector<std::array<double, 2>>& places = result.rods[r].not_excluded;
+    if (places.empty()) continue;
+    double width = 0;
+    for (const auto& [from, to] : places) width += to - from;
+    const auto widest = std::ranges::max_element(
+        places, {}, [](const std::array<double, 2>& place) { return place[1] - place[0]; });
+    warnings.push_back(fmt::format(
+        "{}: further unstable bands or stable gaps are not excluded in {:.2g} % of the range, the widest place being "
+        "{} = {:.10g} .. {:.10g}",
+        subject(scene, result, r), 100 * width / (values.back() - values.front()), scene.axis().path, (*widest)[0],
+        (*widest)[1]));
+  }
+  return warnings;
+}
+
 }  // namespace
 
 std::string axis_label(const SweepScene& scene) {
@@ -198,7 +219,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   json["title"] = scene.scene().title;
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
-  if (std::vector<std::string> warnings = theory_warnings(scene, result); !warnings.empty())
+  if (std::vector<std::string> warnings = sweep_warnings(scene, result); !warnings.empty())
     json["warnings"] = std::move(warnings);
   json["tolerance"] = scene.settings().tolerance;
   json["units"] = units_json(units);
@@ -243,6 +264,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   }
   if (result.computed.stability) {
     Json& bands = json["unstable_bands"] = Json::object();
+    Json& not_excluded = json["not_excluded"] = Json::object();
     Json& details = json["band_details"] = Json::object();
     for (const SweepRod& rod : result.rods) {
       if (!rod.reported) continue;
@@ -252,6 +274,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
         list.push_back(band_json(band));
       }
       bands[rod.name] = std::move(pairs);
+      not_excluded[rod.name] = rod.not_excluded;
       details[rod.name] = std::move(list);
     }
   }
@@ -331,6 +354,9 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
             band.fastest_x, band.open_from ? "before the sweep" : kind_words(band.kind_from),
             band.open_to ? "beyond the sweep" : kind_words(band.kind_to));
       }
+      if (!rod.not_excluded.empty()) add(text, "  bands or gaps not excluded\n");
+      for (const auto& [from, to] : rod.not_excluded)
+        add(text, "    {:.12g} .. {:.12g}, width {:.2g}\n", from, to, to - from);
     }
     if (result.computed.steady) {
       std::size_t found = 0;
@@ -364,7 +390,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
         first->problem);
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
-  for (const std::string& warning : theory_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
+  for (const std::string& warning : sweep_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }
 
@@ -542,6 +568,26 @@ CsvFile bands_csv(const SweepScene& scene, const SweepResult& result) {
           kind(band.kind_from), kind(band.kind_to), band.fastest, band.fastest_x;
     }
   }
+  return file;
+}
+
+CsvFile not_excluded_csv(const SweepScene& scene, const SweepResult& result) {
+  CsvFile file;
+  file.name = "not_excluded.csv";
+  std::string rods;
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
+    count += result.rods[r].not_excluded.size();
+  }
+  file.comment = {about(scene, "where further unstable bands or stable gaps are not excluded along " + scene.axis().path),
+                  "rods: " + rods};
+  file.columns = {"rod", axis_label(scene) + " from", "to"};
+  file.rows.resize(static_cast<Eigen::Index>(count), 3);
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    for (const auto& [from, to] : result.rods[r].not_excluded)
+      file.rows.row(row++) << static_cast<double>(r + 1), from, to;
   return file;
 }
 

@@ -43,6 +43,13 @@ std::size_t companion(const Strands& strands) {
 
 bool locked(const Place& p, std::size_t k) { return p.strands.all[k].partner != no_strand; }
 
+// Without what it is locked to.
+double decay(const Place& p, std::size_t k) {
+  const std::vector<Strand>& all = p.strands.all;
+  const double s = all[k].s.real();
+  return std::max(0.0, locked(p, k) ? -0.5 * (s + all[all[k].partner].s.real()) : -s);
+}
+
 // Multiplier +1, -1 or complex, of a locked pair.
 BoundaryKind kind_of(const Strand& strand) {
   constexpr double slack = 1e-7;
@@ -105,7 +112,8 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
       // Two of which one grows leave a gap only if they decay together.
       const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
       if (p.unstable && (larger < 0 || larger + smaller > 0)) continue;
-      const double needed = p.unstable ? larger : needed_coupling(larger, smaller);
+      const double quenching = std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
+      const double needed = p.unstable ? quenching : needed_coupling(larger, smaller);
       if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling),
                    std::min(q.mean[i].coupling, q.mean[j].coupling)) < needed)
         continue;
@@ -223,7 +231,8 @@ bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
     if (belongs(c, 0) || belongs(c, b) || locked(p, c) || apart(p.strands, 0, c) > motion[0] + motion[c]) continue;
     for (std::size_t d = 0; d < all.size(); ++d) {
       if (d == c || apart(p.strands, c, d) > motion[c] + motion[d]) continue;
-      if (exciting_motion(p, q, c, d, 0.5 * growth) >= 0) return false;
+      const double g = 0.5 * growth;
+      if (exciting_motion(p, q, c, d, std::sqrt((g + decay(p, c)) * (g + decay(p, d)))) >= 0) return false;
     }
   }
   return true;
@@ -249,6 +258,11 @@ bool Encounters::lock_holds(Place& p, Place& q) const {
   const double growth = std::min(p.growth(), q.growth());
   if (same_lock(p, q, growth) && same_lock(q, p, growth)) return true;
   return locked_throughout(p, q) || locked_throughout(q, p);
+}
+
+bool Encounters::locked_alike(const Place& p, const Place& q) {
+  return !p.strands.all.empty() && !q.strands.all.empty() && locked(p, 0) && locked(q, 0) &&
+         kind_of(p.strands.all[0]) == kind_of(q.strands.all[0]);
 }
 
 bool Encounters::alone(Place& p, const Place& q, std::size_t k) const {

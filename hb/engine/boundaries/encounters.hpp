@@ -54,6 +54,9 @@ class Encounters {
   // The two exponents that give the growth at p are locked to each other and stay so to q, or those of q to p.
   bool lock_holds(Place& p, Place& q) const;
 
+  // The exponents that give the growth are locked, to multipliers of one kind.
+  static bool locked_alike(const Place& p, const Place& q);
+
   // No other strand of p that may excite strand k comes near it on the way to q.
   bool alone(Place& p, const Place& q, std::size_t k) const;
 

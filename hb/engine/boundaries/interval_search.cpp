@@ -12,9 +12,6 @@
 
 namespace hb {
 
-int counts[10];
-int why = 0;
-#define WHY(n, x) (why = n, x)
 namespace {
 
 using cplx = std::complex<double>;
@@ -28,7 +25,7 @@ constexpr double most_motion_of_models = 0.5;
 // Intervals are not divided below this, relative to x: narrower bands are not looked for.
 constexpr double least_width = 2e-9;
 constexpr int most_divisions = 48;
-constexpr int most_evaluations = 100, most_evaluations_per_boundary = 40;
+constexpr int most_evaluations = 200, most_evaluations_per_boundary = 50;
 
 struct Cell {
   double from, to;  // places
@@ -77,7 +74,6 @@ class Search {
 
   bool evaluate(double x) {
     ++evaluations_;
-    ++counts[why];
     const std::optional<StabilitySample> sample = stability_sample(at_, x, options_.stability);
     if (!sample || !std::isfinite(sample->stability.growth_rate)) return false;
     places_.emplace(x, encounters_.place(*sample));
@@ -106,7 +102,6 @@ class Search {
     double step = std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
     for (; step < 0.5 * room; step *= 16) {
       const double x = boundary.x + side * step;
-      why = 8;
       if (places_.contains(x) || !evaluate(x)) break;
       if (places_.at(x).unstable == unstable) return x;
       places_.erase(x);
@@ -120,14 +115,10 @@ class Search {
     const double width = cell.to - cell.from;
     if (width <= least_width * std::max(std::abs(cell.from), std::abs(cell.to))) return;
     Place &p = places_.at(cell.from), &q = places_.at(cell.to);
-    static const bool dbg = getenv("DBG");
-    const int why_before = why; why = -1;
     const double x = p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
-    if (dbg && cell.from < atof(getenv("HI")) && cell.to > atof(getenv("LO"))) fprintf(stderr, "cell %.12g %.12g %s -> %.12g why %d\n", cell.from, cell.to, p.unstable ? "unstable" : "stable", x, why);
     if (std::isnan(x)) return;
     if (cell.divisions >= most_divisions || evaluations_ >= most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size()) || !(x > cell.from && x < cell.to) ||
         !evaluate(x)) {
-      if (getenv("DBG")) fprintf(stderr, "give up %.15g %.15g x %.17g div %d ev %d\n", cell.from, cell.to, x, cell.divisions, evaluations_);
       give_up(cell);
       return;
     }
@@ -140,25 +131,24 @@ class Search {
     const double middle = 0.5 * (p.x() + q.x());
     if (bounded(p, q)) return nan;
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
-    if (!encounters_.resolved(p, q, most_motion)) return WHY(0, middle);
+    if (!encounters_.resolved(p, q, most_motion)) return middle;
     const double least = least_growth(p, q);
     double worst = least, where = nan;
     const auto meeting = encounters_.meetings(p, q, least);
     for (const Meeting& m : meeting) {
       const std::optional<GrowthModel> model = pair_model(p, m.a, m.b, q);
-      if (!model) return WHY(1, clamped(m.x, p, q));
+      if (!model) return clamped(m.x, p, q, 0.2);
       worst = std::max(worst, 2 * model->error());
       const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
       if (centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width && model->rise() > 0.25 * far * far)
-        return WHY(2, centre);
+        return centre;
       if (const auto [x, high] = highest(*model, p, q); high > worst) {
         worst = high;
         where = central(*model, p, q, x);
       }
     }
-    if (!std::isnan(where)) return WHY(3, where);
+    if (!std::isnan(where)) return where;
     if (level(p, q, least)) return nan;
-    why = 4;
     // One that decays several times as fast as the leading one does not rise above zero by itself.
     constexpr double several = 4;
     const double slowest = std::min(p.growth(), q.growth());
@@ -182,8 +172,8 @@ class Search {
   double doubtful_while_unstable(Place& p, Place& q) {
     const double middle = 0.5 * (p.x() + q.x());
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
-    if (!encounters_.resolved(p, q, most_motion_while_unstable)) return WHY(5, middle);
-    if (encounters_.lock_holds(p, q)) return nan;
+    if (!encounters_.resolved(p, q, most_motion_while_unstable)) return middle;
+    if (encounters_.lock_holds(p, q) || level_lock(p, q)) return nan;
     // Exponents that grow by themselves.
     std::vector<GrowthModel> models;
     for (Place* place : {&p, &q}) {
@@ -193,8 +183,7 @@ class Search {
         if (const std::optional<GrowthModel> model = single_model(*place, k, other)) models.push_back(*model);
       }
     }
-    if (models.empty()) return WHY(6, middle);
-    why = 7;
+    if (models.empty()) return middle;
     double worst = HUGE_VAL, where = middle;
     for (const double x : probes(p, q)) {
       double low = -HUGE_VAL;
@@ -229,6 +218,33 @@ class Search {
       high = std::max(high, place->growth());
     }
     return high + 2 * (high - low) <= least;
+  }
+
+  // Two exponents are locked alike at p and q and at a place on either side, with growth that hardly changes: beside a
+  // gap Q would fall in proportion to the distance from it.
+  bool level_lock(const Place& p, const Place& q) const {
+    constexpr double nearest = 0.25, farthest = 4, most_ratio = 1.15;
+    const double width = q.x() - p.x();
+    std::vector<const Place*> places = {&p, &q};
+    for (auto it = places_.find(p.x()); it != places_.begin();) {
+      --it;
+      if (p.x() - it->first < nearest * width) continue;
+      if (p.x() - it->first <= farthest * width) places.push_back(&it->second);
+      break;
+    }
+    for (auto it = std::next(places_.find(q.x())); it != places_.end(); ++it) {
+      if (it->first - q.x() < nearest * width) continue;
+      if (it->first - q.x() <= farthest * width) places.push_back(&it->second);
+      break;
+    }
+    if (places.size() < 4) return false;
+    double low = HUGE_VAL, high = 0;
+    for (const Place* place : places) {
+      if (!place->unstable || !encounters_.locked_alike(*place, p)) return false;
+      low = std::min(low, place->growth());
+      high = std::max(high, place->growth());
+    }
+    return high <= most_ratio * low;
   }
 
   // --- Models ---
@@ -362,8 +378,8 @@ class Search {
     return centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width ? centre : clamped(worst, p, q);
   }
 
-  static double clamped(double x, const Place& p, const Place& q) {
-    const double margin = 0.02 * (q.x() - p.x());
+  static double clamped(double x, const Place& p, const Place& q, double part = 0.02) {
+    const double margin = part * (q.x() - p.x());
     return std::clamp(x, p.x() + margin, q.x() - margin);
   }
 
