@@ -13,8 +13,7 @@ std::vector<double> growth_by_mean(const Place& p, const Place& q) {
   std::vector<double> growth(p.mean.size(), -HUGE_VAL);
   for (const Place* place : {&p, &q})
     for (const Strand& strand : place->strands.all)
-      if (!strand.mean.empty())
-        growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
+      if (!strand.mean.empty()) growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
   for (std::size_t k = 0; k < growth.size(); ++k)
     if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
   return growth;
@@ -68,8 +67,7 @@ std::vector<double> motions(const Place& p, const Place& q) {
   std::vector<double> motion(p.strands.all.size());
   for (std::size_t k = 0; k < motion.size(); ++k) {
     motion[k] = 2 * mean_motion(p.strands, q.strands, k);
-    if (onward[k] != no_strand)
-      motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
+    if (onward[k] != no_strand) motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
   }
   return motion;
 }
@@ -114,8 +112,8 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
       if (p.unstable && (larger < 0 || larger + smaller > 0)) continue;
       const double quenching = std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
       const double needed = p.unstable ? quenching : needed_coupling(larger, smaller);
-      if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling),
-                   std::min(q.mean[i].coupling, q.mean[j].coupling)) < needed)
+      if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling), std::min(q.mean[i].coupling, q.mean[j].coupling)) <
+          needed)
         continue;
       const ParametricCoupling *of_p = coupling(p), *of_q = coupling(q);
       if (of_p == nullptr || of_q == nullptr) return false;
@@ -137,9 +135,8 @@ double Encounters::exciting_motion(Place& p, const Place& q, std::size_t a, std:
   for (const std::size_t n : s.mean) {
     for (const std::size_t r : t.mean) {
       const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
-      const double moved = !comparable ? HUGE_VAL
-                                       : 2 * (std::abs(q.mean[n].value.imag() - in) +
-                                              std::abs(q.mean[r].value.imag() - ir));
+      const double moved =
+          !comparable ? HUGE_VAL : 2 * (std::abs(q.mean[n].value.imag() - in) + std::abs(q.mean[r].value.imag() - ir));
       if (n == r || moved <= motion || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
       const ParametricCoupling* strength = coupling(p);
       if (strength == nullptr) return HUGE_VAL;

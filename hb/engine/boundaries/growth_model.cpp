@@ -17,7 +17,7 @@ constexpr double safety = 3;
 GrowthNode pair_node(double x, cplx a, cplx b, double error_a, double error_b) {
   const cplx apart(a.real() - b.real(), a.imag() - b.imag() - std::round(a.imag() - b.imag()));
   const double error = 0.5 * (error_a + error_b);
-  return {x,     0.5 * (a.real() + b.real()), b.imag() + 0.5 * apart.imag(), 0.25 * apart * apart,
+  return {x,     0.5 * (a.real() + b.real()),      b.imag() + 0.5 * apart.imag(), 0.25 * apart * apart,
           error, (std::abs(apart) + error) * error};
 }
 

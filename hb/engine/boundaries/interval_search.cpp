@@ -99,14 +99,23 @@ class Search {
   double beside(const StabilityBoundary& boundary, const Cell& cell, int side) {
     const double end = side < 0 ? cell.from : cell.to, room = std::abs(end - boundary.x);
     const bool unstable = boundary.unstable_above == (side > 0);
-    double step = std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
-    for (; step < 0.5 * room; step *= 16) {
+    const double least = least_width * std::abs(boundary.x);
+    const double first = std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
+    double beside = end;
+    for (double step = first; step < 0.5 * room; step *= 16) {
       const double x = boundary.x + side * step;
       if (places_.contains(x) || !evaluate(x)) break;
-      if (places_.at(x).unstable == unstable) return x;
+      if (places_.at(x).unstable == unstable) {
+        beside = x;
+        break;
+      }
       places_.erase(x);
     }
-    return end;
+    const double skipped = std::abs(beside - boundary.x);
+    if (skipped > std::max(least, 2 * first)) {
+      give_up({std::min(beside, boundary.x), std::max(beside, boundary.x)});
+    }
+    return beside;
   }
 
   // --- One verdict at both ends ---
@@ -117,7 +126,8 @@ class Search {
     Place &p = places_.at(cell.from), &q = places_.at(cell.to);
     const double x = p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
     if (std::isnan(x)) return;
-    if (cell.divisions >= most_divisions || evaluations_ >= most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size()) || !(x > cell.from && x < cell.to) ||
+    const int affordable = most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size());
+    if (cell.divisions >= most_divisions || evaluations_ >= affordable || !(x > cell.from && x < cell.to) ||
         !evaluate(x)) {
       give_up(cell);
       return;
@@ -291,8 +301,7 @@ class Search {
     return strands;
   }
 
-  static std::optional<GrowthModel> consistent_model(std::vector<GrowthNode> nodes, const Place& p,
-                                                     const Place& q) {
+  static std::optional<GrowthModel> consistent_model(std::vector<GrowthNode> nodes, const Place& p, const Place& q) {
     if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
     GrowthModel model(std::move(nodes));
     if (!model.consistent()) return std::nullopt;
@@ -390,7 +399,8 @@ class Search {
     found.boundaries = boundaries_;
     for (std::size_t k = 0; k + 1 < boundaries_.size(); ++k) {
       const StabilitySample* chosen = nullptr;
-      for (auto it = places_.upper_bound(boundaries_[k].x); it != places_.end() && it->first < boundaries_[k + 1].x; ++it)
+      for (auto it = places_.upper_bound(boundaries_[k].x); it != places_.end() && it->first < boundaries_[k + 1].x;
+           ++it)
         if (it->first > first_ && it->first < last_ && it->second.unstable == boundaries_[k].unstable_above &&
             (chosen == nullptr || (it->second.sample.stability.growth_rate > chosen->stability.growth_rate) ==
                                       boundaries_[k].unstable_above))
