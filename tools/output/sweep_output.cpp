@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -166,10 +167,8 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   std::vector<std::string> notes = result.shortfalls;
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
   if (!notes.empty()) json["notes"] = std::move(notes);
-  std::vector<std::string> warnings = scene.scene().warnings;
-  for (std::string& sentence : theory_warnings(scene, result)) warnings.push_back(std::move(sentence));
-  for (std::string& sentence : limit_warnings(scene, result)) warnings.push_back(std::move(sentence));
-  if (!warnings.empty()) json["warnings"] = std::move(warnings);
+  if (std::vector<std::string> warnings = sweep_warnings(scene, result); !warnings.empty())
+    json["warnings"] = std::move(warnings);
   json["tolerance"] = scene.settings().tolerance;
   json["units"] = units_json(units);
   json["x"] = {{"path", scene.axis().path}, {"values", scene.axis().values}};
@@ -212,8 +211,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
     for (const CriticalPoint& point : result.critical) list.push_back(critical_json(result, point, scene));
   }
   if (result.searched_bands) {
-    Json& bands = json["unstable_bands"] = Json::object();
-    Json& details = json["band_details"] = Json::object();
+    Json bands = Json::object(), not_excluded = Json::object(), details = Json::object();
     for (const SweepRod& rod : result.rods) {
       if (!rod.reported) continue;
       Json pairs = Json::array(), list = Json::array();
@@ -222,8 +220,12 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
         list.push_back(band_json(band));
       }
       bands[rod.name] = std::move(pairs);
+      not_excluded[rod.name] = rod.not_excluded;
       details[rod.name] = std::move(list);
     }
+    json["unstable_bands"] = std::move(bands);
+    json["not_excluded"] = std::move(not_excluded);
+    json["band_details"] = std::move(details);
   }
   if (result.computed.reactions) add_forces(json, result);
   Json problems = Json::array();
@@ -418,6 +420,26 @@ CsvFile bands_csv(const SweepScene& scene, const SweepResult& result) {
           kind(band.kind_from), kind(band.kind_to), band.fastest, band.fastest_x;
     }
   }
+  return file;
+}
+
+CsvFile not_excluded_csv(const SweepScene& scene, const SweepResult& result) {
+  CsvFile file;
+  file.name = "not_excluded.csv";
+  std::string rods;
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
+    count += result.rods[r].not_excluded.size();
+  }
+  file.comment = {about(scene, "where further unstable bands or stable gaps are not excluded along " + scene.axis().path),
+                  "rods: " + rods};
+  file.columns = {"rod", axis_label(scene) + " from", "to"};
+  file.rows.resize(static_cast<Eigen::Index>(count), 3);
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    for (const auto& [from, to] : result.rods[r].not_excluded)
+      file.rows.row(row++) << static_cast<double>(r + 1), from, to;
   return file;
 }
 

@@ -26,4 +26,7 @@ namespace hb::tools {
 // The same, short, for titles of pictures.
 [[nodiscard]] std::string sweep_title_verdict(const SweepResult& result);
 
+// Of the scene, what the theory does not hold for, and where the search for bands was not settled.
+[[nodiscard]] std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResult& result);
+
 }  // namespace hb::tools
