@@ -8,10 +8,15 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/pictures/map_plot.hpp"
+#include "tools/report/report_page.hpp"
 
 namespace hb::tools {
 
 [[nodiscard]] std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder);
 [[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
+
+// Pictures of a report for readers without script; `map` may be null.
+[[nodiscard]] std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
+                                                              const MapDocument* map);
 
 }  // namespace hb::tools
