@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tools/setup.sh [command|tests]: installs the Debian packages that are missing, and only those: what builds and runs the
-# command (default), or what the tests, the benchmarks and the page tests need too. Needs root or sudo when something is
+# command (default), or what the tests, the benchmarks, the page tests and the Python package need too. Needs root or sudo when something is
 # missing.
 set -euo pipefail
 
@@ -14,7 +14,9 @@ packages=(
 case $purpose in
   command) ;;
   tests) packages+=(libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin chromium chromium-driver python3-selenium
-    scdoc pkg-config file) ;;
+    scdoc pkg-config file
+    python3-dev python3-numpy pybind11-dev python3-pytest python3-matplotlib python3-pandas python3-xarray python3-scipy
+    mypy) ;;
   *)
     echo "tools/setup.sh: found $purpose, allowed: command, tests" >&2
     exit 2

@@ -11,7 +11,15 @@
 namespace hb {
 namespace {
 
-bool is_speed(const Along& along) { return along.path == "rpm" || along.path == "omega"; }
+bool in_rpm(const std::string& path) { return path == "rpm" || path == "analysis.rpm"; }
+
+bool is_speed(const Along& along) { return hb::is_speed(along.path); }
+
+// Numbers that a map or a sweep can go along: of the model, or the speed.
+void require_axis(const char* field, const Along& along) {
+  if (!is_speed(along) && along.path.starts_with("analysis."))
+    throw RequestError(field, along.path, "rpm, omega or a number of the model");
+}
 
 void require_values(const char* field, const Along& along, const Units& units) {
   const std::vector<double>& values = along.values;
@@ -20,7 +28,7 @@ void require_values(const char* field, const Along& along, const Units& units) {
     if (!(values[k] < values[k + 1]))
       throw RequestError(field, fmt::format("{} before {}", values[k], values[k + 1]), "values in ascending order");
   if (!is_speed(along)) return;
-  const double lowest = along.path == "rpm" ? speed_from_rpm(values.front(), units) : values.front();
+  const double lowest = in_rpm(along.path) ? speed_from_rpm(values.front(), units) : values.front();
   if (!(lowest >= std::numeric_limits<double>::min()))
     throw RequestError(field, fmt::format("a range from {}", values.front()), "positive speeds");
 }
@@ -53,6 +61,18 @@ void require_no_speed(const Request& request, const char* field, const Along& ax
 
 }  // namespace
 
+bool is_speed(const std::string& path) { return in_rpm(path) || path == "omega" || path == "analysis.omega"; }
+
+bool same_number(const SceneFamily& family, const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  const std::string& all = a.starts_with("*.") ? a : b;
+  const std::string& one = a.starts_with("*.") ? b : a;
+  const std::size_t dot = one.rfind('.');
+  if (!all.starts_with("*.") || dot == std::string::npos || one.substr(dot + 1) != all.substr(2)) return false;
+  const std::vector<std::string> paths = family.paths();
+  return std::ranges::find(paths, one.substr(0, dot) + ".E") != paths.end();
+}
+
 Along along(std::string path, double from, double to, std::size_t count) {
   Along result{std::move(path), std::vector<double>(std::max<std::size_t>(2, count))};
   const auto steps = static_cast<double>(result.values.size() - 1);
@@ -73,9 +93,9 @@ Sweep sweep(const SceneFamily& family, const SweepRequest& request, Work& work) 
     fixed = speed_of(request, scene);
   }
   Axis axis;
-  axis.kind = request.x.path == "rpm"     ? Axis::Kind::rpm
-              : request.x.path == "omega" ? Axis::Kind::omega
-                                          : Axis::Kind::parameter;
+  axis.kind = in_rpm(request.x.path) ? Axis::Kind::rpm
+              : is_speed(request.x)  ? Axis::Kind::omega
+                                     : Axis::Kind::parameter;
   axis.path = request.x.path;
   axis.values = request.x.values;
   const auto along =
@@ -91,10 +111,12 @@ Sweep sweep(const SceneFamily& family, const SweepRequest& request) {
 Map map(const SceneFamily& family, const MapRequest& request, Work& work) {
   if (request.x.values.empty()) throw RequestError("x", "no values", "at least two");
   if (request.y.values.empty()) throw RequestError("y", "no values", "at least two");
-  if ((is_speed(request.x) && is_speed(request.y)) || request.x.path == request.y.path)
+  if ((is_speed(request.x) && is_speed(request.y)) || same_number(family, request.x.path, request.y.path))
     throw RequestError(
         "y", request.y.path, "two different parameters",
         fmt::format("found {} beside @x {}, allowed: two different parameters", request.y.path, request.x.path));
+  require_axis("x", request.x);
+  require_axis("y", request.y);
   if (is_speed(request.x)) require_no_speed(request, "x", request.x);
   if (is_speed(request.y)) require_no_speed(request, "y", request.y);
   if (!request.only.stability) throw RequestError("only", "no stability", "stability");
@@ -107,9 +129,9 @@ Map map(const SceneFamily& family, const MapRequest& request, Work& work) {
   options.work = &work;
   if (!is_speed(request.x) && !is_speed(request.y)) options.speed = speed_of(request, scene).omega;
   const auto axis = [](const Along& along) {
-    const PlaneAxis::Role role = along.path == "rpm"     ? PlaneAxis::Role::rpm
-                                 : along.path == "omega" ? PlaneAxis::Role::omega
-                                                         : PlaneAxis::Role::scene_number;
+    const PlaneAxis::Role role = in_rpm(along.path) ? PlaneAxis::Role::rpm
+                                 : is_speed(along)  ? PlaneAxis::Role::omega
+                                                    : PlaneAxis::Role::scene_number;
     return PlaneAxis{role, along.path, along.values.front(), along.values.back()};
   };
   options.num_modes = plane_modes(family, axis(request.x), axis(request.y), options.speed, settings);
@@ -143,11 +165,13 @@ bool Check::reached() const {
 
 std::vector<double> speeds_of(const CheckRequest& request, const Scene& scene) {
   std::vector<double> speeds;
-  for (const double rpm : request.rpms) {
-    speeds.push_back(speed_from_rpm(rpm, scene.units));
-    if (!(speeds.back() >= std::numeric_limits<double>::min() && std::isfinite(speeds.back())))
-      throw RequestError("rpms", fmt::format("{}", rpm), "positive speeds");
-  }
+  const auto add = [&](const char* field, double given, double speed) {
+    if (!(speed >= std::numeric_limits<double>::min() && std::isfinite(speed)))
+      throw RequestError(field, fmt::format("{}", given), "positive speeds");
+    speeds.push_back(speed);
+  };
+  for (const double rpm : request.rpms) add("rpms", rpm, speed_from_rpm(rpm, scene.units));
+  for (const double omega : request.omegas) add("omegas", omega, omega);
   if (speeds.empty()) speeds.push_back(speed_of(request, scene).omega);
   return speeds;
 }

@@ -22,6 +22,10 @@ struct Along {
   std::string path;
   std::vector<double> values;
 };
+// The speed, also by its path in a scene ("analysis.rpm").
+[[nodiscard]] bool is_speed(const std::string& path);
+// Two paths that name one number: "AB.J" and "*.J" do where AB is elastic.
+[[nodiscard]] bool same_number(const SceneFamily& family, const std::string& a, const std::string& b);
 // N >= 2 equally spaced values, both ends included.
 [[nodiscard]] Along along(std::string path, double from, double to, std::size_t count);
 
@@ -47,11 +51,12 @@ struct Map : MapResult {
   double boundary_tolerance = 0;  // of boundary points, relative
   std::string evidence;  // one sentence: what was computed
 };
+// modes = "auto" stands for 5: of the systems of a map all have the same size.
 [[nodiscard]] Map map(const SceneFamily& family, const MapRequest& request, Work& work);
 [[nodiscard]] Map map(const SceneFamily& family, const MapRequest& request);
 
 struct CheckRequest : Request {
-  std::vector<double> rpms;  // several speeds instead of one
+  std::vector<double> rpms, omegas;  // several speeds instead of one
   Integrator integrator = Integrator::automatic;
   double case_limit = 60;  // seconds for each rod and speed
   bool march = false;  // also march from rest where the motion is stable

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/analyses.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/parameter_range.hpp"
 #include "tools/work/checkpoint.hpp"
@@ -47,17 +48,6 @@ AxisRange axis_range(const std::string& flag, const std::string& text) {
 }
 
 bool is_speed(const AxisRange& range) { return range.axis.role != PlaneAxis::Role::scene_number; }
-
-// "AB.J" and "*.J" name one number where AB is elastic.
-bool same_number(const SceneSource& source, const std::string& a, const std::string& b) {
-  if (a == b) return true;
-  const std::string& all = a.starts_with("*.") ? a : b;
-  const std::string& one = a.starts_with("*.") ? b : a;
-  const std::size_t dot = one.rfind('.');
-  if (!all.starts_with("*.") || dot == std::string::npos || one.substr(dot + 1) != all.substr(2)) return false;
-  const std::vector<std::string> paths = source.numeric_paths();
-  return std::find(paths.begin(), paths.end(), one.substr(0, dot) + ".E") != paths.end();
-}
 
 void require_different(const CommonFlags& flags, const SceneSource& source, const AxisRange& x, const AxisRange& y) {
   if ((is_speed(x) && is_speed(y)) || same_number(source, x.axis.path, y.axis.path)) {

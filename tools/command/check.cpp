@@ -58,18 +58,15 @@ CheckOptions check_options(const CheckFlags& flags) {
   return options;
 }
 
-// FROM, FROM + STEP, ... not beyond TO (a thousandth of a step is forgiven).
+// In rad per unit time.
 std::vector<double> speeds_of(const SpeedRange& range, const Units& units) {
-  constexpr double most = 100000;
-  const Speeds& speeds = range.speeds;
-  const double steps = speeds.step > 0 ? std::floor((speeds.to - speeds.from) / speeds.step + 1e-3) : 0;
-  if (!(steps < most)) throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {:.0f}", steps + 1, most));
-  std::vector<double> result;
-  for (int k = 0; k <= static_cast<int>(steps); ++k) {
-    const double value = speeds.from + k * speeds.step;
-    result.push_back(range.in_rpm ? speed_from_rpm(value, units) : value);
-  }
-  return result;
+  constexpr std::size_t most = 100000;
+  std::vector<double> speeds = {range.speeds.from};
+  if (range.speeds.from < range.speeds.to) speeds = speed_values(range);
+  if (speeds.size() > most) throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {}", speeds.size(), most));
+  if (range.in_rpm)
+    for (double& speed : speeds) speed = speed_from_rpm(speed, units);
+  return speeds;
 }
 
 // On standard error if that is a terminal: speeds done, and the integration under way if it takes long.

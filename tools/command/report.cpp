@@ -13,10 +13,7 @@
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
-#include "tools/output/csv_output.hpp"
 #include "tools/output/output_file.hpp"
-#include "tools/pictures/figures.hpp"
-#include "tools/report/page_pictures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/shared_work.hpp"
 
@@ -34,20 +31,6 @@ std::optional<AskedMap> asked_map(const ReportFlags& flags, const SceneInput& in
   of_map.rpm.clear();
   of_map.omega.clear();
   return AskedMap(of_map, flags.x, flags.y, "", BoundaryFlags{}, input, work);
-}
-
-std::vector<PageText::Picture> pictures(const SweepScene& scene, const SweepResult& result, const AskedMap* map) {
-  return page_pictures([&](OutputFolder& folder) {
-    std::vector<Figure> figures = sweep_files(scene, result, folder);
-    if (scene.first().linkage() != nullptr) {
-      const CsvFile mechanism = mechanism_csv(scene.scene());
-      folder.write(mechanism.name, csv_text(mechanism));
-      figures.push_back(mechanism_figure(scene.scene(), mechanism));
-    }
-    if (map != nullptr)
-      for (Figure& figure : map_files(map->document(), MapColour::growth, folder)) figures.push_back(std::move(figure));
-    return figures;
-  });
 }
 
 int run_report(const ReportFlags& flags) {
@@ -79,7 +62,10 @@ int run_report(const ReportFlags& flags) {
   guard.reset();
   begin_delivery();
   std::vector<PageText::Picture> still;
-  if (out.plots) still = pictures(sweep_scene, result, map ? &*map : nullptr);
+  if (out.plots) {
+    const std::optional<MapDocument> document = map ? std::optional(map->document()) : std::nullopt;
+    still = report_pictures(sweep_scene, result, document ? &*document : nullptr);
+  }
   file.commit(data.page(page_text(provenance(flags.line, input), std::move(still))));
   for (const std::string& sentence : result.shortfalls) fmt::print(stderr, "NOT REACHED: {}\n", sentence);
   return reached ? exit_ok : exit_not_reached;

@@ -3,9 +3,12 @@
 #include <fmt/core.h>
 
 #include "tools/output/branches_output.hpp"
+#include "tools/output/csv_output.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/pictures/branch_figure.hpp"
+#include "tools/pictures/figures.hpp"
 #include "tools/pictures/sweep_figures.hpp"
+#include "tools/report/page_pictures.hpp"
 
 namespace hb::tools {
 
@@ -76,6 +79,21 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
         fmt::format("boundaries of stability of the worst rod with damping times {:g}", damping.factor))));
   }
   return {map_figure(document, files, colour)};
+}
+
+std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
+                                                const MapDocument* map) {
+  return page_pictures([&](OutputFolder& folder) {
+    std::vector<Figure> figures = sweep_files(scene, result, folder);
+    if (scene.first().linkage() != nullptr) {
+      const CsvFile mechanism = mechanism_csv(scene.scene());
+      folder.write(mechanism.name, csv_text(mechanism));
+      figures.push_back(mechanism_figure(scene.scene(), mechanism));
+    }
+    if (map != nullptr)
+      for (Figure& figure : map_files(*map, MapColour::growth, folder)) figures.push_back(std::move(figure));
+    return figures;
+  });
 }
 
 }  // namespace hb::tools

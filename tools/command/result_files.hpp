@@ -9,6 +9,7 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/pictures/map_plot.hpp"
+#include "tools/report/report_page.hpp"
 
 namespace hb::tools {
 
@@ -17,5 +18,9 @@ namespace hb::tools {
 [[nodiscard]] std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear,
                                                const NonlinearSweep& sweep, OutputFolder& folder);
 [[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
+
+// Pictures of a report for readers without script; `map` may be null.
+[[nodiscard]] std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
+                                                              const MapDocument* map);
 
 }  // namespace hb::tools

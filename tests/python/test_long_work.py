@@ -1,0 +1,266 @@
+"""Sweeps, maps, checks and designs: the command's documents, whatever the number of threads; ended by Ctrl-C."""
+
+import pickle
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import SCENES, command
+
+import hb
+
+FOUR_BAR = SCENES / "four_bar.toml"
+MATHIEU = SCENES / "mathieu.toml"
+
+
+@pytest.fixture(scope="module")
+def four_bar():
+    return hb.load(FOUR_BAR)
+
+
+@pytest.fixture(scope="module")
+def sweep(four_bar):
+    return four_bar.sweep(rpm=(300, 900, 50), modes=2)
+
+
+@pytest.mark.parametrize(
+    "scene, arguments, flags",
+    [
+        ("four_bar.toml", {"rpm": (300, 900, 50), "modes": 2}, ["--rpm", "300:900:50", "--modes", "2"]),
+        ("four_bar.toml", {"rpm": "300:900:x5", "only": "stability"}, ["--rpm", "300:900:x5", "--only", "stability"]),
+        ("mathieu.toml", {"omega": (1.9, 2.5, 0.1)}, ["--omega", "1.9:2.5:0.1"]),
+        (
+            "mathieu.toml",
+            {"x": "hill.damping.0.0=0.05:0.2:x4", "omega": 2.1},
+            ["--x", "hill.damping.0.0=0.05:0.2:x4", "--omega", "2.1"],
+        ),
+        ("slider_crank.toml", {"rpm": (1000, 3000, "x3"), "modes": 2}, ["--rpm", "1000:3000:x3", "--modes", "2"]),
+    ],
+)
+def test_a_sweep_is_the_commands(scene, arguments, flags):
+    file = SCENES / scene
+    assert hb.load(file).sweep(**arguments).to_dict() == command("sweep", file, *flags)
+
+
+def test_values_may_be_an_array(four_bar, sweep):
+    assert four_bar.sweep(rpm=np.arange(300.0, 901.0, 50.0), modes=2).to_dict() == sweep.to_dict()
+
+
+def test_threads_leave_the_bits_alone(four_bar, sweep):
+    assert four_bar.sweep(rpm=(300, 900, 50), modes=2, threads=2).to_dict() == sweep.to_dict()
+    x, y = "rpm=200:800:3", "*.damping_internal=1e-4:1e-3:3"
+    maps = [four_bar.map(x=x, y=y, modes=2, threads=threads).to_dict() for threads in (1, 2)]
+    assert maps[0] == maps[1]
+
+
+def test_several_threads_may_ask_at_once(six_link):
+    expected = six_link.steady(rpm=300, modes=2).to_dict()
+    found = []
+    threads = [threading.Thread(target=lambda: found.append(six_link.steady(rpm=300, modes=2).to_dict())) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [expected] * 4
+
+
+def test_a_sweeps_arrays_hold_the_documents_numbers():
+    sweep = hb.load(MATHIEU).sweep(omega=(1.9, 2.5, 0.1))
+    document = sweep.to_dict()
+    entry, rod = document["rods"]["system"], sweep["system"]
+    assert sweep.x.tolist() == document["x"]["values"] and sweep.rpm.tolist() == document["rpm"]
+    assert rod.max_abs.tolist() == entry["max_abs"]
+    assert rod.growth_rate.tolist() == entry["growth_rate"] and rod.verdict.tolist() == entry["verdict"]
+    assert [[[e.real, e.imag] for e in row if not np.isnan(e)] for row in rod.exponents] == entry["exponents"]
+    assert rod.unstable_bands == document["unstable_bands"]["system"] and len(rod.unstable_bands) == 1
+    assert sweep.critical == document["critical"]
+    assert sweep.critical_x.tolist() == document["critical_x"]
+    assert sweep.verdict.tolist() == document["verdict"]
+    assert not rod.max_abs.flags.writeable
+    assert np.isnan(rod.theory_error).all()
+
+
+def test_places_without_a_linkage_are_nan():
+    scene = hb.load(FOUR_BAR)
+    longest = scene["crank.length"]
+    sweep = scene.sweep(x=("crank.length", (longest, 6 * longest, "x4")), rpm=300, modes=1, only="steady")
+    rod = next(iter(sweep.rods.values()))
+    assert np.isfinite(rod.max_abs[0]).all() and np.isnan(rod.max_abs[-1]).all()
+
+
+@pytest.mark.parametrize(
+    "scene, arguments, flags",
+    [
+        (
+            "four_bar.toml",
+            {"x": "rpm=200:800:3", "y": "*.damping_internal=1e-4:1e-3:3", "modes": 2},
+            ["--x", "rpm=200:800:3", "--y", "*.damping_internal=1e-4:1e-3:3", "--modes", "2"],
+        ),
+        (
+            "mathieu.toml",
+            {"x": ("omega", (1.9, 2.5, 7)), "y": ("hill.stiffness.1.cos.0.0", (0.1, 0.5, 5))},
+            ["--x", "omega=1.9:2.5:7", "--y", "hill.stiffness.1.cos.0.0=0.1:0.5:5"],
+        ),
+        (
+            "slider_crank.toml",
+            {"x": "rpm=500:600:2", "y": "rod.J=800:900:x2"},
+            ["--x", "rpm=500:600:2", "--y", "rod.J=800:900:x2"],
+        ),
+    ],
+)
+def test_a_map_is_the_commands(scene, arguments, flags):
+    file = SCENES / scene
+    found = hb.load(file).map(**arguments)
+    document = command("map", file, *flags)
+    assert found.to_dict() == document
+    assert found.growth_rate.tolist() == document["growth_rate"]
+    assert found.verdict.tolist() == document["verdict"]
+    assert found.growth_rate.shape == (len(found.y), len(found.x))
+    for curve, entry in zip(found.boundaries, document["boundaries"], strict=True):
+        assert curve.points.tolist() == entry["points"] and curve.kind == entry["kind"]
+
+
+def without_seconds(document):
+    if isinstance(document, dict):
+        return {k: without_seconds(v) for k, v in document.items() if "seconds" not in k}
+    return document
+
+
+@pytest.mark.parametrize(
+    "scene, arguments, flags",
+    [
+        ("slider_crank.toml", {"rpm": 1500, "modes": 1, "integrator": "adams"}, ["--rpm", "1500", "--modes", "1", "--integrator", "adams"]),
+        ("mathieu.toml", {"omega": (1.0, 2.0, 0.5), "integrator": "bdf"}, ["--omega", "1:2:0.5", "--integrator", "bdf"]),
+        (
+            "mathieu.toml",
+            {"omega": 2.1, "integrator": "collocation"},
+            ["--omega", "2.1", "--integrator", "collocation"],
+        ),
+    ],
+)
+def test_a_check_is_the_commands(scene, arguments, flags):
+    file = SCENES / scene
+    found = hb.load(file).check(**arguments)
+    document = command("check", file, *flags)
+    assert without_seconds(found.to_dict()) == without_seconds(document)
+    assert found.agrees is True
+    name = next(iter(found))
+    assert found[name].q_difference == document["rods"][name]["q_difference"]
+    assert found.seconds["shooting"] > 0
+
+
+@pytest.mark.parametrize(
+    "arguments, field",
+    [
+        ({"rpm": 300}, "rpm"),
+        ({"rpm": (900, 300, 50)}, "rpm"),
+        ({"rpm": (300, 900)}, "rpm"),
+        ({"rpm": (300, 900, 0)}, "rpm"),
+        ({"rpm": (300, float("nan"), 1)}, "rpm"),
+        ({"rpm": (-300, 900, 50)}, "x"),
+        ({"rpm": "300:900"}, "rpm"),
+        ({"rpm": [300, 200]}, "x"),
+        ({"rpm": [300]}, "x"),
+        ({"rpm": []}, "x"),
+        ({"rpm": np.full(3, np.nan)}, "rpm"),
+        ({"rpm": (300, 900, 50), "omega": 3}, "omega"),
+        ({"x": "AB.J"}, "x"),
+        ({"x": 3}, "x"),
+        ({}, "rpm"),
+        ({"rpm": (300, 900, 50), "threads": 0}, "threads"),
+        ({"rpm": (300, 900, 50), "threads": "many"}, "threads"),
+        ({"rpm": (300, 900, 50), "rods": "none"}, "rods"),
+        ({"rpm": (300, 900, 50), "progress": 3}, "progress"),
+    ],
+)
+def test_a_sweep_refuses_by_name(six_link, arguments, field):
+    with pytest.raises(hb.RequestError) as raised:
+        six_link.sweep(**arguments)
+    assert raised.value.field == field
+    assert raised.value.found and raised.value.allowed
+    assert "--" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    "arguments, field",
+    [
+        ({"x": "rpm=1:2:3", "y": "omega=1:2:3"}, "y"),
+        ({"x": "AB.J=1:2:3", "y": "*.J=1:2:3", "rpm": 300}, "y"),
+        ({"x": "rpm=1:2:3", "y": None}, "y"),
+        ({"x": "rpm=1:2:1", "y": "AB.J=1:2:3"}, "x"),
+        ({"x": "rpm=-1:2:3", "y": "AB.J=1:2:3"}, "x"),
+        ({"x": "rpm=1:2:3", "y": "AB.J=1:2:3", "rpm": 300}, "rpm"),
+        ({"x": "rpm=1:2:3000", "y": "AB.J=1:2:3000"}, "x, y"),
+        ({"x": "analysis.modes=1:2:3", "y": "AB.J=1:2:3"}, "x"),
+    ],
+)
+def test_a_map_refuses_by_name(six_link, arguments, field):
+    with pytest.raises(hb.RequestError) as raised:
+        six_link.map(**arguments)
+    assert raised.value.field == field
+    assert raised.value.found and raised.value.allowed
+
+
+def test_unknown_numbers_of_a_map_are_scene_errors(six_link):
+    with pytest.raises(hb.SceneError):
+        six_link.map(x="rpm=1:2:3", y="AB.Q=1:2:3")
+
+
+def test_progress_is_told(four_bar, capfd):
+    told = []
+    four_bar.map(x="rpm=200:4000:40", y="*.damping_internal=1e-5:1e-3:20", progress=lambda *a: told.append(a))
+    assert told and all(isinstance(what, str) and 0 <= done <= total for what, done, total in told)
+    four_bar.map(x="rpm=200:4000:30", y="*.damping_internal=1e-5:1e-3:20", progress=True)
+    assert " of " in capfd.readouterr().err
+
+
+def test_an_error_of_the_progress_function_ends_the_work(four_bar):
+    class Mine(Exception):
+        pass
+
+    def progress(what, done, total):
+        raise Mine
+
+    with pytest.raises(Mine):
+        four_bar.map(x="rpm=200:4000:200", y="*.damping_internal=1e-5:1e-3:100", progress=progress)
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_ctrl_c_ends_long_work(four_bar, threads):
+    timer = threading.Timer(0.5, signal.raise_signal, [signal.SIGINT])
+    start = time.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        four_bar.sweep(rpm=(200, 60000, 0.5), threads=threads)
+    assert time.monotonic() - start < 20
+    timer.join()
+    assert four_bar.steady(rpm=300)["AB" if "AB" in four_bar.rods else four_bar.rods[0]].verdict
+
+
+def test_the_lock_is_free_during_long_work(four_bar):
+    ticks = []
+    done = threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.monotonic())
+            time.sleep(0.01)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.monotonic()
+    four_bar.sweep(rpm=(300, 3000, 5))
+    end = time.monotonic()
+    done.set()
+    thread.join()
+    assert sum(start < t < end for t in ticks) >= 2
+
+
+def test_pickles_keep_the_document_and_compute_the_rest_anew(sweep):
+    again = pickle.loads(pickle.dumps(sweep))
+    assert again.to_dict() == sweep.to_dict()
+    name = next(iter(sweep))
+    assert (again[name].growth_rate == sweep[name].growth_rate).all()
+    assert str(again) == str(sweep)

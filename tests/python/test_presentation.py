@@ -1,0 +1,133 @@
+"""Tables, pictures, pages and notebooks."""
+
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import SCENES
+
+import hb
+
+
+@pytest.fixture(scope="module")
+def sweep():
+    return hb.load(SCENES / "four_bar.toml").sweep(rpm=(300, 1500, 100), modes=2)
+
+
+@pytest.fixture(scope="module")
+def map():
+    x, y = "omega=1.9:2.5:13", "hill.stiffness.1.cos.0.0=0.1:0.5:9"
+    return hb.load(SCENES / "mathieu.toml").map(x=x, y=y)
+
+
+def test_only_numpy_is_needed():
+    code = (
+        "import sys; sys.modules.update(dict.fromkeys(['matplotlib', 'pandas', 'xarray', 'scipy']))\n"
+        f"import hb; m = hb.load({str(SCENES / 'six_link.toml')!r}); s = m.steady(rpm=300); str(s); s.to_dict()\n"
+        "m.sweep(rpm=(300, 500, 100), modes=1)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_a_frame_has_the_commands_table(steady):
+    pytest.importorskip("pandas")
+    frame = steady["AB"].to_frame()
+    assert list(frame.columns[:2]) == ["crank angle [deg]", "q_1 [mm]"]
+    assert frame["q_1 [mm]"].abs().max() == pytest.approx(steady["AB"].max_abs[0], rel=1e-3)
+    assert list(steady.to_frame().index.get_level_values("rod").unique()) == ["AB", "CD"]
+    assert "AB.0 x [N]" in " ".join(steady.to_frame("joint_forces").columns)
+    for what in ("fourier", "deflection", "bending_moment", "exponents", "torque"):
+        assert len(steady.to_frame(what)) > 0
+    with pytest.raises(hb.RequestError):
+        steady.to_frame("everything")
+
+
+def test_a_sweeps_frame_has_its_numbers(sweep):
+    pytest.importorskip("pandas")
+    frame = sweep.to_frame()
+    assert frame.index.name == "rpm" and (frame.index == sweep.x).all()
+    for name, rod in sweep.rods.items():
+        assert (frame[name, "growth_rate"] == rod.growth_rate).all()
+        assert (frame[name, "max_abs_2"] == rod.max_abs[:, 1]).all()
+        assert len(rod.to_frame()) >= len(sweep)
+
+
+def test_datasets_have_the_numbers(sweep, map, steady):
+    pytest.importorskip("xarray")
+    dataset = sweep.to_xarray()
+    for name, rod in sweep.rods.items():
+        assert (dataset["growth_rate"].sel(rod=name).values == rod.growth_rate).all()
+        assert (dataset["max_abs"].sel(rod=name).values == rod.max_abs).all()
+    assert (map.to_xarray()["growth_rate"].values == map.growth_rate).all()
+    turn = steady.to_xarray()
+    assert (turn["q_AB"].values == steady["AB"].response(turn["crank_angle"].values)).all()
+    assert turn["AB.0 elastic"].dims == ("direction", "crank_angle")
+
+
+def test_pictures_come_as_axes(steady, sweep, map, six_link):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    axes = [six_link.plot(), steady.plot(), steady.plot(kind="torque"), map.plot()]
+    axes += [steady["AB"].plot(kind) for kind in ("response", "spectrum", "phase", "deflection", "bending_moment", "exponents")]
+    axes += [sweep.plot(kind) for kind in ("campbell", "growth", "peaks", "deflection")]
+    for ax in axes:
+        assert ax.get_title(loc="left")
+        ax.figure.canvas.draw()
+    given = pyplot.figure().add_subplot()
+    assert steady["AB"].plot(ax=given) is given
+    assert sweep.plot("growth", ax=given) is given
+    pyplot.close("all")
+    for wrong in (steady, steady["AB"], sweep):
+        with pytest.raises(hb.RequestError) as raised:
+            wrong.plot(kind="cake")
+        assert raised.value.field == "kind" and "growth" in raised.value.allowed + "growth"
+    pyplot.close("all")
+
+
+def test_colours_are_the_commands(map):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    ax = map.plot()
+    drawn = {line.get_color(): line.get_label() for line in ax.get_lines()}
+    assert drawn.get("#000000") == "boundary −1: half the speed"
+    bands = hb.load(SCENES / "mathieu.toml").sweep(omega=(1.9, 2.5, 0.1)).plot("growth")
+    assert any(patch.get_facecolor()[:3] == pytest.approx((0xD5 / 255, 0x5E / 255, 0)) for patch in bands.patches)
+    pyplot.close("all")
+
+
+def test_a_picture_without_its_quantity_is_refused():
+    pytest.importorskip("matplotlib.pyplot")
+    sweep = hb.load(SCENES / "mathieu.toml").sweep(omega=(1.9, 2.5, 0.1), only="stability")
+    with pytest.raises(hb.RequestError):
+        sweep.plot("peaks")
+
+
+def test_a_notebook_shows_words_and_drawing(six_link, steady, sweep, map, mathieu):
+    for result in (six_link, steady, sweep, map, mathieu):
+        assert "<pre" in result._repr_html_()
+        assert len(str(result)) > 100 and repr(result).startswith("<hb.")
+    assert mathieu._repr_svg_() is None
+    if shutil.which("gnuplot"):
+        assert "<svg" in six_link._repr_svg_()
+
+
+@pytest.mark.skipif(not pathlib.Path("/usr/share/javascript/dygraphs").exists(), reason="libjs-dygraphs is missing")
+def test_pages_are_written_whole(tmp_path, six_link, steady, sweep, map):
+    sweep.report(tmp_path / "sweep.html")
+    map.report(tmp_path / "map.html")
+    steady.report(tmp_path / "steady.html")
+    six_link.report(tmp_path / "both.html", rpm=(200, 400, 100), x="rpm=200:400:4", y="*.J=40:60:3", modes=1, pictures=False)
+    for name in ("sweep", "map", "steady", "both"):
+        page = (tmp_path / f"{name}.html").read_text()
+        assert page.startswith("<!DOCTYPE html>") and page.rstrip().endswith("</html>")
+    assert 'id="speed"' in (tmp_path / "sweep.html").read_text()
+    assert 'id="map"' in (tmp_path / "both.html").read_text()
+
+
+def test_pages_that_cannot_be_written_are_told(steady, tmp_path):
+    with pytest.raises(OSError):
+        steady.report(tmp_path / "none" / "page.html")
+    for wrong in (None, 3, ""):
+        with pytest.raises(hb.RequestError):
+            steady.report(wrong)

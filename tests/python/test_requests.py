@@ -1,0 +1,88 @@
+"""Wrong arguments: RequestError names the argument, what was found and what is allowed."""
+
+import numpy as np
+import pytest
+
+import hb
+
+
+@pytest.mark.parametrize(
+    "arguments, field",
+    [
+        ({"rpm": -1}, "rpm"),
+        ({"rpm": 0}, "rpm"),
+        ({"rpm": float("nan")}, "rpm"),
+        ({"rpm": float("inf")}, "rpm"),
+        ({"rpm": "300"}, "rpm"),
+        ({"rpm": [300]}, "rpm"),
+        ({"rpm": np.zeros((2, 2))}, "rpm"),
+        ({"rpm": True}, "rpm"),
+        ({"rpm": 1j}, "rpm"),
+        ({"rpm": 300, "omega": 3}, "omega"),
+        ({"modes": 0}, "modes"),
+        ({"modes": 61}, "modes"),
+        ({"modes": 2.5}, "modes"),
+        ({"modes": "many"}, "modes"),
+        ({"modes": 10**30}, "modes"),
+        ({"tol": 1}, "tol"),
+        ({"tol": float("nan")}, "tol"),
+        ({"rods": "XY"}, "rods"),
+        ({"rods": ["AB", 3]}, "rods"),
+        ({"rods": 3}, "rods"),
+        ({"only": "everything"}, "only"),
+        ({"theory": "quadratic"}, "theory"),
+        ({"theory": 3}, "theory"),
+        ({"period": 2}, "period"),
+        ({"theory": "nonlinear", "period": 0}, "period"),
+        ({"theory": "nonlinear", "modes": "auto"}, "modes"),
+        ({"steady_method": "fast"}, "steady_method"),
+        ({"stability_method": "fast"}, "stability_method"),
+        ({"bound": "certain"}, "bound"),
+    ],
+)
+def test_steady_refuses_by_name(six_link, arguments, field):
+    with pytest.raises(hb.RequestError) as raised:
+        six_link.steady(**{"rpm": 300, **arguments} if "omega" not in arguments else arguments)
+    error = raised.value
+    assert error.field == field
+    assert error.found and error.allowed
+    assert str(error).startswith(field + ": ")
+    assert "--" not in str(error)
+
+
+def test_unknown_arguments_are_type_errors(six_link):
+    with pytest.raises(TypeError):
+        six_link.steady(speed=300)
+
+
+@pytest.mark.parametrize("angle", [float("nan"), "x", [[1, 2]], None, [1, "2"], object()])
+def test_wrong_angles_are_refused(steady, angle):
+    for function in (steady["AB"].response, steady.joints["AB.0"].elastic, steady.torque.rigid):
+        with pytest.raises(hb.RequestError) as raised:
+            function(angle)
+        assert raised.value.field == "angle"
+
+
+@pytest.mark.parametrize("x", [-1, 260, float("nan"), "x", [[1]]])
+def test_places_beyond_the_link_are_refused(steady, x):
+    with pytest.raises(hb.RequestError) as raised:
+        steady["AB"].deflection(x, 0)
+    assert raised.value.field == "x"
+
+
+def test_a_system_has_no_shape(mathieu):
+    with pytest.raises(hb.RequestError):
+        mathieu.steady(omega=1)["system"].deflection(0, 0)
+
+
+def test_a_steady_state_that_was_not_computed_has_no_response(six_link):
+    with pytest.raises(hb.RequestError):
+        six_link.steady(rpm=300, only="stability")["AB"].response(0)
+
+
+def test_a_speed_without_periodic_solution_is_told():
+    resonant = hb.HillSystem(mass=1, stiffness={0: 4}, load={2: 1})
+    rod = resonant.steady(omega=1)
+    assert rod.error_bound is None
+    with pytest.raises(hb.RequestError):
+        rod.response(0)

@@ -1,0 +1,16 @@
+// From the errors of the library and of the command to the exceptions of the package (hb/errors.py): see errors.cpp.
+#pragma once
+
+#include <string>
+
+#include "tools/python/bindings.hpp"
+
+namespace hb::python {
+
+// Ctrl-C, or an exception of a progress function, during long work: the Python error is kept by PythonWork.
+struct Stopped {};
+
+// A word of the command line as the name of an argument: "--tol" as "tol".
+[[nodiscard]] std::string as_argument(std::string text);
+
+}  // namespace hb::python

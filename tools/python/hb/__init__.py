@@ -1,0 +1,44 @@
+"""Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.
+
+    m = hb.load("six_link.toml")
+    s = m.steady(rpm=300)
+    s["AB"].verdict, s["AB"].max_abs
+
+Numbers are those of the command `hb`, to the last bit; units are the scene's.
+"""
+
+from ._core import Force, Rod, Stability
+from ._core import version as __version__
+from .check import Check, RodCheck
+from .errors import Error, RequestError, SceneError, SceneProblem
+from .hill_system import HillSystem
+from .map import Boundary, Map, RodMap
+from .scene import Scene, load, loads
+from .steady import Steady
+from .sweep import CriticalPoint, Sweep, SweepRod
+from .tune import Tune
+
+__all__ = [
+    "Boundary",
+    "Check",
+    "CriticalPoint",
+    "Error",
+    "Force",
+    "HillSystem",
+    "Map",
+    "RequestError",
+    "Rod",
+    "RodCheck",
+    "RodMap",
+    "Scene",
+    "SceneError",
+    "SceneProblem",
+    "Stability",
+    "Steady",
+    "Sweep",
+    "SweepRod",
+    "Tune",
+    "__version__",
+    "load",
+    "loads",
+]

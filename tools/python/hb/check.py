@@ -1,0 +1,109 @@
+"""Harmonic balance beside time integration."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any, Optional
+
+from . import _core
+from .result import Result
+
+
+class RodCheck:
+    """One elastic link: differences beside what the error bars of both paths allow. At several speeds each is a list."""
+
+    def __init__(self, name: str, entry: dict[str, Any]) -> None:
+        self.name = name
+        self._entry = entry
+
+    @property
+    def agrees(self) -> Any:
+        """Whether everything that could be compared agrees; None where nothing could."""
+        return self._entry["agrees"]
+
+    @property
+    def q_difference(self) -> Any:
+        """Largest difference of q over turn and modes, relative to the largest |q|."""
+        return self._entry["q_difference"]
+
+    @property
+    def q_allowed(self) -> Any:
+        """What the error bars allow for q_difference."""
+        return self._entry["q_allowed"]
+
+    @property
+    def exponent_difference(self) -> Any:
+        """Largest distance of the exponents that both paths resolve, 1/time."""
+        return self._entry["exponent_difference"]
+
+    @property
+    def exponent_allowed(self) -> Any:
+        """What the error bars allow for exponent_difference."""
+        return self._entry["exponent_allowed"]
+
+    @property
+    def not_compared(self) -> Optional[str]:
+        """Why there is no comparison; None where there is one."""
+        return self._entry.get("not_compared")
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its entry in the document."""
+        return dict(self._entry)
+
+    def __repr__(self) -> str:
+        return f"<hb.RodCheck {self.name}: agrees {self.agrees}>"
+
+
+class Check(Result):
+    """Two paths that share nothing but the kinematics: `c["AB"]` is one elastic link (hb.RodCheck)."""
+
+    def __init__(self, scene: Any, arguments: dict[str, Any], core: _core.Check) -> None:
+        super().__init__(scene, arguments, core)
+        self._missed: list[str] = core.shortfalls
+
+    def _computed(self) -> _core.Check:
+        return _core.check(self._scene._core, self._arguments, None)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether both paths agree in everything that could be compared."""
+        return bool(self._document["agrees"])
+
+    @property
+    def shortfalls(self) -> list[str]:
+        """What missed its tolerance, or could not be compared."""
+        return list(self._missed)
+
+    @property
+    def rods(self) -> dict[str, RodCheck]:
+        """Elastic links by name."""
+        return {name: RodCheck(name, entry) for name, entry in self._document["rods"].items()}
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time taken by either path."""
+        return dict(self._document["seconds"])
+
+    def to_frame(self) -> Any:
+        """The differences as a pandas DataFrame, a row for each rod (and speed)."""
+        from . import frames
+
+        return frames.of_check(self)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws differences beside what is allowed."""
+        from . import plots
+
+        return plots.check(self, ax)
+
+    def __getitem__(self, name: str) -> RodCheck:
+        rods = self._document["rods"]
+        if name in rods:
+            return RodCheck(name, rods[name])
+        raise KeyError(f"{name}: no elastic link here; there are {', '.join(rods)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._document["rods"])
+
+    def __repr__(self) -> str:
+        return f"<hb.Check of {self._scene.name}: {'agrees' if self.agrees else 'DISAGREES'}>"

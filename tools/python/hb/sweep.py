@@ -1,0 +1,233 @@
+"""A scene along one of its numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Optional
+
+from . import _core
+from .result import Result, floats, padded, words
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+
+class CriticalPoint(dict[str, Any]):
+    """A resonance peak, with the keys of the command's document as attributes too; float() of it is its place."""
+
+    def __getattr__(self, key: str) -> Any:
+        try:
+            return self[key]
+        except KeyError:
+            raise AttributeError(key) from None
+
+    def __float__(self) -> float:
+        return float(self["x"])
+
+
+class SweepRod:
+    """One elastic link along the axis: arrays have a row for each point; NaN (or None) where there is no linkage or
+    the quantity was not computed."""
+
+    def __init__(self, sweep: "Sweep", name: str) -> None:
+        self._sweep = sweep
+        self.name = name
+
+    @property
+    def _entry(self) -> dict[str, Any]:
+        entry: dict[str, Any] = self._sweep._document["rods"][self.name]
+        return entry
+
+    def _list(self, key: str) -> list[Any]:
+        return self._entry.get(key) or [None] * len(self._sweep)
+
+    @property
+    def modes(self) -> int:
+        """Number of Ritz terms I."""
+        return int(self._entry["modes"])
+
+    @cached_property
+    def max_abs(self) -> "NDArray[Any]":
+        """Largest |q_i| over the turn, (points, I)."""
+        return padded(self._list("max_abs"))
+
+    @cached_property
+    def error_bound(self) -> "NDArray[Any]":
+        """Bound on the relative error of q, (points,)."""
+        return floats(self._list("error_bound"))
+
+    @cached_property
+    def theory_error(self) -> "NDArray[Any]":
+        """Relative error of the linear theory, (points,)."""
+        return floats(self._list("theory_error"))
+
+    @cached_property
+    def deflection(self) -> "NDArray[Any]":
+        """Largest deflection over rod and turn, (points,)."""
+        return floats(self._list("deflection"))
+
+    @cached_property
+    def bending_moment(self) -> "NDArray[Any]":
+        """Largest bending moment over rod and turn, (points,)."""
+        return floats(self._list("bending_moment"))
+
+    @cached_property
+    def growth_rate(self) -> "NDArray[Any]":
+        """Largest real part of the exponents, 1/time, (points,)."""
+        return floats(self._list("growth_rate"))
+
+    @cached_property
+    def growth_error(self) -> "NDArray[Any]":
+        """Error of the growth rate, (points,)."""
+        return floats(self._list("growth_error"))
+
+    @cached_property
+    def verdict(self) -> "NDArray[Any]":
+        """"stable", "bounded", "unstable" or "undecided", (points,)."""
+        return words(self._list("verdict"))
+
+    @cached_property
+    def exponents(self) -> "NDArray[Any]":
+        """Floquet exponents, complex, (points, as many as were resolved anywhere); NaN beyond those of a point."""
+        return padded(self._list("exponents"), complex_pairs=True)
+
+    @property
+    def unstable_bands(self) -> list[list[float]]:
+        """[from, to] of each unstable band."""
+        return [list(band) for band in self._sweep._document.get("unstable_bands", {}).get(self.name, [])]
+
+    @property
+    def band_details(self) -> list[dict[str, Any]]:
+        """The bands with kind and error of their ends and the fastest growth inside."""
+        return [dict(band) for band in self._sweep._document.get("band_details", {}).get(self.name, [])]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Its entry under "rods" of the document."""
+        entry: dict[str, Any] = self._sweep.to_dict()["rods"][self.name]
+        return entry
+
+    def to_frame(self) -> "pandas.DataFrame":
+        """The command's table sweep_ROD.csv: all points, also those between, with frequencies and growth of all modes."""
+        from . import frames
+
+        return frames.of_table(self._sweep._core.rod_table(self.name))
+
+    def plot(self, kind: str = "campbell", ax: Optional["Axes"] = None) -> "Axes":
+        """Draws "campbell", "growth", "peaks" or "deflection" along the axis, unstable bands shaded."""
+        from . import plots
+
+        return plots.sweep_rod(self, kind, ax)
+
+    def __repr__(self) -> str:
+        return f"<hb.SweepRod {self.name}: {self.modes} modes, {len(self.unstable_bands)} unstable bands>"
+
+
+class Sweep(Result):
+    """A scene along the speed or another number: `sw["AB"]` is one elastic link (hb.SweepRod)."""
+
+    def __init__(self, scene: Any, arguments: dict[str, Any], core: _core.Sweep) -> None:
+        super().__init__(scene, arguments, core)
+        self._rods = {name: SweepRod(self, name) for name in self._document["rods"]}
+
+    def _computed(self) -> _core.Sweep:
+        return _core.sweep(self._scene._core, self._arguments, None)
+
+    @property
+    def path(self) -> str:
+        """What it goes along: "rpm", "omega" or a path."""
+        return str(self._document["x"]["path"])
+
+    @cached_property
+    def x(self) -> "NDArray[Any]":
+        """Values along the axis, (points,)."""
+        return floats(self._document["x"]["values"])
+
+    @cached_property
+    def rpm(self) -> "NDArray[Any]":
+        """Speed at each point."""
+        return floats(self._document["rpm"])
+
+    @cached_property
+    def omega(self) -> "NDArray[Any]":
+        """Speed at each point, rad per unit time."""
+        return floats(self._document["omega"])
+
+    @cached_property
+    def verdict(self) -> Optional["NDArray[Any]"]:
+        """The worst of all elastic links at each point; None where stability was not asked for."""
+        return words(self._document["verdict"]) if "verdict" in self._document else None
+
+    @property
+    def critical(self) -> list[CriticalPoint]:
+        """Resonance peaks, located."""
+        return [CriticalPoint(point) for point in self._document.get("critical", [])]
+
+    @cached_property
+    def critical_rpm(self) -> "NDArray[Any]":
+        """Speeds of resonance peaks in rpm; empty where the axis is no speed."""
+        return floats(self._document.get("critical_rpm", []))
+
+    @cached_property
+    def critical_x(self) -> "NDArray[Any]":
+        """Places of resonance peaks along the axis."""
+        return floats(self._document.get("critical_x", []))
+
+    @property
+    def unstable_bands(self) -> dict[str, list[list[float]]]:
+        """[from, to] of each unstable band, by rod."""
+        return {name: rod.unstable_bands for name, rod in self._rods.items()}
+
+    @property
+    def joints(self) -> dict[str, Any]:
+        """Smallest and largest joint forces at each point, as in the document."""
+        return dict(self._document.get("joints", {}))
+
+    @property
+    def rods(self) -> dict[str, SweepRod]:
+        """Elastic links by name."""
+        return dict(self._rods)
+
+    def to_frame(self) -> "pandas.DataFrame":
+        """The points as a pandas DataFrame: index is the axis, columns are (rod, quantity)."""
+        from . import frames
+
+        return frames.of_sweep(self)
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """The points as an xarray Dataset over (x, rod, mode)."""
+        from . import frames
+
+        return frames.sweep_dataset(self)
+
+    def plot(self, kind: str = "campbell", rod: Optional[str] = None, ax: Optional["Axes"] = None) -> "Axes":
+        """Draws one rod (default: the first): "campbell", "growth", "peaks" or "deflection"."""
+        from . import plots
+
+        return plots.sweep(self, kind, rod, ax)
+
+    def report(self, file: Any, *, pictures: bool = True, threads: Any = 1) -> None:
+        """Writes one self-contained HTML page that moves."""
+        from .reports import sweep
+
+        sweep(self, file, pictures=pictures, threads=threads)
+
+    def __getitem__(self, name: str) -> SweepRod:
+        if name in self._rods:
+            return self._rods[name]
+        raise KeyError(f"{name}: no elastic link here; there are {', '.join(self._rods) or 'none'}")
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._rods)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._rods
+
+    def __len__(self) -> int:
+        return len(self._document["x"]["values"])
+
+    def __repr__(self) -> str:
+        return f"<hb.Sweep of {self._scene.name} along {self.path}: {len(self)} points, {', '.join(self._rods)}>"

@@ -1,0 +1,46 @@
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/output/json_output.hpp"
+#include "tools/python/arguments.hpp"
+#include "tools/python/python_work.hpp"
+#include "tools/python/results.hpp"
+#include "tools/python/scene.hpp"
+#include "tools/python/tables.hpp"
+
+namespace hb::python {
+namespace {
+
+std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+  constexpr double max_points = 4e6;
+  MapRequest request;
+  static_cast<Request&>(request) = read_request(arguments);
+  for (const bool is_x : {true, false}) {
+    const char* field = is_x ? "x" : "y";
+    const auto range = given(arguments, field);
+    if (!range) throw RequestError(field, "nothing", "\"PATH=FROM:TO:COUNT\", as in \"rpm=200:6000:100\"");
+    NamedValues named = named_values(field, *range, Third::count);
+    (is_x ? request.x : request.y) = {std::move(named.path), std::move(named.values)};
+  }
+  const double points = static_cast<double>(request.x.values.size()) * static_cast<double>(request.y.values.size());
+  if (points > max_points)
+    throw RequestError("x, y", fmt::format("{} x {} points", request.x.values.size(), request.y.values.size()),
+                       fmt::format("at most {} in all", max_points));
+  if (request.only.verdict) throw RequestError("only", "\"verdict\"", "stability");
+  PythonWork work(read_threads(arguments), progress);
+  return work.run([&] { return std::make_shared<Map>(map(core.source, request, work)); });
+}
+
+}  // namespace
+
+void add_map(py::module_& module) {
+  py::class_<Map, std::shared_ptr<Map>>(module, "Map")
+      .def("json", [](const Map& map) { return decoded(tools::json_text(tools::map_json(document_of(map)))); })
+      .def("words", [](const Map& map) { return decoded(tools::map_summary(document_of(map))); })
+      .def("table", [](const Map& map) { return table_of(tools::map_grid_csv(document_of(map))); })
+      .def_property_readonly("evidence", [](const Map& map) { return decoded(map.evidence); });
+  module.def("map", &mapped, py::arg("scene"), py::arg("arguments"), py::arg("progress"));
+}
+
+}  // namespace hb::python

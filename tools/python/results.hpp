@@ -1,0 +1,25 @@
+// Results of long work as Python holds them.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/analyses.hpp"
+#include "hb/analysis/tune/tune_problem.hpp"
+#include "tools/output/map_output.hpp"
+
+namespace hb::python {
+
+[[nodiscard]] inline tools::MapDocument document_of(const Map& map) {
+  return {map, map.scene, map.num_modes, map.boundary_tolerance};
+}
+
+struct TuneCore {
+  TuneTask task;
+  Scene before;
+  TuneResult result;
+  std::vector<std::string> remarks;
+};
+
+}  // namespace hb::python

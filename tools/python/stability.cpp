@@ -1,0 +1,54 @@
+#include "tools/python/stability.hpp"
+
+#include "tools/python/arrays.hpp"
+#include "tools/python/tables.hpp"
+
+namespace hb::python {
+
+void add_stability(py::module_& module) {
+  py::class_<StabilityView>(module, "Stability",
+                            "Floquet exponents of a periodic motion, the growth rate and what is known of its sign.")
+      .def_property_readonly(
+          "exponents",
+          [](const py::object& self) {
+            return view(self.cast<const StabilityView&>().stability->exponents, &Exponent::value, self);
+          },
+          "Exponents, 1/time: real part descending, imaginary part folded to (-Omega/2, Omega/2]. Read-only.")
+      .def_property_readonly(
+          "exponent_errors",
+          [](const py::object& self) {
+            return view(self.cast<const StabilityView&>().stability->exponents, &Exponent::error, self);
+          },
+          "Error of each exponent, 1/time. Read-only.")
+      .def_property_readonly(
+          "growth_rate", [](const StabilityView& v) { return v.stability->growth_rate + 0.0; },
+          "Largest real part, 1/time: above 0 disturbances grow.")
+      .def_property_readonly(
+          "growth_error", [](const StabilityView& v) { return v.stability->growth_error; },
+          "Error of growth_rate, the larger half of growth_interval.")
+      .def_property_readonly(
+          "growth_interval",
+          [](const StabilityView& v) {
+            return py::make_tuple(v.stability->growth_low + 0.0, v.stability->growth_high + 0.0);
+          },
+          "(low, high) between which the growth rate lies: what the verdict rests on.")
+      .def_property_readonly(
+          "verdict", [](const StabilityView& v) { return to_string(v.stability->verdict); },
+          "\"stable\", \"bounded\", \"unstable\" or \"undecided\".")
+      .def_property_readonly(
+          "converged", [](const StabilityView& v) { return v.stability->converged; },
+          "Whether growth_error is within what was asked.")
+      .def_property_readonly(
+          "method", [](const StabilityView& v) { return to_string(v.stability->method); },
+          "The method that gave the growth rate.")
+      .def_property_readonly(
+          "evidence", [](const StabilityView& v) { return decoded(v.stability->evidence); },
+          "One sentence: what was done.")
+      .def("__repr__", [](const StabilityView& v) {
+        return py::str("<hb.Stability {}, growth rate {:.6g} +/- {:.1e}, {} exponents>")
+            .format(to_string(v.stability->verdict), v.stability->growth_rate + 0.0, v.stability->growth_error,
+                    v.stability->exponents.size());
+      });
+}
+
+}  // namespace hb::python

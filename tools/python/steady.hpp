@@ -1,0 +1,35 @@
+// A scene at one speed with everything that the answer was computed from, as Python holds it.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hb/analysis/nonlinear/nonlinear_steady.hpp"
+#include "hb/analysis/steady.hpp"
+#include "tools/python/bindings.hpp"
+
+namespace hb::python {
+
+struct Answer {
+  std::shared_ptr<const SceneModel> model;
+  Settings settings;
+  SpeedResult result;  // of a motion without linearisation in the form of a linear answer
+  std::optional<NonlinearResult> nonlinear;
+
+  int turns() const { return nonlinear ? nonlinear->turns : 1; }
+  std::string json() const;  // as the command prints it
+};
+
+// One elastic link of an answer, which the Python object keeps alive.
+struct RodView {
+  py::object owner;
+  const Answer* answer;
+  std::size_t rod;
+
+  const RodResult& result() const { return answer->result.rods[rod]; }
+};
+
+[[nodiscard]] RodView rod_of(const py::object& answer, std::size_t rod);
+
+}  // namespace hb::python
