@@ -31,7 +31,7 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
 }
 
 void add_stability(Json& json, const RodResult& rod) {
-  json.update(stability_json(*rod.stability, 2 * rod.num_modes));
+  json.update(stability_json(*rod.stability, rod.num_exponents));
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 

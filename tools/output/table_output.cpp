@@ -101,7 +101,7 @@ void add_stability(Text& text, const RodResult& rod, double speed, const Scene& 
         "imaginary part", "error");
   add_exponents(text, stability.exponents, "");
   if (const Eigen::Index missing = unresolved_exponents(rod); missing > 0) {
-    add(text, "    {} of {} not resolved to a part in 10^6{}\n", missing, 2 * rod.num_modes,
+    add(text, "    {} of {} not resolved to a part in 10^6{}\n", missing, rod.num_exponents,
         stability.uncertain.empty() ? "" : ":");
     add_exponents(text, stability.uncertain, "?");
   }

@@ -12,24 +12,31 @@ constexpr const char* beyond = "beyond the linear theory";
 
 }  // namespace
 
-std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result) {
+std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
+                                         const std::optional<TheoryErrors>& errors) {
   std::vector<std::string> sentences;
-  if (!model.linkage()) return sentences;
-  for (std::size_t r = 0; r < result.rods.size(); ++r) {
-    const std::string& name = result.rods[r].name;
-    if (!result.theory) {
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    const std::string& name = rods[r];
+    if (!errors) {
       sentences.push_back(name + ": theory not judged: q was not computed");
       continue;
     }
-    const std::optional<double>& error = result.theory->rods[r].q;
+    const std::optional<double>& error = errors->rods[r].q;
     if (!beyond_theory(error)) continue;
     sentences.push_back(error
                             ? fmt::format("{}: {}: the nonlinear correction changes q by {:.2g} of its largest value, "
                                           "more than {}",
                                           name, beyond, *error, theory_error_limit)
-                            : fmt::format("{}: {}: {}", name, beyond, result.theory->reason));
+                            : fmt::format("{}: {}: {}", name, beyond, errors->reason));
   }
   return sentences;
+}
+
+std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result) {
+  if (!model.linkage()) return {};
+  std::vector<std::string> rods;
+  for (const RodResult& rod : result.rods) rods.push_back(rod.name);
+  return theory_warnings(rods, result.theory);
 }
 
 bool has_theory(const SweepScene& scene, const SweepResult& result) {
@@ -49,7 +56,7 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
     // Runs of neighbouring points beyond.
     std::size_t count = 0, points = 0, without = 0;
     double largest = 0;
-    std::string runs;
+    std::string runs, why;
     const SweepPoint *first = nullptr, *last = nullptr;
     const auto close = [&] {
       if (first)
@@ -71,6 +78,8 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
       ++count;
       if (error) largest = std::max(largest, *error);
       without += !error;
+      if (!error && why.empty())
+        why = fmt::format("at {} = {:.6g}: {}", scene.axis().path, point.x, point.theory_reason);
       if (!first) first = &point;
       last = &point;
     }
@@ -78,8 +87,7 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
     if (count == 0) continue;
     std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
     if (without > 0)
-      size += fmt::format("{}no value at {} of them: a rod folded, the bent mechanism open, or no periodic solution",
-                          size.empty() ? "" : ", ", without);
+      size += fmt::format("{}no value at {} of them, first {}", size.empty() ? "" : ", ", without, why);
     sentences.push_back(fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size,
                                     scene.axis().path, runs));
   }
