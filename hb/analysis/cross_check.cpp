@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
+#include "lib/rod/shear.hpp"
 #include "lib/rod/time_domain_rod.hpp"
 
 namespace hb {
@@ -40,8 +41,8 @@ double distance(std::complex<double> a, std::complex<double> b, double Omega) {
 // Growth rates, then every exponent that one path lists against the nearest of the other; the worst by excess over its
 // allowance. Either list may leave out exponents: harmonic balance those that it did not resolve, shooting those below
 // `complete_above`. One that is missing there has no partner.
-Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting, Eigen::Index num_modes,
-                             double Omega) {
+Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting,
+                             Eigen::Index num_exponents, double Omega) {
   Comparison worst{"exponents", std::abs(stability.growth_rate - shooting.growth_rate),
                    stability.growth_error + shooting.growth_error + 1e-12 * (Omega + std::abs(shooting.growth_rate))};
   const auto compare = [&](const std::vector<Exponent>& mine, const std::vector<Exponent>& others, double above) {
@@ -58,7 +59,7 @@ Comparison compare_exponents(const Stability& stability, const ShootingResult& s
   };
   const double lowest = shooting.exponents.empty() ? INFINITY : shooting.complete_above;
   compare(stability.exponents, shooting.exponents, lowest);
-  if (static_cast<Eigen::Index>(stability.exponents.size()) == 2 * num_modes)
+  if (static_cast<Eigen::Index>(stability.exponents.size()) == num_exponents)
     compare(shooting.exponents, stability.exponents, -INFINITY);
   return worst;
 }
@@ -103,6 +104,12 @@ void compare_states(RodCheck& rod, bool deflection) {
 double share(const Comparison& c) {
   const double part = c.difference / std::max(c.allowed, 1e-300);
   return std::isnan(part) ? INFINITY : part;
+}
+
+// q_1..q_I of the unknowns that were integrated.
+void keep_deflection(PeriodicOrbit& orbit, Eigen::Index num_modes) {
+  for (Eigen::MatrixXd* samples : {&orbit.q, &orbit.q1, &orbit.q2})
+    if (samples->rows() > num_modes) *samples = samples->topRows(num_modes).eval();
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -255,6 +262,7 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
     rod.name = result.name;
     rod.steady = std::move(*result.steady);
     rod.stability = std::move(result.stability);
+    if (series.theory) rod.theory_error = series.theory->rods[r].q;
     const TimeDomainSystem system = model.linkage() != nullptr
                                         ? time_domain_rod(*model.linkage(), result.link, result.num_modes, speed)
                                         : time_domain_system(model.rods[r].system, speed);
@@ -266,6 +274,8 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
       shooting.begin = [&](Integrator integrator, double seconds) { options.begin(rod.name, integrator, seconds); };
     rod.shooting = solve_by_shooting(system, shooting);
     check.seconds_shooting += rod.shooting.seconds;
+    keep_deflection(rod.shooting.orbit, result.num_modes);
+    keep_deflection(rod.shooting.coarser, result.num_modes);
     const bool unstable = rod.shooting.verdict == Verdict::unstable;
     if (options.march) {
       MarchingOptions marching;
@@ -275,6 +285,7 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
       marching.growth_rate = rod.shooting.verdict == Verdict::undecided ? 0 : rod.shooting.growth_rate;
       rod.marching = march_from_rest(system, marching);
       check.seconds_marching += rod.marching->seconds;
+      keep_deflection(rod.marching->orbit, result.num_modes);
       // That an unstable motion is never reached from rest is no shortfall of the integration.
       if (rod.marching->status != ShootingStatus::converged && !unstable)
         check.shortfalls.push_back(rod.name + ": marching: " + rod.marching->message);
@@ -292,13 +303,15 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
       check.shortfalls.push_back(rod.name + ": time integration: " + rod.shooting.message);
     if (rod.compared()) {
       compare_states(rod, model.linkage() != nullptr && settings.only.shape);
-      if (rod.stability) rod.exponents = compare_exponents(*rod.stability, rod.shooting, result.num_modes, speed);
+      if (rod.stability) rod.exponents = compare_exponents(*rod.stability, rod.shooting, result.num_exponents, speed);
     } else {
       complete = false;
     }
     links.push_back(result.link);
     check.rods.push_back(std::move(rod));
   }
+  for (const RodResult& rod : series.rods) check.theory_rods.push_back(rod.name);
+  check.theory = std::move(series.theory);
   if (series.forces && complete)
     check.joints = compare_joints(*model.linkage(), *series.forces, check.rods, links, speed);
   return check;

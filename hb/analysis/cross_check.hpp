@@ -30,6 +30,7 @@ struct Comparison {
 struct RodCheck {
   std::string name;
   SteadyState steady;
+  std::optional<double> theory_error;  // TheoryErrors::Rod::q
   std::optional<Stability> stability;  // if asked for
   ShootingResult shooting;
   std::optional<MarchingResult> marching;  // if asked for
@@ -55,6 +56,10 @@ struct SpeedCheck {
   double speed = 0;  // rad per unit time
   std::vector<RodCheck> rods;
   std::optional<JointCheck> joints;
+  // What neither path sees: both compute the linear theory. Of all elastic links, asked for or not, by name; empty for a
+  // [hill] scene.
+  std::optional<TheoryErrors> theory;
+  std::vector<std::string> theory_rods;
   double seconds_harmonic_balance = 0, seconds_shooting = 0, seconds_marching = 0;
   std::vector<std::string> shortfalls;  // what missed its tolerance, or could not be compared
   bool agrees() const;

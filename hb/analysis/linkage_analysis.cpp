@@ -9,7 +9,9 @@
 #include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/rod_steady.hpp"
 #include "lib/linkage/transmission_angle.hpp"
+#include "lib/rod/shear.hpp"
 
 namespace hb {
 namespace {
@@ -55,8 +57,9 @@ std::string steady_note(const SteadyState& state, Eigen::Index num_modes) {
 
 // The rod's system with another number of modes than it was made for.
 HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Index num_modes) {
-  if (num_modes == rod.system.num_modes()) return rod.system;
-  if (num_modes == rod.finer.num_modes()) return rod.finer;
+  const Eigen::Index unknowns = rod.link >= 0 ? num_unknowns(link_of(model, rod), num_modes) : num_modes;
+  if (unknowns == rod.system.num_modes()) return rod.system;
+  if (unknowns == rod.finer.num_modes()) return rod.finer;
   return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
 }
 
@@ -71,7 +74,7 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
   const auto growth = [&](Eigen::Index modes) {
     return analyse_stability(system_with(model, rod, modes), speed, options);
   };
-  Eigen::Index I = rod.system.num_modes();
+  Eigen::Index I = rod.num_modes;
   Stability coarse = growth(I);
   double previous = HUGE_VAL;
   while (true) {
@@ -102,7 +105,7 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
   const SteadyOptions options = response_options(settings);
   const bool grows = is_auto(settings) && rod.link >= 0;
   Stopwatch watch;
-  SteadyState state = solve_steady_state(system_with(model, rod, I), speed, options);
+  SteadyState state = solve_rod(system_with(model, rod, I), I, speed, options);
   stages.push_back({"steady state of " + rod.name, watch.seconds(), steady_note(state, I)});
 
   if (rod.link >= 0 && (with_cut || grows)) {
@@ -111,14 +114,14 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
     while (state.status != SteadyStatus::singular) {
       Stopwatch finer_watch;
       const Eigen::Index more = comparison_modes(I);
-      SteadyState finer_state = solve_steady_state(system_with(model, rod, more), speed, options);
+      SteadyState finer_state = solve_rod(system_with(model, rod, more), more, speed, options);
       if (finer_state.status == SteadyStatus::singular) break;
       result.modes_error = cut_error(link, coefficients, speed, state.q, finer_state.q);
       result.more_modes = finer_state.q;
       stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
       if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
       I = std::min(more, max_auto_modes);
-      state = I == more ? std::move(finer_state) : solve_steady_state(system_with(model, rod, I), speed, options);
+      state = I == more ? std::move(finer_state) : solve_rod(system_with(model, rod, I), I, speed, options);
     }
   }
   result.num_modes = I;
@@ -131,7 +134,8 @@ FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, 
                                   const RodResult& result) {
   SteadyOptions options = response_options(settings);
   options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
-  const SteadyState state = solve_steady_state(system_with(model, rod, result.num_modes), speed, options);
+  const SteadyState state =
+      solve_rod(system_with(model, rod, result.num_modes), result.num_modes, speed, options);
   return state.status == SteadyStatus::singular ? result.steady->q : state.q;
 }
 
@@ -236,7 +240,7 @@ void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
   std::vector<HillSystem> systems(modes.size());
   std::vector<LinearRod> rods;
   for (std::size_t r = 0; r < modes.size(); ++r) {
-    const bool as_made = modes[r] == model.rods[r].system.num_modes();
+    const bool as_made = modes[r] == model.rods[r].num_modes;
     if (!as_made) systems[r] = system_with(model, model.rods[r], modes[r]);
     rods.push_back({as_made ? &model.rods[r].system : &systems[r], &result.rods[r].steady->q});
   }
@@ -298,6 +302,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
   if (const auto* hill = std::get_if<HillSystem>(&model.scene.model)) {
     RodModel rod;
     rod.name = "system";
+    rod.num_modes = hill->num_modes();
     rod.system = *hill;
     names.push_back(rod.name);
     model.rods.push_back(std::move(rod));
@@ -347,6 +352,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
       rod.coefficients = static_cast<int>(std::find(links.begin(), links.end(), rod.link) - links.begin());
       const Body& link = link_of(model, rod);
       const Eigen::Index I = start_modes(settings);
+      rod.num_modes = I;
       rod.system = ritz_system(link, coefficients_of(model, rod), I);
       if (compares_modes && rod.reported && wants_modes_error(settings.only)) {
         rod.finer = ritz_system(link, coefficients_of(model, rod), comparison_modes(I));
@@ -372,7 +378,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     entry.name = rod.name;
     entry.link = rod.link;
     entry.reported = rod.reported;
-    entry.num_modes = rod.system.num_modes();
+    entry.num_modes = rod.num_modes;
     entry.growth_alone = only.stability && !only.all_exponents();
     const bool shows_cut = rod.reported && wants_modes_error(only);
     if (auto_modes && rod.link >= 0 && rod.reported && only.stability && !only.verdict)
@@ -400,7 +406,9 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     } else {
       const StabilityOptions options = exponent_options(settings);
       Stopwatch watch;
-      entry.stability = analyse_stability(system_with(model, rod, entry.num_modes), speed, options);
+      const HillSystem system = system_with(model, rod, entry.num_modes);
+      entry.num_exponents = 2 * system.num_modes();
+      entry.stability = analyse_stability(system, speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});
       if (!only.all_exponents())
         stages.push_back({"further exponents of " + rod.name, 0, "not asked for", true});

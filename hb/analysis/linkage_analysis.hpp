@@ -32,7 +32,8 @@ struct RodModel {
   int link = -1;  // body number; -1 for a [hill] scene
   int coefficients = -1;  // place in LinkageCoefficients::rods
   bool reported = true;  // false: solved only because joint forces and the theory error need it
-  HillSystem system;  // with the number of modes asked for (auto: the number to start from)
+  Eigen::Index num_modes = 0;  // Ritz terms of the deflection; unknowns of a [hill] scene
+  HillSystem system;  // with the number of modes asked for (auto: the number to start from); with shear 2 num_modes
   HillSystem finer;  // with comparison_modes; empty if the error of the cut is not asked for
 };
 
@@ -52,7 +53,8 @@ struct RodResult {
   int link = -1;
   bool reported = true;
   Eigen::Index num_modes = 0;
-  std::optional<SteadyState> steady;
+  Eigen::Index num_exponents = 0;  // of its system
+  std::optional<SteadyState> steady;  // q_1..q_I
   std::vector<Extremum> max_abs;  // of each q_i over the turn
   // Estimated max |error of w| / max |w| over rod and turn from cutting the Ritz series, quasi-static tail included.
   std::optional<double> modes_error;
@@ -101,10 +103,10 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
   return rod.modes_error && !(*rod.modes_error <= 0.01);
 }
 
-// Exponents that were looked for, not resolved and not listed, of 2I.
+// Exponents that were looked for, not resolved and not listed, of num_exponents.
 [[nodiscard]] inline Eigen::Index unresolved_exponents(const RodResult& rod) {
   if (rod.stability->method == StabilityMethod::bound || rod.growth_alone) return 0;
-  return 2 * rod.num_modes - static_cast<Eigen::Index>(rod.stability->exponents.size());
+  return rod.num_exponents - static_cast<Eigen::Index>(rod.stability->exponents.size());
 }
 
 // Number of modes that I modes are compared with to see the error of the cut: I + max(3, I/2).

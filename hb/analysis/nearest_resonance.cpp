@@ -50,7 +50,7 @@ std::optional<NearestResonance> nearest_resonance(const HillSystem& system, doub
   return nearest;
 }
 
-std::optional<double> quasi_static_response(const HillSystem& system, double speed) {
+std::optional<double> quasi_static_response(const HillSystem& system, Index num_modes, double speed) {
   const FourierSeries C = stiffness_at(system, speed), h = load_at(system, speed);
   const Index I = system.num_modes();
   if (h.c.size() == 0 || I > most_unknowns) return std::nullopt;
@@ -66,7 +66,10 @@ std::optional<double> quasi_static_response(const HillSystem& system, double spe
     const int now = lu.sign() * (((lu.pivots().array() < 0).count() % 2 == 0) ? 1 : -1);
     if (!(lu.rcond() > 0) || (j > 0 && now != sign)) return std::nullopt;
     sign = now;
-    largest = std::max(largest, lu.solve(Eigen::VectorXd(loads.col(j))).cwiseAbs().maxCoeff());
+    const Eigen::VectorXd u = lu.solve(Eigen::VectorXd(loads.col(j)));
+    Eigen::VectorXd q = u.head(num_modes);
+    if (I == 2 * num_modes) q += u.tail(num_modes);
+    largest = std::max(largest, q.cwiseAbs().maxCoeff());
   }
   if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
   return largest;

@@ -251,6 +251,8 @@ struct ScenePlane::Implementation {
     const Samples samples = samples_at(places);
     for (const auto& sample : samples) {
       if (!sample) return false;
+      for (std::size_t r = 0; r < sample->size(); ++r)
+        if ((*sample)[r].num_modes() != (*samples[0])[r].num_modes()) return false;  // shear.hpp, num_unknowns
     }
     patch.degree = n;
     const MatrixXd Dx = to_coefficients(n[0]), Dy = to_coefficients(n[1]);

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/rod_steady.hpp"
 #include "hb/analysis/sweep_parts.hpp"
 
 namespace hb {
@@ -44,7 +45,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
                      const Only& only, FourierSeries& q) {
   RodPoint point;
   if (wants_steady(only)) {
-    SteadyState state = solve_steady_state(rod.system, speed, response_options(settings));
+    SteadyState state = solve_rod(rod.system, rod.num_modes, speed, response_options(settings));
     point.steady = state.status;
     point.num_harmonics = state.num_harmonics;
     point.error_bound = state.error_bound;
@@ -89,6 +90,7 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
     for (std::size_t r = 0; r < rods.size(); ++r) linear.push_back({&rods[r].system, &q[r]});
     const TheoryErrors errors = theory_errors(*place.model->exact, place.speed, linear);
     for (std::size_t r = 0; r < rods.size(); ++r) point.rods[r].theory_error = errors.rods[r].q;
+    point.theory_reason = errors.reason;
   }
   if (only.reactions && solved) {
     std::vector<LinkResponse> responses;
@@ -128,7 +130,8 @@ class RodAlong {
     SteadyOptions options;
     options.method = scene_.settings().steady_method;
     options.tolerance = tolerance;
-    SteadyState state = solve_steady_state(place.model->rods[rod_].system, place.speed, options);
+    const RodModel& rod = place.model->rods[rod_];
+    SteadyState state = solve_rod(rod.system, rod.num_modes, place.speed, options);
     if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
     return std::move(state.q);
   }
@@ -355,7 +358,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
     SweepRod rod;
     rod.name = model.rods[r].name;
     rod.reported = model.rods[r].reported;
-    rod.num_modes = static_cast<int>(model.rods[r].system.num_modes());
+    rod.num_modes = static_cast<int>(model.rods[r].num_modes);
+    rod.num_unknowns = static_cast<int>(model.rods[r].system.num_modes());
     result.rods.push_back(std::move(rod));
     along.emplace_back(scene, r, evaluations);
     if (model.rods[r].reported) reported.push_back(r);
@@ -607,7 +611,9 @@ std::vector<std::vector<ModeState>> tracks(const SweepResult& result, std::size_
     const bool known = !point->rods.empty() && point->rods[rod].stability;
     places.push_back({point->x, point->speed, known ? &point->rods[rod].stability->stability : nullptr});
   }
-  return track_modes(places, result.rods[rod].num_modes);
+  std::vector<std::vector<ModeState>> followed = track_modes(places, result.rods[rod].num_unknowns);
+  for (std::vector<ModeState>& modes : followed) modes.resize(static_cast<std::size_t>(result.rods[rod].num_modes));
+  return followed;
 }
 
 }  // namespace hb

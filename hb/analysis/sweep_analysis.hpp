@@ -90,6 +90,7 @@ struct SweepPoint {
   double x = 0, speed = 0;
   std::string problem;  // no linkage at this x: why; everything below is empty then
   std::vector<RodPoint> rods;
+  std::string theory_reason;  // TheoryErrors::reason
   std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
   std::optional<TurnRange> torque, torque_rigid;
 };
@@ -111,6 +112,7 @@ struct SweepRod {
   std::string name;
   bool reported = true;  // false: solved only because joint forces need it
   int num_modes = 0;
+  int num_unknowns = 0;  // of its system
   std::vector<StabilityBoundary> boundaries;
   std::vector<UnstableBand> bands;
   std::vector<std::array<double, 2>> not_excluded;  // where a band or a gap may have been missed, ascending

@@ -17,6 +17,7 @@ void visit_point(Visit& visit, SweepPoint& point) {
   visit(point.x);
   visit(point.speed);
   visit_elements(visit, point.problem, [&](char& c) { visit_as_number(visit, c); });
+  visit_elements(visit, point.theory_reason, [&](char& c) { visit_as_number(visit, c); });
   visit_elements(visit, point.rods, [&](RodPoint& rod) {
     visit_if_there(visit, rod.steady, [&](SteadyStatus& status) { visit_as_number(visit, status); });
     visit_as_number(visit, rod.num_harmonics);

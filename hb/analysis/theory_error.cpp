@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/engine/steady/rough_state.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/exact/exact_forces.hpp"
+#include "lib/rod/shear.hpp"
 
 namespace hb {
 namespace {
@@ -15,6 +17,8 @@ using Eigen::MatrixXd;
 
 // Harmonics of q smaller than this part of the largest do not change a theory error.
 constexpr double negligible = 1e-6;
+// Asked of the correction.
+constexpr double rough = 1e-5;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
   std::vector<FourierSeries> q;
@@ -26,13 +30,21 @@ std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
 }
 
 // Products of three responses do not fold onto their own harmonics.
-Index num_samples(const std::vector<FourierSeries>& q, std::span<const LinearRod> rods) {
-  Index H = 8, P = 0;
+Index num_samples(const std::vector<FourierSeries>& q) {
+  Index H = 8;
   for (const FourierSeries& series : q) H = std::max(H, series.num_harmonics());
-  for (const LinearRod& rod : rods)
-    for (std::size_t p = 0; p < 3; ++p)
-      P = std::max({P, rod.system->stiffness[p].num_harmonics(), rod.system->load[p].num_harmonics()});
-  return fourier::fast_length(std::max(4 * H + 2, 2 * P + 2));
+  return fourier::fast_length(4 * H + 2);
+}
+
+// Values at N angles of a series with any number of harmonics, at a multiple of N angles if need be.
+MatrixXd values(const FourierSeries& series, Index N) {
+  Index multiple = 1;
+  while (multiple * N < 2 * series.num_harmonics() + 2) ++multiple;
+  MatrixXd fine = fourier::synthesise(series, multiple * N);
+  if (multiple == 1) return fine;
+  MatrixXd picked(fine.rows(), N);
+  for (Index j = 0; j < N; ++j) picked.col(j) = fine.col(multiple * j);
+  return picked;
 }
 
 // M q'' + B q' + C q - h at the samples.
@@ -40,21 +52,22 @@ MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd&
                          const MatrixXd& q2) {
   const Index I = system.num_modes(), N = q.cols();
   MatrixXd r = system.mass * q2 + system.damping * q1;
-  const MatrixXd C = fourier::synthesise(stiffness_at(system, speed), N);
+  const MatrixXd C = values(stiffness_at(system, speed), N);
   for (Index j = 0; j < N; ++j) r.col(j).noalias() += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I) * q.col(j);
   const FourierSeries h = load_at(system, speed);
-  if (h.c.size() > 0) r -= fourier::synthesise(h, N);
+  if (h.c.size() > 0) r -= values(h, N);
   return r;
 }
 
-// What the system answers to the load given by samples; empty at resonance.
+// What the system's q answer to the load on them given by samples; empty at resonance.
 std::optional<FourierSeries> response(const HillSystem& system, double speed, const MatrixXd& load) {
-  HillSystem loaded = system;
-  loaded.load = {fourier::analyse(load), {}, {}};
+  const HillSystem loaded{system.mass, system.damping, {stiffness_at(system, speed), {}, {}},
+                          {on_unknowns(fourier::analyse(load), system.num_modes()), {}, {}}};
   if (!loaded.load[0].c.allFinite()) return std::nullopt;
-  const SteadyState state = solve_steady_state(loaded, speed, {.tolerance = 1e-5});
+  if (const auto q = rough_steady_state(loaded, speed, rough)) return ritz_coordinates(*q, load.rows());
+  const SteadyState state = solve_steady_state(loaded, speed, {.tolerance = rough});
   if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
-  return state.q;
+  return ritz_coordinates(state.q, load.rows());
 }
 
 double largest(const MatrixXd& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; }
@@ -63,7 +76,7 @@ double ratio(double change, double size) { return change == 0 ? 0 : change / siz
 
 // Largest |sum_i q_i sin(i pi x/l)| over the samples and points of the rod.
 double largest_deflection(const MatrixXd& q) {
-  const Index I = q.rows(), points = 8 * I;
+  const Index I = q.rows(), points = 4 * I + 4;
   MatrixXd shapes(points + 1, I);
   for (Index k = 0; k <= points; ++k)
     for (Index i = 0; i < I; ++i)
@@ -71,9 +84,14 @@ double largest_deflection(const MatrixXd& q) {
   return largest(shapes * q);
 }
 
+// Largest |q_i| over the turn: of components that can have it, their values at four angles a wave being at least 0.7 of
+// their largest.
 double largest_value(const FourierSeries& q) {
+  const Eigen::VectorXd sampled =
+      fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4)).cwiseAbs().rowwise().maxCoeff();
   double value = 0;
-  for (Index i = 0; i < q.num_components(); ++i) value = std::max(value, fourier::max_abs(q, i).value);
+  for (Index i = 0; i < q.num_components(); ++i)
+    if (!(sampled(i) < 0.7 * sampled.maxCoeff())) value = std::max(value, fourier::max_abs(q, i).value);
   return value;
 }
 
@@ -105,7 +123,7 @@ ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_mo
   std::vector<ExactModel::Rod> rods;
   const std::vector<int> links = elastic_links(linkage);
   for (std::size_t r = 0; r < links.size(); ++r) rods.push_back({links[r], num_modes.at(r)});
-  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 14);
+  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 10);
 }
 
 TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,
@@ -118,7 +136,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
       return errors;
     }
   const std::vector<FourierSeries> q = cut_responses(rods);
-  const CrankAngles angles(model.linkage(), num_samples(q, rods));
+  const CrankAngles angles(model.linkage(), num_samples(q));
   const RitzSamples motion = ritz_samples(q, speed, angles.size());
   const ExactResidual exact = model.residual(speed, angles, motion);
   if (exact.breakdown) {
@@ -129,9 +147,12 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   for (std::size_t r = 0; r < rods.size(); ++r) {
     const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
     const HillSystem& system = *rods[r].system;
-    const MatrixXd own = motion.q.middleRows(first, I);
-    const MatrixXd linear =
-        linear_residual(system, speed, own, motion.q1.middleRows(first, I), motion.q2.middleRows(first, I));
+    const MatrixXd own = motion.q.middleRows(first, I), own1 = motion.q1.middleRows(first, I),
+                   own2 = motion.q2.middleRows(first, I);
+    const Body& link = *body_at(model.linkage(), model.rods()[r].link);
+    const MatrixXd linear = link.elastic->shear
+                                ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1, own2)
+                                : linear_residual(system, speed, own, own1, own2);
     std::optional<FourierSeries> dq = response(system, speed, linear - exact.r.middleRows(first, I));
     if (!dq) {
       errors.reason = body_name(model.linkage(), model.rods()[r].link) + " has no periodic solution";
@@ -139,7 +160,8 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     }
     TheoryErrors::Rod& rod = errors.rods[r];
     rod.q = ratio(largest_value(*dq), largest_value(*rods[r].q));
-    const Index N = fourier::fast_length(12 * std::max(q[r].num_harmonics(), dq->num_harmonics()) + 2);
+    // Four angles a wave of the smallest harmonics, many of those that count.
+    const Index N = fourier::fast_length(4 * std::max(q[r].num_harmonics(), dq->num_harmonics()) + 2);
     rod.deflection =
         ratio(largest_deflection(fourier::synthesise(*dq, N)), largest_deflection(fourier::synthesise(q[r], N)));
     rod.correction = std::move(*dq);

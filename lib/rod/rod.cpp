@@ -4,8 +4,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "lib/linkage/balance.hpp"
 #include "lib/fourier/turn_sampling.hpp"
+#include "lib/linkage/balance.hpp"
+#include "lib/rod/shear.hpp"
 
 namespace hb {
 
@@ -21,6 +22,35 @@ double axial_force(const std::vector<BodyMotion>& motion, const MechanismForces&
   const Complex on_coupler = forces.dyads[at((link - 1) / 2)].joint1;
   const Complex on_link = link % 2 == 1 ? on_coupler : -on_coupler;
   return (std::conj(motion[at(link)].e) * on_link).real();
+}
+
+// lib/README.md (S4) to (S6): of both modes of every term, from the axial force's stiffness A and the load on q = a +
+// b,
+//     M = diag(m_a, m_b),  B = alpha_c diag(c_a, c_b) + c_y/EJ [1 1; 1 1],  C = diag(c_a, c_b) + [A A; A A],  h = (h,
+//     h).
+void add_shear(const Body& link, HillSystem& system) {
+  const Eigen::Index I = system.num_modes(), n = num_unknowns(link, I);
+  const Elastic& elastic = *link.elastic;
+  const RestModes modes = rest_modes(link, I);
+  Eigen::VectorXd stiffness(n), mass(n);
+  for (Eigen::Index first = 0; first < n; first += I) {
+    stiffness.segment(first, I) = modes.stiffness[first == 0 ? 0 : 1];
+    mass.segment(first, I) = modes.mass[first == 0 ? 0 : 1];
+  }
+  system.mass = mass.asDiagonal();
+  const Eigen::MatrixXd same_term = Eigen::MatrixXd::Identity(I, I).replicate(n / I, n / I);
+  system.damping = Eigen::MatrixXd((elastic.internal_damping * stiffness).asDiagonal()) +
+                   elastic.damping_y / (elastic.youngs_modulus * elastic.second_moment) * same_term;
+  for (std::size_t p = 0; p < 3; ++p) {
+    const Eigen::MatrixXcd A = system.stiffness[p].c;
+    if (A.size() == 0) continue;
+    Eigen::MatrixXcd c(n * n, A.cols());
+    for (Eigen::Index k = 0; k < n; ++k)
+      for (Eigen::Index row = 0; row < n; row += I) c.middleRows(row + n * k, I) = A.middleRows(I * (k % I), I);
+    system.stiffness[p] = FourierSeries(std::move(c));
+    system.load[p] = on_unknowns(system.load[p], n);
+  }
+  for (Eigen::Index k = 0; k < n; ++k) system.stiffness[0].c(k + n * k, 0) += stiffness(k);
 }
 
 }  // namespace
@@ -133,9 +163,10 @@ HillSystem ritz_system(const Body& link, const RodCoefficients& rod, Eigen::Inde
         h.c(k, n) = (k % 2 == 0 ? odd_load : even_load) / i(k);
       }
     }
-    if (p == 0)
+    if (p == 0 && !elastic.shear)
       for (Eigen::Index k = 0; k < I; ++k) C.c(k + I * k, 0) += std::pow(kappa(k), 4);
   }
+  if (elastic.shear) add_shear(link, system);
   return system;
 }
 

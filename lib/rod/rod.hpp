@@ -38,10 +38,12 @@ struct LinkageCoefficients {
 // rounding. Precondition: find_obstruction() is empty.
 [[nodiscard]] LinkageCoefficients linkage_coefficients(const Linkage& linkage, double tolerance = 1e-16);
 
-// M, B, C, h of (3.8)-(3.13) with I = num_modes terms, divided by EJ as in the paper.
+// M, B, C, h of (3.8)-(3.13) with I = num_modes terms, divided by EJ as in the paper. With shear 2 I unknowns, of which
+// shear.hpp makes q.
 [[nodiscard]] HillSystem ritz_system(const Body& link, const RodCoefficients& rod, Eigen::Index num_modes);
 
 // Largest deflection w(x,t) and bending moment EJ (w'' + alpha_c w''_t is stress-related; here EJ w'') over rod and turn.
+// With shear the section's rotation stands for w' in the moment. q here and below: q_1..q_I, with shear too.
 struct RodPeak {
   double max_abs = 0;
   double x = 0;            // from joint 0

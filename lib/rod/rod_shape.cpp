@@ -5,6 +5,8 @@
 // The tail is the static deflection of a pinned-pinned beam under p^, in closed form, minus its first I sine terms.
 // The f4 term has none beyond I. So w is a sum of products of a shape (of x) and a time function:
 //     sin(i pi x/l)  q_i,     y_0  f0^,     y_1  f1^,     y_3k  (f3 q_k)^,     y_2k  (f2 q_k)^.
+// With shear (lib/README.md (S8)) 1/(i pi/l)^4 becomes 1/(i pi/l)^4 + 1/(S (i pi/l)^2) in w; the bending moment is that of
+// the shapes without shear with p_i, the rotation of the sections, in place of q_i.
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -13,6 +15,7 @@
 
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
+#include "lib/rod/shear.hpp"
 
 namespace hb {
 
@@ -42,6 +45,13 @@ Shape derivative(const Shape& y) {
   return d;
 }
 
+// y - factor m.
+Shape less(Shape y, double factor, const Shape& m) {
+  for (std::size_t j = 0; j < y.A.size(); ++j) y.A[j] -= factor * m.A[j];
+  for (std::size_t j = 0; j < y.P.size(); ++j) y.P[j] -= factor * m.P[j];
+  return y;
+}
+
 // m'' = p with m(0) = m(1) = 0. Of the wave part, (P'' + 2iK P' - K^2 P) = R, highest power first; of the polynomial,
 // two integrations (its degree stays below 6); then the straight line that makes the ends zero.
 Shape integrated_twice(const Shape& p) {
@@ -60,10 +70,11 @@ Shape integrated_twice(const Shape& p) {
   return m;
 }
 
-// Shapes of the sum above and their derivatives, order 0..4, over x.
+// Shapes of the sum above and their derivatives, order 0..4, over x; flexibility = 1/S.
 class RodShapes {
  public:
-  RodShapes(double length, Eigen::Index num_modes) : l_(length), I_(num_modes), tail_(num_modes, num_static()) {
+  RodShapes(double length, Eigen::Index num_modes, double flexibility = 0)
+      : l_(length), I_(num_modes), flexibility_(flexibility), tail_(num_modes, num_static()) {
     add({.A = {-1}});
     add({.A = {0, -l_}});
     for (Eigen::Index k = 1; k <= I_; ++k) {
@@ -99,7 +110,7 @@ class RodShapes {
  private:
   Eigen::Index num_static() const { return 2 + 2 * I_; }
 
-  // Static deflection under the load p(s) (per EJ): y'''' = l^4 p over s.
+  // Static deflection under the load p(s) (per EJ): y'''' = l^4 p over s; that of shear is -y''/(S l^2).
   void add(Shape p) {
     const double l4 = std::pow(l_, 4);
     for (double& a : p.A) a *= l4;
@@ -110,6 +121,10 @@ class RodShapes {
     y[1] = derivative(y[0]);
     y[3] = derivative(y[2]);
     y[4] = p;
+    if (flexibility_ > 0) {
+      y[0] = less(y[0], flexibility_ / (l_ * l_), y[2]);
+      for (std::size_t order = 1; order < 5; ++order) y[order] = derivative(y[order - 1]);
+    }
     static_.push_back(y);
   }
 
@@ -127,10 +142,12 @@ class RodShapes {
       row(1 + I_ + k) = i == k ? 1.25 + n * n * pi * pi / 6 : odd ? -a : a;
     }
     row /= stiffness;
+    if (flexibility_ > 0) row *= 1 + flexibility_ * std::pow(n * pi / l_, 2);
   }
 
   double l_;
   Eigen::Index I_;
+  double flexibility_;
   Eigen::MatrixXd tail_;  // I x static shapes
   std::vector<std::array<Shape, 5>> static_;
 };
@@ -153,7 +170,7 @@ Eigen::Index power_of_two_from(Eigen::Index N) {
   return power;
 }
 
-// The time functions beside the shapes, in their order.
+// The time functions beside the shapes of the deflection, in their order.
 FourierSeries time_functions(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
   const Eigen::Index I = q.num_components();
   const FourierSeries f = coefficients_at(rod, speed);
@@ -175,6 +192,12 @@ FourierSeries time_functions(const Body& link, const RodCoefficients& rod, doubl
   for (Eigen::Index j = 0; j < T.num_components(); ++j)
     significant = std::max(significant, fourier::significant_harmonics(FourierSeries(T.c.row(j)), 1e-16));
   return fourier::resized(T, significant);
+}
+
+// Those beside the shapes of the bending moment: the sections' rotations for q.
+FourierSeries moment_functions(const Body& link, double speed, const FourierSeries& q, FourierSeries T) {
+  T.c.topRows(q.num_components()) = fourier::resized(rotation_coordinates(link, speed, q), T.num_harmonics()).c;
+  return T;
 }
 
 Eigen::MatrixXd shape_matrix(const RodShapes& shapes, const Eigen::Ref<const Eigen::VectorXd>& x, int order) {
@@ -294,7 +317,13 @@ RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int orde
 RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
   const RodShapes shapes(link.length, q.num_components());
   const FourierSeries T = time_functions(link, rod, speed, q);
-  RodShape result{peak(shapes, T, link.length, 0), peak(shapes, T, link.length, 2)};
+  RodShape result;
+  if (link.elastic->shear) {
+    const RodShapes sheared(link.length, q.num_components(), shear_flexibility(link));
+    result = {peak(sheared, T, link.length, 0), peak(shapes, moment_functions(link, speed, q, T), link.length, 2)};
+  } else {
+    result = {peak(shapes, T, link.length, 0), peak(shapes, T, link.length, 2)};
+  }
   result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
   return result;
 }
@@ -306,7 +335,7 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
   const Eigen::Index I = num_modes;
   const bool moment = quantity == RodQuantity::bending_moment;
   const Eigen::RowVectorXd s = (moment ? link.elastic->youngs_modulus * link.elastic->second_moment : 1.0) *
-                               RodShapes(link.length, I).values(x, moment ? 2 : 0);
+                               RodShapes(link.length, I, moment ? 0 : shear_flexibility(link)).values(x, moment ? 2 : 0);
   const FourierSeries f = coefficients_at(rod, speed);
   const Eigen::Index H = num_harmonics + f.num_harmonics(), N = power_of_two_from(2 * H + 2);
   FourierSeries W(1, H), delta(1, num_harmonics);
@@ -327,21 +356,32 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
   result.g = FourierSeries(I, num_harmonics);
   for (Eigen::Index k = 0; k < I; ++k)
     result.g.c.row(k) = s(k) * delta.c.row(0) + s(I + 2 + k) * fW.row(0) + s(2 * I + 2 + k) * fW.row(1);
+  if (moment && link.elastic->shear)
+    for (Eigen::Index n = 0; n <= num_harmonics; ++n)
+      result.g.c.col(n).array() +=
+          s.head(I).transpose().array() * delta.c(0, n) * (rotation_ratios(link, speed, I, n).conjugate() - 1);
   return result;
 }
 
 RodField rod_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                    const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index num_samples) {
-  const RodShapes shapes(link.length, q.num_components());
-  FourierSeries T = time_functions(link, rod, speed, q);
+  const FourierSeries T = time_functions(link, rod, speed, q);
   // Any number of samples: harmonics are folded onto the grid by sampling a multiple of it.
   Eigen::Index multiple = 1;
   while (multiple * num_samples < 2 * T.num_harmonics() + 1) ++multiple;
-  const Eigen::MatrixXd fine = fourier::synthesise(T, multiple * num_samples);
-  Eigen::MatrixXd time(T.num_components(), num_samples);
-  for (Eigen::Index j = 0; j < num_samples; ++j) time.col(j) = fine.col(multiple * j);
+  const auto over_time = [&](const FourierSeries& functions) {
+    const Eigen::MatrixXd fine = fourier::synthesise(functions, multiple * num_samples);
+    Eigen::MatrixXd time(functions.num_components(), num_samples);
+    for (Eigen::Index j = 0; j < num_samples; ++j) time.col(j) = fine.col(multiple * j);
+    return time;
+  };
+  const Eigen::MatrixXd time = over_time(T);
+  const RodShapes shapes(link.length, q.num_components());
   const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
-  return {shape_matrix(shapes, x, 0) * time, EJ * shape_matrix(shapes, x, 2) * time};
+  if (!link.elastic->shear) return {shape_matrix(shapes, x, 0) * time, EJ * shape_matrix(shapes, x, 2) * time};
+  const RodShapes sheared(link.length, q.num_components(), shear_flexibility(link));
+  return {shape_matrix(sheared, x, 0) * time,
+          EJ * shape_matrix(shapes, x, 2) * over_time(moment_functions(link, speed, q, T))};
 }
 
 }  // namespace hb

@@ -9,6 +9,7 @@
 
 #include "lib/dense.hpp"
 #include "lib/linkage/kinematics.hpp"
+#include "lib/rod/shear.hpp"
 
 namespace hb {
 
@@ -262,6 +263,8 @@ struct ShapeIntegrals {
 //   EJ int s_i'' s_k'' (q_i + alpha_c q_i,t) + int N s_i' s_k' q_i + int mu s_i s_k (q_i,tt - phi_t^2 q_i)
 //   + rho J int s_i' s_k' q_i,tt + c_y int s_i s_k q_i,t = - int s_k p_y
 // with the rigid line load p: N = X - int_x^l p_x, quadratic in x; p_y linear in x.
+// With shear the section's rotation sum p_i s_i' takes the place of w' in bending and rotary inertia, and
+//   k G F int (s_k' (w' - rotation)) of both signs and with (1 + alpha_c d/dt) couples q and p.
 TimeDomainSystem time_domain_rod(const Linkage& linkage, int link, Eigen::Index num_modes, double speed) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("time_domain_rod: speed must be positive and finite, is " + std::to_string(speed));
@@ -281,10 +284,23 @@ TimeDomainSystem time_domain_rod(const Linkage& linkage, int link, Eigen::Index 
   const Eigen::MatrixXd bend = shapes.bend.diagonal().asDiagonal();
   system.mass = mu / EJ * product + elastic.density / elastic.youngs_modulus * slope;
   system.damping = elastic.internal_damping * bend + elastic.damping_y / EJ * product;
+  Eigen::MatrixXd at_rest = bend;
+  if (num_unknowns(*body, num_modes) > num_modes) {
+    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(num_modes, num_modes);
+    const Eigen::MatrixXd shear = elastic.shear->coefficient * elastic.shear->modulus * elastic.area / EJ * slope;
+    const auto blocks = [&](const Eigen::MatrixXd& qq, const Eigen::MatrixXd& qp, const Eigen::MatrixXd& pp) {
+      Eigen::MatrixXd whole(2 * num_modes, 2 * num_modes);
+      whole << qq, qp, qp, pp;
+      return whole;
+    };
+    at_rest = blocks(shear, -shear, shear + bend);
+    system.mass = blocks(mu / EJ * product, zero, elastic.density / elastic.youngs_modulus * slope);
+    system.damping = elastic.internal_damping * at_rest + blocks(elastic.damping_y / EJ * product, zero, zero);
+  }
   const Layout layout(linkage);
   std::vector<BodyMotion> motion;
 
-  system.evaluate = [linkage, link, speed, shapes, bend, product, layout, motion, l, mu, EJ](
+  system.evaluate = [linkage, link, num_modes, speed, shapes, at_rest, product, layout, motion, l, mu, EJ](
                         double tau, Eigen::Ref<Eigen::MatrixXd> C, Eigen::Ref<Eigen::VectorXd> h) mutable {
     motion_at(linkage, tau, motion);
     const Eigen::VectorXd forces = solve_forces(linkage, layout, motion, speed, tau, {});
@@ -297,9 +313,12 @@ TimeDomainSystem time_domain_rod(const Linkage& linkage, int link, Eigen::Index 
     const Complex p1 = turn * line_load(body, rod, linkage.gravity, speed, l);
     const double N0 = X - l * (p0.real() + p1.real()) / 2, N1 = l * p0.real(), N2 = l * (p1 - p0).real() / 2;
     const double phi_t = speed * rod.phi1;
-    C = bend + (N0 * shapes.slope[0] + N1 * shapes.slope[1] + N2 * shapes.slope[2]) / EJ -
-        mu * phi_t * phi_t / EJ * product;
-    h = (-p0.imag() * shapes.first[0] - (p1 - p0).imag() * shapes.first[1]) / EJ;
+    C = at_rest;
+    C.topLeftCorner(num_modes, num_modes) = at_rest.topLeftCorner(num_modes, num_modes) +
+                                            (N0 * shapes.slope[0] + N1 * shapes.slope[1] + N2 * shapes.slope[2]) / EJ -
+                                            mu * phi_t * phi_t / EJ * product;
+    h.setZero();
+    h.head(num_modes) = (-p0.imag() * shapes.first[0] - (p1 - p0).imag() * shapes.first[1]) / EJ;
   };
   return system;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/rod/section.hpp"
+#include "lib/rod/shear.hpp"
 #include "lib/scene/material.hpp"
 #include "lib/scene/plausibility.hpp"
 #include "lib/scene/scene_parts.hpp"
@@ -115,7 +116,7 @@ const Material* read_material(const TableView& elastic) {
 
 // Internal damping by the ratio of one mode at rest, lib/README.md (M9): with zeta_i = alpha_c omega_i/2 and the rod's
 // own frequency,
-//     omega_i^2 = (i pi/l)^4/((rho/E)(i pi/l)^2 + mu/EJ),     alpha_c = 2 zeta_i/omega_i.
+//     omega_i^2 = (i pi/l)^4/((rho/E)(i pi/l)^2 + mu/EJ), or (S5) with shear,     alpha_c = 2 zeta_i/omega_i.
 double internal_damping(const TableView& elastic, const Elastic& link, const Body& body) {
   static constexpr Limits ratios{0, 1, true, "a damping ratio from 0 to 1, or { mode = 2, ratio = 0.01 }"};
   if (!elastic.has("damping_ratio")) return elastic.number("damping_internal", not_negative).value_or(0);
@@ -133,7 +134,13 @@ double internal_damping(const TableView& elastic, const Elastic& link, const Bod
   }
   const double k = mode * pi / body.length, E = link.youngs_modulus;
   const double m = link.density / E * k * k + body.mass / body.length / (E * link.second_moment);
-  const double omega = k * k / std::sqrt(m);
+  double omega = k * k / std::sqrt(m);
+  if (link.shear) {
+    Body whole = body;
+    whole.elastic = link;
+    const RestModes modes = rest_modes(whole, mode);
+    omega = std::sqrt(modes.stiffness[0](mode - 1) / modes.mass[0](mode - 1));
+  }
   return 2 * ratio / omega;
 }
 

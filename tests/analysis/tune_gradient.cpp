@@ -121,6 +121,15 @@ TEST(TuneGradient, AgreesWithDifferencesOfTheSliderCrank) {
   expect_gradients(question, {rod.length, rod.mass}, {"deflection", "stress", "force:rod.0", "mass"}, {"stable"});
 }
 
+TEST(TuneGradient, AgreesWithDifferencesOfARodWithShear) {
+  const Question question{SceneSource(scenes + "slider_crank.toml"),
+                          {"rod.shear.G", "rod.shear.k", "rod.length"},
+                          settings_of(2),
+                          1000,
+                          3000};
+  expect_gradients(question, {4e6, 0.85, 150}, {"deflection", "stress", "force:rod.0"}, {"stable", "frequency>=1"});
+}
+
 TEST(TuneGradient, AgreesWithDifferencesOfAHillSystem) {
   const Question question{
       SceneSource(scenes + "mathieu.toml"), {"hill.damping.0.0", "hill.mass.0.0"}, settings_of(1), 25, 40};

@@ -29,6 +29,26 @@ TEST_F(Check, SixLinkMechanismAgreesOnBothPaths) {
   EXPECT_GT(found["seconds"]["shooting"].get<double>(), 0);
 }
 
+// Two paths that agree to ten digits on an answer that is off by a sixth said so nowhere.
+TEST_F(Check, SaysWhatTheLinearTheoryIsOffBy) {
+  const std::string at = "check " + scene("six_link") + " --modes 1 --tol 1e-8 --only steady --rpm ";
+  const Json found = Json::parse(hb(at + "1500 --rods CD --json").out);
+  EXPECT_NEAR(found["rods"]["CD"]["theory_error"].get<double>(), 0.037, 0.002);
+  ASSERT_EQ(found["warnings"].size(), 1u);  // of AB, which is not asked for
+  EXPECT_EQ(found["warnings"][0].get<std::string>().find("AB: beyond the linear theory"), 0u);
+  const CommandResult text = hb(at + "1500");
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("WARNING: AB: beyond the linear theory: the nonlinear correction changes q by 0.17"),
+            std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("linear theory            off by 0.037"), std::string::npos) << text.out;
+  const Json several = Json::parse(hb(at + "300:1500:600 --json").out);
+  EXPECT_EQ(several["rods"]["AB"]["theory_error"].size(), 3u);
+  EXPECT_FALSE(Json::parse(hb(at + "300 --json").out).contains("warnings"));
+  EXPECT_FALSE(Json::parse(hb("check " + scene("mathieu") + " --omega 1 --tol 1e-7 --json").out)["rods"]["system"]
+                   .contains("theory_error"));
+}
+
 TEST_F(Check, EveryIntegratorAgreesOnAHillScene) {
   for (const char* integrator : {"adams", "bdf", "collocation"}) {
     const CommandResult result =

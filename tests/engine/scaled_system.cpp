@@ -59,6 +59,18 @@ TEST(ScaledSystem, RoundingAllowanceSeesCancellationBetweenPowersOfSpeed) {
   EXPECT_GE(scale_system(system, 1).K_rounding(0, 0), 1e6 * before);
 }
 
+// A mode 1e16 times as stiff as the others cut their harmonics off at 1e-9 of themselves, with an error bound of 1e-14.
+TEST(ScaledSystem, AStiffModeDoesNotCutTheHarmonicsOfTheOthers) {
+  HillSystem system = full_system();
+  system.mass = Eigen::Matrix2d::Identity();
+  system.stiffness[0] = FourierSeries(4, 3);
+  system.stiffness[0].c.col(0) << 2, 0, 0, 1e16;
+  system.stiffness[0].c.col(3) << 1e-12, 0, 0, 0;
+  EXPECT_EQ(scale_system(system, 1).K.num_harmonics(), 3);
+  system.stiffness[0].c.col(3) << 1e-18, 0, 0, 1e-3;
+  EXPECT_EQ(scale_system(system, 1).K.num_harmonics(), 0);
+}
+
 TEST(ScaledSystem, NoLoadHasScaleZero) {
   HillSystem system = full_system();
   system.load[1] = FourierSeries();

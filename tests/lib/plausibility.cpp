@@ -13,7 +13,7 @@ pivot = [0, 0]
 length = 0.04
 [[dyad]]
 on = "crank"
-coupler = { name = "rod", length = 0.15, mass = 0.1, elastic = { E = 210e9, area = 1e-4, J = 1e-9 } }
+coupler = { name = "rod", length = 0.15, mass = 0.1, elastic = { E = 210e9, area = 1e-4, J = 6e-10 } }
 slider = { name = "piston", mass = 0.4, guide = [0, 0] }
 branch = 1
 [analysis]
@@ -71,7 +71,7 @@ TEST(Plausibility, GravitySectionsMassesAndSizesAreLookedAt) {
   expect_only({{"gravity", "0.00981"}}, "gravity: found 0.00981 m/s^2");
   expect_only({{"rod.J", "1e-7"}}, "rod.elastic.J: found J/area^2 = 10");
   expect_only({{"rod.J", "1e-11"}}, "rod.elastic.J: found J/area^2 = 0.001");
-  expect_only({{"rod.length", "0.05"}}, "length/sqrt(J/area) = 15.8");
+  expect_only({{"rod.length", "0.05"}}, "length/sqrt(J/area) = 20.4");
   expect_only({{"rod.mass", "100"}}, "rod.mass: found 100 kg");
   expect_only({{"analysis.rpm", "300000"}}, "analysis.rpm: found a crank whose tip moves at 1257 m/s");
   const std::vector<std::string> in_m =
@@ -83,6 +83,14 @@ TEST(Plausibility, GravitySectionsMassesAndSizesAreLookedAt) {
   ASSERT_EQ(in_m.size(), 1u);
   EXPECT_NE(in_m[0].find("found rod with a length of 150 m; 150 mm if the numbers were in mm"), std::string::npos)
       << in_m[0];
+}
+
+// From pi^2 J/(area l^2) = 0.003, a percent of the deflection.
+TEST(Plausibility, ShearLeftOutIsToldFromAPercentOfTheDeflection) {
+  EXPECT_TRUE(warnings_with({{"rod.J", "6.83e-10"}}).empty());
+  expect_only({{"rod.J", "6.85e-10"}}, "rod.elastic.J: found length/sqrt(J/area) = 57.3, allowed; shear, left out, adds "
+                                       "about 0.93 % to the deflection");
+  EXPECT_TRUE(warnings_with({{"rod.J", "2e-9"}, {"rod.shear.G", "80e9"}, {"rod.shear.k", "0.85"}}).empty());
 }
 
 TEST(Plausibility, TheGravestComesFirstAndEachKindOnce) {

@@ -158,7 +158,7 @@ std::vector<RodBench> bench_rods(const SceneModel& model, double speed, const Be
   for (const RodModel& rod : model.rods) {
     if (!rod.reported) continue;
     const TimeDomainSystem system = model.linkage() != nullptr
-                                        ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
+                                        ? time_domain_rod(*model.linkage(), rod.link, rod.num_modes, speed)
                                         : time_domain_system(rod.system, speed);
     benches.push_back(bench_rod(rod, system, options));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -100,7 +101,10 @@ Json single_json(const SceneModel& model, const SpeedCheck& check, const Setting
   json["omega"] = check.speed;
   json["agrees"] = check.agrees();
   json["rods"] = Json::object();
-  for (const RodCheck& rod : check.rods) json["rods"][rod.name] = rod_json(rod, settings.tolerance);
+  for (const RodCheck& rod : check.rods) {
+    Json& entry = json["rods"][rod.name] = rod_json(rod, settings.tolerance);
+    if (model.linkage()) entry["theory_error"] = rod.theory_error ? number(*rod.theory_error) : Json();
+  }
   if (check.joints) {
     const auto compared = [](const Comparison& c) {
       return Json{{"difference", number(c.difference)}, {"allowed", number(c.allowed)}, {"agrees", c.agrees()}};
@@ -130,6 +134,7 @@ Json range_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) 
       entry["exponent_allowed"].push_back(allowed(rod, rod.exponents));
       entry["verdict"].push_back(to_string(rod.shooting.verdict));
       entry["agrees"].push_back(agrees(rod));
+      if (model.linkage()) entry["theory_error"].push_back(rod.theory_error ? number(*rod.theory_error) : Json());
     }
     const bool joints = check.joints.has_value();
     json["joints_difference"].push_back(joints ? number(check.joints->forces.difference) : Json());
@@ -154,6 +159,14 @@ Json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks, 
     shooting += check.seconds_shooting;
     marching += check.seconds_marching;
   }
+  Json warnings = Json::array();
+  for (const SpeedCheck& check : checks) {
+    const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
+    if (model.linkage())
+      for (const std::string& sentence : theory_warnings(check.theory_rods, check.theory))
+        warnings.push_back(at + sentence);
+  }
+  if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["seconds"] = {{"harmonic_balance", series}, {"shooting", shooting}};
   if (marching > 0) json["seconds"]["marching"] = marching;
   return json;

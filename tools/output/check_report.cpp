@@ -8,6 +8,7 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -48,6 +49,8 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, bool sta
     add(text, "  shooting                 asked {:.1e}, reached {:.1e}; {}, {} steps, {} segment{} a turn, {:.3g} s\n",
         integration_tolerance(settings), shooting.q_error, to_string(shooting.integrator), shooting.steps,
         shooting.num_segments, shooting.num_segments == 1 ? "" : "s", shooting.seconds);
+  if (rod.theory_error)
+    add(text, "  linear theory            off by {:.2g} of the largest |q|: what both paths leave out\n", *rod.theory_error);
   if (stats)
     add(text, "  work                     {} evaluations, predicted {:.3g} s; {} {:.1e}\n", shooting.evaluations,
         shooting.predicted_seconds,
@@ -152,6 +155,12 @@ void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedChe
     if (check.joints && !check.joints->torque.agrees())
       add(text, "DISAGREES: {}{}\n", at, differs(check.joints->torque, units));
     for (const std::string& sentence : check.shortfalls) add(text, "NOT REACHED: {}{}\n", at, sentence);
+  }
+  for (const SpeedCheck& check : checks) {
+    const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
+    if (model.linkage())
+      for (const std::string& sentence : theory_warnings(check.theory_rods, check.theory))
+        add(text, "WARNING: {}{}\n", at, sentence);
   }
   add(text, "{}\n",
       !agree     ? "The paths DISAGREE."

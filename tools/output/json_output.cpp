@@ -38,7 +38,7 @@ void add_resonance(Json& json, const HillSystem& system, const RodResult& rod, d
                                  {"rpm", rpm_from_speed(nearest->speed, units)},
                                  {"omega", nearest->speed},
                                  {"frequency", nearest->frequency}};
-  const std::optional<double> slow = quasi_static_response(system, speed);
+  const std::optional<double> slow = quasi_static_response(system, rod.num_modes, speed);
   double largest = 0;
   for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
   if (slow && !rod.max_abs.empty()) json["amplification"] = largest / *slow;
@@ -54,7 +54,7 @@ void add_stress(Json& json, const RodStress& stress) {
 }
 
 void add_stability(Json& json, const RodResult& rod, double speed) {
-  json.update(stability_json(*rod.stability, 2 * rod.num_modes));
+  json.update(stability_json(*rod.stability, rod.num_exponents));
   json["exponents_unresolved"] = unresolved_exponents(rod);
   Json frequencies = Json::array(), multipliers = Json::array();
   for (const Exponent& exponent : rod.stability->exponents) {

@@ -33,7 +33,7 @@ void add_resonance(Text& text, const SceneModel& model, const RodModel& rod_mode
     add(text, "  resonance         nearest {}Omega = omega_1 at {}, {:.2g} % {}\n",
         nearest->order == 1 ? "" : fmt::format("{} ", nearest->order), speed_text(nearest->speed, model.scene, 6),
         100 * std::abs(nearest->speed / speed - 1), nearest->speed > speed ? "faster" : "slower");
-  if (const std::optional<double> slow = quasi_static_response(rod_model.system, speed)) {
+  if (const std::optional<double> slow = quasi_static_response(rod_model.system, rod_model.num_modes, speed)) {
     double largest = 0;
     for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
     add(text, "  amplification     {:.4g}: largest |q| against that of the same load applied slowly\n", largest / *slow);

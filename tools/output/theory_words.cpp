@@ -50,24 +50,31 @@ std::string runs(const std::vector<SweepPoint>& points, const Predicate& is) {
 
 }  // namespace
 
-std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result) {
+std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
+                                         const std::optional<TheoryErrors>& errors) {
   std::vector<std::string> sentences;
-  if (!model.linkage()) return sentences;
-  for (std::size_t r = 0; r < result.rods.size(); ++r) {
-    const std::string& name = result.rods[r].name;
-    if (!result.theory) {
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    const std::string& name = rods[r];
+    if (!errors) {
       sentences.push_back(name + ": theory not judged: q was not computed");
       continue;
     }
-    const std::optional<double>& error = result.theory->rods[r].q;
+    const std::optional<double>& error = errors->rods[r].q;
     if (!beyond_theory(error)) continue;
     sentences.push_back(error
                             ? fmt::format("{}: {}: the nonlinear correction changes q by {:.2g} of its largest value, "
                                           "more than {}",
                                           name, beyond, *error, theory_error_limit)
-                            : fmt::format("{}: {}: {}", name, beyond, result.theory->reason));
+                            : fmt::format("{}: {}: {}", name, beyond, errors->reason));
   }
   return sentences;
+}
+
+std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result) {
+  if (!model.linkage()) return {};
+  std::vector<std::string> rods;
+  for (const RodResult& rod : result.rods) rods.push_back(rod.name);
+  return theory_warnings(rods, result.theory);
 }
 
 bool has_theory(const SweepScene& scene, const SweepResult& result) {
@@ -86,6 +93,7 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
     }
     std::size_t count = 0, points = 0, without = 0;
     double largest = 0;
+    std::string why;
     for (const SweepPoint& point : result.points) {
       if (point.rods.empty()) continue;
       ++points;
@@ -94,12 +102,13 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
       ++count;
       if (error) largest = std::max(largest, *error);
       without += !error;
+      if (!error && why.empty())
+        why = fmt::format("at {} = {:.6g}: {}", scene.axis().path, point.x, point.theory_reason);
     }
     if (count == 0) continue;
     std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
     if (without > 0)
-      size += fmt::format("{}no value at {} of them: a rod folded, the bent mechanism open, or no periodic solution",
-                          size.empty() ? "" : ", ", without);
+      size += fmt::format("{}no value at {} of them, first {}", size.empty() ? "" : ", ", without, why);
     sentences.push_back(
         fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size, scene.axis().path,
                     runs(result.points, [&](const SweepPoint& p) { return beyond_theory(p.rods[r].theory_error); })));

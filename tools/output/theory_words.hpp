@@ -13,6 +13,8 @@ namespace hb::tools {
 
 // One sentence for each elastic link, reported or not, whose answer is beyond the theory or not judged.
 [[nodiscard]] std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result);
+[[nodiscard]] std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
+                                                       const std::optional<TheoryErrors>& errors);
 // Where along the sweep; one sentence for each elastic link.
 [[nodiscard]] std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepResult& result);
 

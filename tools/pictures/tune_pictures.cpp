@@ -188,7 +188,7 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
       if (own.points[p].growth_rate > map.worst[p].growth_rate) map.worst[p] = own.points[p];
   }
   constexpr double no_boundaries = 0;
-  const MapDocument document{map, scene, static_cast<Eigen::Index>(tuned->rods.front().system.num_modes()),
+  const MapDocument document{map, scene, tuned->rods.front().num_modes,
                              no_boundaries};
   MapFiles files;
   const auto write = [&](CsvFile file, const std::string& name) {

@@ -95,7 +95,7 @@ ReportData::ReportData(const Scene& scene) : scene_(scene) {
 void ReportData::add_rods(const SceneModel& model, const Scene& scene) {
   for (const RodModel& rod : model.rods) {
     if (!rod.reported) continue;
-    Json entry = {{"name", rod.name}, {"modes", rod.system.num_modes()}};
+    Json entry = {{"name", rod.name}, {"modes", rod.num_modes}};
     if (const auto* linkage = std::get_if<Linkage>(&scene.model)) entry["length"] = body_at(*linkage, rod.link)->length;
     rods_.push_back(rod.name);
     data_["rods"].push_back(std::move(entry));

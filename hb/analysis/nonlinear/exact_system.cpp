@@ -1,11 +1,19 @@
 #include "hb/analysis/nonlinear/exact_system.hpp"
 
+#include <fmt/core.h>
+
 #include <optional>
 #include <utility>
+
+#include "hb/analysis/request.hpp"
 
 namespace hb {
 
 NonlinearSystem exact_system(std::shared_ptr<const ExactModel> model) {
+  for (const ExactModel::Rod& rod : model->rods())
+    if (const Body& body = *body_at(model->linkage(), rod.link); body.elastic->shear)
+      throw RequestError("theory", fmt::format("nonlinear, and shear of {}", body.name),
+                         "linear with shear; nonlinear for rods without it");
   NonlinearSystem system;
   system.num_unknowns = model->num_modes();
   system.speed = [](double parameter) { return parameter; };

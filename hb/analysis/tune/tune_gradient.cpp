@@ -9,6 +9,7 @@
 #include "hb/engine/design/differences.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "lib/rod/rod_functional.hpp"
+#include "lib/rod/shear.hpp"
 #include "hb/analysis/tune/tune_quantities.hpp"
 
 namespace hb {
@@ -82,11 +83,12 @@ OptionalVector shape_gradient(Neighbourhood& near, const Metric& metric, const M
   const bool stress = metric.kind == MetricKind::stress;
   const SceneModel& model = near.here().model;
   const RodModel& rod = model.rods[r];
-  const std::optional<FourierSeries> q = rod_response(rod, speed, settings);
-  if (!q) return std::nullopt;
-  const RodShape shape = shape_of(model, rod, speed, *q);
+  const std::optional<FourierSeries> unknowns = rod_unknowns(rod, speed, settings);
+  if (!unknowns) return std::nullopt;
+  const FourierSeries q = ritz_coordinates(*unknowns, rod.num_modes);
+  const RodShape shape = shape_of(model, rod, speed, q);
   const RodPeak peak = stress ? shape.bending_moment : shape.deflection;
-  const Index I = q->num_components(), H = q->num_harmonics();
+  const Index I = q.num_components(), H = q.num_harmonics();
   // The place as a part of the rod's length, which may be a variable.
   const double part = rod.link >= 0 ? peak.x / body_at(*model.linkage(), rod.link)->length : 0;
   const auto functional = [&](const SceneModel& other) -> RodFunctional {
@@ -100,13 +102,13 @@ OptionalVector shape_gradient(Neighbourhood& near, const Metric& metric, const M
     return stress ? stress_factor(other.model, other.model.rods[r], other.heights, metric) : 1.0;
   };
   const RodFunctional J = functional(model);
-  const std::optional<FourierSeries> lambda = solve_adjoint(rod.system, speed, J.g, H);
+  const std::optional<FourierSeries> lambda = solve_adjoint(rod.system, speed, on_unknowns(J.g, rod.system.num_modes()), H);
   if (!lambda) return std::nullopt;
-  const double sign = J.offset + mean_product(J.g, *q) < 0 ? -1 : 1;
+  const double sign = J.offset + mean_product(J.g, q) < 0 ? -1 : 1;
   return near.gradient([&](const Neighbour& other, const VectorXd&) {
     const RodFunctional K = functional(other.model);
-    const double lagrangian = K.offset + mean_product(K.g, *q) +
-                              mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *q));
+    const double lagrangian = K.offset + mean_product(K.g, q) +
+                              mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *unknowns));
     return sign * factor(other) * lagrangian;
   });
 }
@@ -121,7 +123,7 @@ OptionalVector force_gradient(Neighbourhood& near, const Metric& metric, const M
   std::vector<std::vector<FourierSeries>> slopes;  // by rod and variable: dq/dx_i
   for (std::size_t r = 0; r < model.rods.size(); ++r) {
     const RodModel& rod = model.rods[r];
-    std::optional<FourierSeries> response = rod_response(rod, speed, settings);
+    const std::optional<FourierSeries> response = rod_unknowns(rod, speed, settings);
     if (!response) return std::nullopt;
     const Index I = response->num_components(), columns = response->c.cols();
     const std::optional<MatrixXd> residuals = near.jacobian([&](const VectorXd& y) {
@@ -138,9 +140,9 @@ OptionalVector force_gradient(Neighbourhood& near, const Metric& metric, const M
       change.c.imag() = residuals->col(i).tail(I * columns).reshaped(I, columns);
       std::optional<FourierSeries> slope = solve_linearised(rod.system, speed, std::move(change), columns - 1);
       if (!slope) return std::nullopt;
-      own.push_back(std::move(*slope));
+      own.push_back(ritz_coordinates(*slope, rod.num_modes));
     }
-    q.push_back(std::move(*response));
+    q.push_back(ritz_coordinates(*response, rod.num_modes));
   }
   const JointForces forces = forces_of(model, speed, q, force_tolerance);
   const JointQuantities quantities = joint_quantities(forces);

@@ -14,13 +14,20 @@
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "lib/rod/rod_functional.hpp"
+#include "lib/rod/shear.hpp"
 
 namespace hb {
 
-std::optional<FourierSeries> rod_response(const RodModel& rod, double speed, const Settings& settings) {
+std::optional<FourierSeries> rod_unknowns(const RodModel& rod, double speed, const Settings& settings) {
   SteadyState state = solve_steady_state(rod.system, speed, response_options(settings));
   if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
   return std::move(state.q);
+}
+
+std::optional<FourierSeries> rod_response(const RodModel& rod, double speed, const Settings& settings) {
+  std::optional<FourierSeries> unknowns = rod_unknowns(rod, speed, settings);
+  if (unknowns && rod.system.num_modes() != rod.num_modes) return ritz_coordinates(*unknowns, rod.num_modes);
+  return unknowns;
 }
 
 RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q) {
@@ -87,7 +94,7 @@ std::vector<double> theory_of(const SceneModel& model, double speed, const std::
   std::vector<Eigen::Index> modes;
   for (std::size_t r = 0; r < q.size(); ++r) {
     linear.push_back({&model.rods[r].system, &q[r]});
-    modes.push_back(model.rods[r].system.num_modes());
+    modes.push_back(model.rods[r].num_modes);
   }
   std::optional<ExactModel> own;
   if (!model.exact) own.emplace(theory_model(*model.linkage(), modes));
@@ -263,7 +270,7 @@ double theory_error_of_modes(const SceneModel& model, std::size_t rod, double sp
     for (const RodModel& each : other.rods) q.push_back(rod_response(each, speed, asked).value_or(FourierSeries()));
     return theory_of(other, speed, q)[rod];
   };
-  const Eigen::Index I = model.rods[rod].system.num_modes();
+  const Eigen::Index I = model.rods[rod].num_modes;
   return safety * std::abs(value(std::min<Eigen::Index>(comparison_modes(I), max_modes)) - value(I));
 }
 
@@ -280,7 +287,7 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
   const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
   const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
   constexpr Eigen::Index most = 60;
-  const Eigen::Index more = comparison_modes(rod.system.num_modes()), still_more = comparison_modes(more);
+  const Eigen::Index more = comparison_modes(rod.num_modes), still_more = comparison_modes(more);
   const Stability second = stability(ritz_system(link, coefficients, more)),
                   third = stability(ritz_system(link, coefficients, still_more));
   const double change = std::abs(second.growth_rate - own.growth_rate),
@@ -288,7 +295,7 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
   double error = own.growth_error + safety * change;
   if (!(next <= change / 2 + second.growth_error + third.growth_error))
     error += safety * next * std::max(1.0, (square(most) - square(more)) / (square(still_more) - square(more)));
-  if (error < std::abs(own.growth_rate) || rod.system.num_modes() >= most) return error;
+  if (error < std::abs(own.growth_rate) || rod.num_modes >= most) return error;
   error = 0;
   for (Eigen::Index modes = still_more;; modes = std::min(comparison_modes(modes), most)) {
     const Stability direct = modes == still_more ? third : stability(ritz_system(link, coefficients, modes));
@@ -308,7 +315,7 @@ void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span
     if (rod.link < 0) return 0.0;
     const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
     const HillSystem finer =
-        ritz_system(*body_at(*model.linkage(), rod.link), coefficients, comparison_modes(rod.system.num_modes()));
+        ritz_system(*body_at(*model.linkage(), rod.link), coefficients, comparison_modes(rod.num_modes));
     return safety * std::abs(of(finer) - of(rod.system));
   };
   Settings asked = settings;

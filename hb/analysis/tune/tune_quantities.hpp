@@ -29,7 +29,8 @@ struct MetricValue {
 // Section height across the rod, by name; "*" for all that are not named.
 using SectionHeights = std::map<std::string, double>;
 
-// Periodic solution of one rod; empty where there is none.
+// Periodic solution of one rod, its unknowns and its q; empty where there is none.
+[[nodiscard]] std::optional<FourierSeries> rod_unknowns(const RodModel& rod, double speed, const Settings& settings);
 [[nodiscard]] std::optional<FourierSeries> rod_response(const RodModel& rod, double speed, const Settings& settings);
 // Of a [hill] scene the deflection is the largest |q_i|.
 [[nodiscard]] RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q);

@@ -45,10 +45,14 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
   return result;
 }
 
-// Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean.
+// Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean; of a
+// mode whose own stiffness is small beside its couplings these count. Other modes' stiffnesses do not: they may be 1e20
+// times as large.
 FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
-  const Eigen::VectorXd scale =
-      mean_of(K, I).diagonal().cwiseAbs().cwiseMax(K.c.cwiseAbs().maxCoeff() * 1e-8).cwiseSqrt();
+  const Eigen::VectorXd each = K.c.cwiseAbs().rowwise().maxCoeff();
+  const Eigen::Map<const Eigen::MatrixXd> largest(each.data(), I, I);
+  const Eigen::VectorXd couplings = largest.rowwise().maxCoeff().cwiseMax(largest.colwise().maxCoeff().transpose());
+  const Eigen::VectorXd scale = mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * 1e-8).cwiseSqrt();
   const auto negligible = [&](Eigen::Index k) {
     for (Eigen::Index j = 0; j < I; ++j)
       for (Eigen::Index i = 0; i < I; ++i)

@@ -1,0 +1,30 @@
+#include "hb/analysis/rod_steady.hpp"
+
+#include <algorithm>
+
+#include "lib/rod/shear.hpp"
+
+namespace hb {
+namespace {
+
+double largest(const FourierSeries& series) {
+  double value = 0;
+  for (Eigen::Index i = 0; i < series.num_components(); ++i) value = std::max(value, fourier::max_abs(series, i).value);
+  return value;
+}
+
+}  // namespace
+
+// q_i = a_i + b_i: |error of q_i| <= 2 bound max |unknowns|.
+SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, double speed, SteadyOptions options) {
+  if (system.num_modes() == num_modes) return solve_steady_state(system, speed, options);
+  options.tolerance = std::max(options.tolerance / 4, std::min(options.tolerance, 1e-14));
+  SteadyState state = solve_steady_state(system, speed, options);
+  if (state.q.c.size() == 0) return state;
+  FourierSeries q = ritz_coordinates(state.q, num_modes);
+  if (const double size = largest(q); size > 0) state.error_bound *= 2 * largest(state.q) / size;
+  state.q = std::move(q);
+  return state;
+}
+
+}  // namespace hb

@@ -1,0 +1,13 @@
+// The periodic state of one rod in q_1..q_I, whatever unknowns its system has (lib/rod/shear.hpp).
+#pragma once
+
+#include "hb/engine/steady/steady_state.hpp"
+
+namespace hb {
+
+// solve_steady_state of a rod's or a [hill] scene's system with num_modes or 2 num_modes unknowns: status and error
+// bound are those of q.
+[[nodiscard]] SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
+                                    SteadyOptions options);
+
+}  // namespace hb

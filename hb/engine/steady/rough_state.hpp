@@ -1,0 +1,15 @@
+// The periodic answer to a load to a few digits, without an error bound: one solve on a predicted window of harmonics.
+#pragma once
+
+#include <optional>
+
+#include "lib/hill_system.hpp"
+
+namespace hb {
+
+// q of M q'' + B q' + C q = h over the crank angle, the residual of the window's rows below `tolerance` of the load;
+// near resonance the error is as many times larger as the response. Empty where the iteration does not get there:
+// solve_steady_state finds out why.
+[[nodiscard]] std::optional<FourierSeries> rough_steady_state(const HillSystem& system, double speed, double tolerance);
+
+}  // namespace hb
