@@ -55,11 +55,13 @@ void add_stress(Json& json, const RodStress& stress) {
 
 void add_stability(Json& json, const RodResult& rod, double speed) {
   json.update(stability_json(*rod.stability, 2 * rod.num_modes));
-  Json &frequencies = json["frequencies"] = Json::array(), &multipliers = json["multipliers"] = Json::array();
+  Json frequencies = Json::array(), multipliers = Json::array();
   for (const Exponent& exponent : rod.stability->exponents) {
     frequencies.push_back(exponent.frequency);
     multipliers.push_back(pair(exponent.multiplier(speed)));
   }
+  json["frequencies"] = std::move(frequencies);
+  json["multipliers"] = std::move(multipliers);
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 
