@@ -114,10 +114,7 @@ Map map(const SceneFamily& family, const MapRequest& request, Work& work) {
                                                          : PlaneAxis::Role::scene_number;
     return PlaneAxis{role, along.path, along.values.front(), along.values.back()};
   };
-  MapOptions search;
-  search.search.stability.method = settings.stability_method;
-  search.search.stability.tolerance = std::clamp(settings.tolerance, 1e-13, 1e-9);
-  search.search.tolerance = std::clamp(0.1 * settings.tolerance, 1e-14, 1e-6);
+  MapOptions search = map_options(settings);
   search.parts = work.of("stability map, this step");
   const ScenePlane plane(family, axis(request.x), axis(request.y), options);
   Map result{compute_map(plane, axis(request.x), request.x.values, axis(request.y), request.y.values, search),

@@ -63,6 +63,7 @@ StabilityOptions stability_options(const Settings& settings) {
   options.method = settings.stability_method;
   options.tolerance = std::max(options.tolerance, 10 * settings.tolerance);
   options.verdict_only = settings.only.verdict;
+  options.leading_only = settings.only.verdict || settings.only.growth;
   return options;
 }
 
@@ -392,6 +393,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     entry.link = rod.link;
     entry.reported = rod.reported;
     entry.num_modes = rod.system.num_modes();
+    entry.growth_alone = only.stability && !only.all_exponents();
     const bool shows_cut = rod.reported && wants_modes_error(only);
     if (auto_modes && rod.link >= 0 && rod.reported && only.stability && !only.verdict)
       entry.num_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
@@ -420,6 +422,8 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       Stopwatch watch;
       entry.stability = analyse_stability(system_with(model, rod, entry.num_modes), speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});
+      if (!only.all_exponents())
+        stages.push_back({"further exponents of " + rod.name, 0, "not asked for", true});
     }
     for (std::string& sentence : shortfalls_of(entry, settings)) result.shortfalls.push_back(std::move(sentence));
     for (std::string& sentence : notes_of(entry)) result.notes.push_back(std::move(sentence));

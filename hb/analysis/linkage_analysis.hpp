@@ -62,6 +62,7 @@ struct RodResult {
   std::optional<RodShape> shape;
   std::optional<RodStress> stress;  // beside the shape
   std::optional<Stability> stability;
+  bool growth_alone = false;  // exponents other than the leading ones were not asked for
   FourierSeries more_modes;  // the steady state with more modes, where the error of the cut was looked at
 };
 
@@ -102,7 +103,7 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
 
 // Exponents that were looked for, not resolved and not listed, of 2I.
 [[nodiscard]] inline Eigen::Index unresolved_exponents(const RodResult& rod) {
-  if (rod.stability->method == StabilityMethod::bound) return 0;
+  if (rod.stability->method == StabilityMethod::bound || rod.growth_alone) return 0;
   return 2 * rod.num_modes - static_cast<Eigen::Index>(rod.stability->exponents.size());
 }
 

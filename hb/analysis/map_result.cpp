@@ -51,6 +51,17 @@ std::vector<MissingPoints> missing_points(const ScenePlane& plane, const Stabili
 
 }  // namespace
 
+MapOptions map_options(const Settings& settings) {
+  MapOptions options;
+  options.search.stability.method = settings.stability_method;
+  options.search.stability.tolerance = std::clamp(settings.tolerance, 1e-13, 1e-9);
+  // Where no curves are asked for boundaries only tell which cells of a large grid have one verdict.
+  options.search.tolerance = settings.boundaries ? settings.boundary_tolerance : 1e-3;
+  options.boundaries = settings.boundaries;
+  options.verdict_only = settings.only.verdict;
+  return options;
+}
+
 std::size_t boundary_points_not_reached(const MapResult& result) {
   std::size_t count = 0;
   for (const StabilityMap& map : result.maps) count += map.not_converged;
@@ -126,7 +137,7 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
       result.worst[p] = worse(result.worst[p], result.maps[r].points[p]);
     }
   }
-  result.boundaries = worst_boundaries(plane, result.maps, search);
+  if (search.boundaries) result.boundaries = worst_boundaries(plane, result.maps, search);
   result.lines =
       resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
                       {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()}, max_lines);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hb/engine/boundaries/stability_map.hpp"
+#include "hb/analysis/request.hpp"
 #include "hb/analysis/resonance_lines.hpp"
 #include "hb/analysis/scene_plane.hpp"
 
@@ -42,7 +43,10 @@ struct MapResult {
   const std::vector<double>& y() const { return maps.front().y; }
 };
 
-// Of all rods, the error beyond 1e-10 relative.
+// What the settings mean for the search.
+[[nodiscard]] MapOptions map_options(const Settings& settings);
+
+// Of all rods, the error beyond what was asked.
 [[nodiscard]] std::size_t boundary_points_not_reached(const MapResult& result);
 
 // Boundaries of the worst rod alone.

@@ -34,6 +34,8 @@ Speed Speed::from_rpm(double rpm, const Units& units) { return {speed_from_rpm(r
 
 Speed Speed::from_omega(double omega, const Units& units) { return {omega, rpm_from_speed(omega, units), false}; }
 
+double default_boundary_tolerance(double tolerance) { return std::clamp(0.1 * tolerance, 1e-14, 1e-6); }
+
 Settings settings_of(const Request& request, const Scene& scene) {
   Settings settings;
   settings.modes = request.modes.value_or(scene.analysis.modes);
@@ -49,6 +51,12 @@ Settings settings_of(const Request& request, const Scene& scene) {
   settings.tolerance = request.tolerance.value_or(scene.analysis.tolerance);
   if (!(settings.tolerance >= 1e-14 && settings.tolerance <= 0.1))
     throw RequestError("tolerance", fmt::format("\"{}\"", settings.tolerance), "a number from 1e-14 to 0.1");
+  settings.boundary_tolerance = request.boundary_tolerance.value_or(default_boundary_tolerance(settings.tolerance));
+  if (!(settings.boundary_tolerance >= 1e-14 && settings.boundary_tolerance <= 1e-2))
+    throw RequestError("boundary_tolerance", fmt::format("\"{}\"", settings.boundary_tolerance),
+                       "a number from 1e-14 to 0.01");
+  settings.search = request.search;
+  settings.boundaries = request.boundaries;
   settings.rods = request.rods;
   settings.only = request.only;
   settings.steady_method = request.steady_method;

@@ -44,6 +44,10 @@ struct Only {
   bool reactions = true;  // joint forces and driving torque
   bool shape = true;  // deflection and bending moment
   bool verdict = false;  // of stability the verdict alone, from bounds where they prove it
+  bool growth = false;  // of stability the growth rate and the verdict: the leading exponents alone
+
+  // Frequencies and modes are known.
+  [[nodiscard]] bool all_exponents() const { return stability && !verdict && !growth; }
 };
 
 // What is left open is taken from the scene's [analysis].
@@ -56,6 +60,9 @@ struct Request {
   SteadyMethod steady_method = SteadyMethod::automatic;
   SteadyBound bound = SteadyBound::estimated;
   StabilityMethod stability_method = StabilityMethod::automatic;
+  bool search = true;  // sweep: also what lies between the points (bands, resonance peaks)
+  bool boundaries = true;  // map: the curves where the verdict changes, beside the grid
+  std::optional<double> boundary_tolerance;  // map: of their points, relative; else from the tolerance
 };
 
 // A request with nothing left open but the speed.
@@ -67,10 +74,15 @@ struct Settings {
   SteadyMethod steady_method = SteadyMethod::automatic;
   SteadyBound bound = SteadyBound::estimated;
   StabilityMethod stability_method = StabilityMethod::automatic;
+  bool search = true, boundaries = true;
+  double boundary_tolerance = 1e-11;
 };
 
+// Of boundary points of a map where none is asked for: a tenth of the tolerance of numbers.
+[[nodiscard]] double default_boundary_tolerance(double tolerance);
+
 // Throw RequestError for what cannot be: modes beyond 1 to 60 (a [hill] scene has its own number), a tolerance beyond
-// 1e-14 to 0.1, no speed or two or one that is not positive.
+// 1e-14 to 0.1, one of boundaries beyond 1e-14 to 0.01, no speed or two or one that is not positive.
 [[nodiscard]] Settings settings_of(const Request& request, const Scene& scene);
 [[nodiscard]] Speed speed_of(const Request& request, const Scene& scene);
 

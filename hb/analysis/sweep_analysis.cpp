@@ -73,6 +73,8 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   if (only.stability) {  // of every rod: the mechanism is stable where all are
     StabilityOptions options;
     options.method = settings.stability_method;
+    options.verdict_only = only.verdict;
+    options.leading_only = !only.all_exponents();
     point.stability = StabilitySample{x, speed, analyse_stability(rod.system, speed, options)};
   }
   return point;
@@ -313,6 +315,9 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   result.computed = available(model, settings.only);
   const Only& only = result.computed;
   result.stages = model.stages;
+  result.searched_bands = only.all_exponents() && settings.search;
+  result.searched_peaks = only.steady && settings.search;
+  const std::string why_not = settings.search ? "all exponents are needed, which were not asked for" : "not asked for";
   SweepOptions sweep_options;
   sweep_options.stability.method = settings.stability_method;
   sweep_options.stability.tolerance = refined_stability_tolerance;
@@ -364,7 +369,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
     std::vector<ResponseSample> peaks;
   };
   std::vector<Between> between(num_tasks);
-  if (only.stability) {
+  if (result.searched_bands) {
     between = work.results<Between>(
         "narrow bands and peaks", num_tasks,
         [&](std::size_t task) {
@@ -386,7 +391,10 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
           });
         });
   }
-  result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
+  if (only.stability && !result.searched_bands)
+    result.stages.push_back({"narrow bands and peaks", 0, why_not, true});
+  else
+    result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
 
   // Boundaries.
   Stopwatch boundary_watch;
@@ -396,7 +404,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   };
   std::vector<BoundaryTask> boundary_tasks;
   std::vector<std::vector<const StabilitySample*>> samples(result.rods.size());
-  if (only.stability) {
+  if (result.searched_bands) {
     for (std::size_t i = 0; i < reported.size(); ++i) {
       const std::size_t r = reported[i];
       for (std::size_t k = 0; k < values.size(); ++k) {
@@ -433,7 +441,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   // Resonance peaks: of the largest component, and of each component where its own mode resonates.
   Stopwatch peak_watch;
   std::vector<PeakTask> tasks;
-  if (only.steady) {
+  if (result.searched_peaks) {
     for (std::size_t i = 0; i < reported.size(); ++i) {
       const std::size_t r = reported[i];
       std::vector<ResponseSample> run;
@@ -474,7 +482,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
         point.peak = *peak;
         point.prominence = task.prominence;
         point.speed = scene.at(peak->x).speed;
-        if (only.stability) {
+        if (only.all_exponents()) {
           const SystemAt system = [&](double x) { return rod.system(x); };
           if (const std::optional<StabilitySample> sample =
                   stability_sample(system, peak->x, sweep_options.stability)) {
@@ -512,7 +520,10 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   std::stable_sort(result.critical.begin(), result.critical.end(), [](const CriticalPoint& a, const CriticalPoint& b) {
     return a.rod != b.rod ? a.rod < b.rod : a.peak.x < b.peak.x;
   });
-  result.stages.push_back(
+  if (only.steady && !result.searched_peaks)
+    result.stages.push_back({"resonance peaks", 0, "not asked for", true});
+  else
+    result.stages.push_back(
       {"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
 
   // Everything at what was found.

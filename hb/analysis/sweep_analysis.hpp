@@ -113,6 +113,7 @@ struct SweepResult {
   std::vector<std::string> shortfalls;  // tolerances asked for that were not reached
   std::vector<std::string> notes;  // what is known less well than usual, though no tolerance was asked for it
   std::vector<Stage> stages;
+  bool searched_bands = true, searched_peaks = true;  // between the points
 };
 
 [[nodiscard]] SweepResult run_sweep(const SweepScene& scene, Work& work);

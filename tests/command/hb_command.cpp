@@ -164,7 +164,7 @@ constexpr WrongFlag wrong_flags[] = {
     {"--rpm 300 --tol 0", "--tol: found \"0\"", "1e-14"},
     {"--rpm 300 --tol -1e-3", "\"-1e-3\"", "1e-14"},
     {"--rpm 300 --tol nan", "\"nan\"", "1e-14"},
-    {"--rpm 300 --only all", "--only: found \"all\"", "steady, stability, verdict, reactions, shape"},
+    {"--rpm 300 --only all", "--only: found \"all\"", "steady, stability, growth, verdict, reactions, shape"},
     {"--rpm 300 --only steady,", "--only", "commas"},
     {"--rpm 300 --rods AB,,CD", "--rods", "commas"},
     {"--rpm 300 --threads 0", "--threads: found \"0\"", "1 to"},

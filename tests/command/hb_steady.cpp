@@ -52,7 +52,22 @@ TEST_F(Steady, VerdictAloneIsProvedWithoutExponentsAndItsIntervalHoldsTheGrowthR
   // At 2400 rpm nothing is proved: exponents decide.
   EXPECT_EQ(document("steady " + scene("six_link") + " --rpm 2400 --rods AB --only verdict")["rods"]["AB"]["verdict"],
             "unstable");
-  EXPECT_EQ(hb("sweep " + scene("six_link") + " --rpm 300:400:50 --only verdict").status, 2);
+  EXPECT_EQ(hb("report " + scene("six_link") + " --rpm 300:400:50 --only verdict").status, 2);
+}
+
+TEST_F(Steady, GrowthRateAloneIsThatOfAllExponents) {
+  for (const char* rpm : {"300", "1500", "2400"}) {
+    const std::string six_link = "steady " + scene("six_link") + " --rpm " + rpm + " --only ";
+    const Json growth = document(six_link + "growth"), full = document(six_link + "stability");
+    EXPECT_EQ(growth["verdict"], full["verdict"]);
+    for (const char* rod : {"AB", "CD"}) {
+      const Json &mine = growth["rods"][rod], &all = full["rods"][rod];
+      EXPECT_EQ(mine["verdict"], all["verdict"]);
+      EXPECT_EQ(mine["exponents_unresolved"], 0);
+      EXPECT_LE(std::abs(mine["growth_rate"].get<double>() - all["growth_rate"].get<double>()),
+                mine["exponent_error"].get<double>() + all["exponent_error"].get<double>());
+    }
+  }
 }
 
 TEST_F(Steady, EveryStabilityMethodGivesTheSameAnswer) {

@@ -34,6 +34,32 @@ TEST_F(Sweep, LocatesTheTongueOfTheMathieuScene) {
   EXPECT_NEAR(bands[0][1], 2.3373680000, 1e-10 * 2.4);
 }
 
+TEST_F(Sweep, WhatWasNotAskedForIsNeitherComputedNorClaimed) {
+  const std::string range = scene("six_link") + " --rpm 2000:2600:100 --rods AB --stats";
+  const Json full = document(range);
+  const auto skipped = [](const Json& found, const std::string& stage) {
+    for (const Json& entry : found["stats"])
+      if (entry["stage"] == stage) return entry.contains("skipped");
+    return false;
+  };
+  EXPECT_FALSE(skipped(full, "narrow bands and peaks"));
+  const Json points = document(range + " --no-search");
+  EXPECT_EQ(points["rods"], full["rods"]);
+  const Json growth = document(range + " --only growth"), verdict = document(range + " --only verdict");
+  for (const Json* found : {&points, &growth, &verdict}) {
+    EXPECT_TRUE(skipped(*found, "narrow bands and peaks"));
+    EXPECT_FALSE(found->contains("unstable_bands"));
+    if (found == &points) EXPECT_FALSE(found->contains("critical_rpm"));
+    EXPECT_FALSE(found->contains("refined"));
+    EXPECT_EQ((*found)["verdict"], full["verdict"]);
+  }
+  for (std::size_t k = 0; k < full["rpm"].size(); ++k) {
+    const double here = growth["rods"]["AB"]["growth_rate"][k], all = full["rods"]["AB"]["growth_rate"][k];
+    EXPECT_NEAR(here, all,
+                growth["rods"]["AB"]["growth_error"][k].get<double>() + full["rods"]["AB"]["growth_error"][k].get<double>());
+  }
+}
+
 TEST_F(Sweep, JsonHasTheKeysOfTheContractOverTheGridAskedFor) {
   const Json found = document(scene("six_link") + " --rpm 300:1500:150");
   const std::size_t points = 9;

@@ -57,6 +57,41 @@ TEST_F(Map, JsonHasTheKeysOfTheContract) {
   }
 }
 
+TEST_F(Map, WithoutBoundariesItHasTheSameGridAndNoCurves) {
+  for (const std::string& grid : {std::string("9 --y *.J=30:60:5 --modes 1"), std::string("250 --y *.J=30:60:200 --modes 1")}) {
+    const std::string asked = scene("six_link") + " --rods AB --x rpm=1800:3000:" + grid;
+    const Json full = document(asked), alone = document(asked + " --no-boundaries");
+    EXPECT_TRUE(full.contains("boundaries"));
+    EXPECT_FALSE(alone.contains("boundaries"));
+    EXPECT_FALSE(alone["rods"]["AB"].contains("boundaries"));
+    EXPECT_EQ(alone["verdict"], full["verdict"]);
+    EXPECT_EQ(document(asked + " --no-boundaries --only verdict")["verdict"], full["verdict"]);
+  }
+  refused(scene("mathieu") + " --x omega=1:3:4 --y " + swing + "=0.1:1:4 --no-boundaries --boundary-tol 1e-6",
+          "--no-boundaries");
+}
+
+TEST_F(Map, BoundaryPointsAreAsGoodAsAsked) {
+  const std::string asked = scene("mathieu") + " --x omega=1.5:2.6:9 --y " + swing + "=0.3:0.6:4";
+  const Json fine = document(asked), coarse = document(asked + " --boundary-tol 1e-5");
+  EXPECT_EQ(coarse["boundary_tolerance"], 1e-5);
+  EXPECT_EQ(coarse["boundary_points_not_reached"], 0);
+  EXPECT_EQ(coarse["verdict"], fine["verdict"]);
+  ASSERT_EQ(coarse["boundaries"].size(), fine["boundaries"].size());
+  // Each point lies within its error of a curve known better: the distance along the edge that both cross.
+  std::size_t compared = 0;
+  for (const Json& curve : coarse["boundaries"])
+    for (const Json& p : curve["points"])
+      for (const Json& other : fine["boundaries"])
+        for (const Json& q : other["points"])
+          if (p[1] == q[1] && std::abs(p[0].get<double>() - q[0].get<double>()) < 0.01) {
+            EXPECT_NEAR(p[0], q[0], curve["error"].get<double>() + other["error"].get<double>());
+            ++compared;
+          }
+  EXPECT_GT(compared, 4u);
+  refused(asked + " --boundary-tol 0.5", "--boundary-tol");
+}
+
 TEST_F(Map, GrowthRatesAreThoseOfTheSteadyCommand) {
   const Json map = document(scene("six_link") + " --x rpm=300:1900:3 --y AB.J=30:60:3 --rods AB --modes 1");
   for (std::size_t j = 0; j < 3; ++j) {

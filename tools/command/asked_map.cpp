@@ -144,7 +144,8 @@ std::uint64_t map_key(const ScenePlane& plane, const AxisRange& x, const AxisRan
     key.add(range->axis.path);
     for (const double value : range->values) key.add(value);
   }
-  key.add(settings.tolerance).add(static_cast<double>(settings.stability_method));
+  key.add(settings.tolerance).add(settings.boundary_tolerance).add(settings.boundaries)
+      .add(settings.only.growth).add(settings.only.verdict).add(static_cast<double>(settings.stability_method));
   key.add(factors ? factors->low : -1).add(factors ? factors->high : -1);
   for (const double s : {0.0, 0.37, 1.0}) {
     for (const double t : {0.0, 0.61, 1.0}) {
@@ -166,7 +167,8 @@ std::uint64_t map_key(const ScenePlane& plane, const AxisRange& x, const AxisRan
 }  // namespace
 
 AskedMap::AskedMap(const CommonFlags& flags, const std::string& x, const std::string& y,
-                   const std::string& damping_range, const SceneInput& input, const Work& work)
+                   const std::string& damping_range, const BoundaryFlags& boundaries, const SceneInput& input,
+                   const Work& work)
     : input_(input),
       x_(axis_range("--x", x)),
       y_(axis_range("--y", y)),
@@ -185,9 +187,15 @@ AskedMap::AskedMap(const CommonFlags& flags, const std::string& x, const std::st
   if (!is_speed(x_) && !is_speed(y_)) plane_options_.speed = single_speed(flags, scene_);
   plane_options_.rods = settings_.rods;
   plane_options_.work = &work;
-  search_.search.stability.method = settings_.stability_method;
-  search_.search.stability.tolerance = std::clamp(settings_.tolerance, 1e-13, 1e-9);
-  search_.search.tolerance = std::clamp(0.1 * settings_.tolerance, 1e-14, 1e-6);
+  settings_.boundaries = !boundaries.none;
+  settings_.boundary_tolerance = default_boundary_tolerance(settings_.tolerance);
+  if (!boundaries.tolerance.empty())
+    settings_.boundary_tolerance =
+        number_flag("--boundary-tol", boundaries.tolerance, 1e-14, 0.01, "a number from 1e-14 to 0.01");
+  if (boundaries.none && (factors_ || !boundaries.tolerance.empty()))
+    throw UsageError(fmt::format("--no-boundaries: found beside {}, allowed: one of the two",
+                                 factors_ ? "--damping-range" : "--boundary-tol"));
+  search_ = map_options(settings_);
   plane_.emplace(plane_with({}));
 }
 
@@ -221,7 +229,8 @@ void AskedMap::compute_all(Work& work) {
 }
 
 MapDocument AskedMap::document() const {
-  return {result_, plane_->scene(), plane_options_.num_modes, search_.search.tolerance, complete_};
+  return {result_,           plane_->scene(),     plane_options_.num_modes,
+          search_.search.tolerance, search_.boundaries, complete_};
 }
 
 std::string AskedMap::evidence() const { return plane_->evidence(); }

@@ -23,12 +23,18 @@ struct DampingFactors {
   double low, high;
 };
 
+// As written on the command line.
+struct BoundaryFlags {
+  bool none = false;  // --no-boundaries
+  std::string tolerance;  // --boundary-tol
+};
+
 class AskedMap {
  public:
   // `x`, `y` and `damping_range` (may be empty) as written; throws UsageError, RequestError or SceneError. Both `input`
   // and `work`, which makes the geometry ready, outlive the object.
   AskedMap(const CommonFlags& flags, const std::string& x, const std::string& y, const std::string& damping_range,
-           const SceneInput& input, const Work& work);
+           const BoundaryFlags& boundaries, const SceneInput& input, const Work& work);
 
   // Of everything that the answer depends on.
   [[nodiscard]] std::uint64_t key() const;

@@ -72,7 +72,7 @@ std::variant<int, AutoModes> modes_flag(const std::string& text) {
   return integer_flag("--modes", text, 1, max_modes, fmt::format("an integer 1 to {}, or auto", max_modes));
 }
 
-Only only_flag(const std::string& text, bool verdict_allowed) {
+Only only_flag(const std::string& text, bool growth_alone) {
   Only only{false, false, false, false};
   for (const std::string& part : list_flag("--only", text)) {
     if (part == "steady") {
@@ -83,18 +83,21 @@ Only only_flag(const std::string& text, bool verdict_allowed) {
       only.reactions = true;
     } else if (part == "shape") {
       only.shape = true;
-    } else if (part == "verdict" && verdict_allowed) {
+    } else if (part == "verdict" && growth_alone) {
       only.verdict = true;
+    } else if (part == "growth" && growth_alone) {
+      only.growth = true;
     } else {
       refuse("--only", part,
              fmt::format("steady, stability, {}reactions, shape, several joined by commas{}",
-                         verdict_allowed ? "verdict, " : "",
-                         meant(part, {"steady", "stability", "verdict", "reactions", "shape"})));
+                         growth_alone ? "growth, verdict, " : "",
+                         meant(part, {"steady", "stability", "growth", "verdict", "reactions", "shape"})));
     }
   }
-  // Exponents asked for beside it contain the verdict.
-  only.verdict = only.verdict && !only.stability;
-  only.stability = only.stability || only.verdict;
+  // What is asked for beside it contains the smaller answer.
+  only.growth = only.growth && !only.stability;
+  only.verdict = only.verdict && !only.growth && !only.stability;
+  only.stability = only.stability || only.growth || only.verdict;
   return only;
 }
 
@@ -220,8 +223,13 @@ void add_html_flag(CLI::App& app, CommonFlags& flags) {
 }
 
 void add_single_speed_flags(CLI::App& app, CommonFlags& flags) {
-  flags.single_speed = true;
   add_value(app, "--bound", flags.bound, "error bound: estimated, or proved where a proof is found", "KIND");
+}
+
+void allow_growth_alone(CLI::App& app, CommonFlags& flags) {
+  flags.growth_alone = true;
+  app.get_option("--only")->description(
+      "compute only these: steady,stability,reactions,shape, growth (of stability the growth rate alone), verdict");
 }
 
 void add_analysis_flags(CLI::App& app, CommonFlags& flags, SpeedsTaken taken) {
@@ -285,7 +293,7 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
                          ? scene.analysis.tolerance
                          : number_flag("--tol", flags.tolerance, 1e-14, 0.1, "a number from 1e-14 to 0.1");
   if (!flags.rods.empty()) result.rods = list_flag("--rods", flags.rods);
-  if (!flags.only.empty()) result.only = only_flag(flags.only, flags.single_speed);
+  if (!flags.only.empty()) result.only = only_flag(flags.only, flags.growth_alone);
   if (hill && !result.only.steady && !result.only.stability) {
     refuse("--only", flags.only, "steady, stability: a [hill] scene has no joints and no shape");
   }

@@ -25,7 +25,7 @@ struct CommonFlags {
   std::optional<std::string> out;
   std::vector<std::string> set;
   bool json = false, no_plots = false, stats = false, html = false;
-  bool single_speed = false;  // the command looks at one speed: --only verdict is allowed
+  bool growth_alone = false;  // the command takes --only growth and --only verdict
 };
 
 // Where the answer goes, and with how many threads it is computed.
@@ -42,8 +42,10 @@ enum class SpeedsTaken { one, range };
 void add_analysis_flags(CLI::App& app, CommonFlags& flags, SpeedsTaken speeds = SpeedsTaken::range);
 // --html: a page of the results beside the other files of --out.
 void add_html_flag(CLI::App& app, CommonFlags& flags);
-// --bound, and --only verdict: for single speeds.
+// --bound: for single speeds.
 void add_single_speed_flags(CLI::App& app, CommonFlags& flags);
+// --only growth and --only verdict are for this command.
+void allow_growth_alone(CLI::App& app, CommonFlags& flags);
 
 // A refused request in the words of the command line: fields as flags.
 [[nodiscard]] std::string in_flags(const RequestError& error);

@@ -22,6 +22,7 @@ namespace hb::tools {
 namespace {
 
 struct MapFlags : CommonFlags {
+  BoundaryFlags boundaries;
   std::string x, y, damping_range, colour = "growth";
   bool resume = false, restart = false;
 };
@@ -47,7 +48,7 @@ int run_map(const MapFlags& flags) {
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   const SharedWork geometry(out.threads, nullptr, {}, early_end(out.folder.has_value()));
-  AskedMap map(flags, flags.x, flags.y, flags.damping_range, input, geometry);
+  AskedMap map(flags, flags.x, flags.y, flags.damping_range, flags.boundaries, input, geometry);
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "map", origin);
 
@@ -67,12 +68,15 @@ int run_map(const MapFlags& flags) {
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       return page_of(map, json, input, origin, std::move(pictures));
     };
+  // No tolerance of boundaries was asked for without the flag.
+  const bool reached = flags.boundaries.tolerance.empty() || boundary_points_not_reached(map.result()) == 0;
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             ended_status(document.complete ? exit_ok : exit_not_reached), delivery);
+                             ended_status(document.complete && reached ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) {
     std::size_t samples = 0;
     for (const StabilityMap& of_rod : map.result().maps) samples += of_rod.samples;
-    fmt::print(stderr, "\n  {}; exponents at {} places\n", map.evidence(), samples);
+    fmt::print(stderr, "\n  {}; exponents at {} places{}\n", map.evidence(), samples,
+               flags.boundaries.none ? "; boundaries skipped: not asked for" : "");
   }
   return status;
 }
@@ -85,6 +89,12 @@ void add_map_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<MapFlags>();
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
+  allow_growth_alone(*command, *flags);
+  command->add_flag("--no-boundaries", flags->boundaries.none, "the grid alone: no curves where the verdict changes");
+  command
+      ->add_option("--boundary-tol", flags->boundaries.tolerance,
+                   "relative error of boundary points, 1e-14 to 0.01; default a tenth of --tol")
+      ->type_name("T");
   add_html_flag(*command, *flags);
   command->add_option("--x", flags->x, "first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

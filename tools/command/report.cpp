@@ -33,7 +33,7 @@ std::optional<AskedMap> asked_map(const ReportFlags& flags, const SceneInput& in
   CommonFlags of_map = flags;
   of_map.rpm.clear();
   of_map.omega.clear();
-  return AskedMap(of_map, flags.x, flags.y, "", input, work);
+  return AskedMap(of_map, flags.x, flags.y, "", BoundaryFlags{}, input, work);
 }
 
 std::vector<PageText::Picture> pictures(const SweepScene& scene, const SweepResult& result, const AskedMap* map) {

@@ -148,6 +148,7 @@ void add_steady_command(CLI::App& app, int& status) {
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
   add_single_speed_flags(*command, *flags);
+  allow_growth_alone(*command, *flags);
   command
       ->add_option("--theory", flags->theory,
                    "linear, or nonlinear: the motion without linearisation, all rods together")

@@ -27,7 +27,7 @@ namespace {
 
 struct SweepFlags : CommonFlags {
   std::string x;
-  bool resume = false, restart = false;
+  bool no_search = false, resume = false, restart = false;
 };
 
 int run_sweep_command(const SweepFlags& flags) {
@@ -35,6 +35,7 @@ int run_sweep_command(const SweepFlags& flags) {
   const std::vector<Override> set = overrides(flags);
   const Scene scene = input.source.with(set);
   Settings options = settings(flags, scene);
+  options.search = !flags.no_search;
   const Output out = output(flags);
   AxisAndSpeed asked = axis_of(flags, flags.x, scene);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
@@ -75,6 +76,8 @@ void add_sweep_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<SweepFlags>();
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags);
+  allow_growth_alone(*command, *flags);
+  command->add_flag("--no-search", flags->no_search, "the points alone: no bands, boundaries or peaks between them");
   add_html_flag(*command, *flags);
   command->add_option("--x", flags->x, "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
       ->type_name("PATH=A:B:STEP|A:B:xN");

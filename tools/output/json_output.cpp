@@ -62,6 +62,7 @@ void add_stability(Json& json, const RodResult& rod, double speed) {
   }
   json["frequencies"] = std::move(frequencies);
   json["multipliers"] = std::move(multipliers);
+  json["exponents_unresolved"] = unresolved_exponents(rod);
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 

@@ -147,16 +147,17 @@ Json map_json(const MapDocument& document) {
   json["x"] = axis_json(r.x_axis, r.x());
   json["y"] = axis_json(r.y_axis, r.y());
   json["modes"] = document.num_modes;
-  json["boundary_tolerance"] = document.tolerance;
+  if (document.boundaries) json["boundary_tolerance"] = document.tolerance;
   add_grids(json, first, r.worst);
   json["interpolated"] =
       grid_json(first, r.worst, [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
   json["growth_per_turn"] = grid_json(first, r.worst, growth_per_turn);
-  json["boundaries"] = curves_json(r, r.boundaries);
+  if (document.boundaries) json["boundaries"] = curves_json(r, r.boundaries);
   Json rods = Json::object();
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
     Json& rod = rods[r.rods[k]];
     add_grids(rod, r.maps[k], r.maps[k].points);
+    if (!document.boundaries) continue;
     rod["boundaries"] = Json::array();
     for (const BoundaryCurve& curve : r.maps[k].boundaries) rod["boundaries"].push_back(curve_json(curve));
   }
@@ -171,7 +172,7 @@ Json map_json(const MapDocument& document) {
   for (const ResonanceLine& line : r.lines) {
     json["resonance_lines"].push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
   }
-  json["boundary_points_not_reached"] = boundary_points_not_reached(r);
+  if (document.boundaries) json["boundary_points_not_reached"] = boundary_points_not_reached(r);
   json["counts"] = {{"stable", n.stable},       {"bounded", n.bounded}, {"unstable", n.unstable},
                     {"undecided", n.undecided}, {"missing", n.missing}, {"interpolated", n.interpolated}};
   json["missing"] = Json::array();
@@ -320,6 +321,7 @@ std::string map_summary(const MapDocument& document) {
   }
   for (const std::string& note : map_notes(document))
     text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
+  if (!document.boundaries) return text + "  boundaries were not asked for\n";
   if (r.boundaries.empty()) return text + "  no stability boundary\n";
   text += fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind",
                       "points", r.x_axis.path, r.y_axis.path);

@@ -15,6 +15,7 @@ struct MapDocument {
   const Scene& scene;
   Eigen::Index num_modes = 0;
   double tolerance = 0;  // of boundary points, relative
+  bool boundaries = true;  // they were asked for
   bool complete = true;  // false: ended early
 };
 

@@ -195,7 +195,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   Json& rods = json["rods"] = Json::object();
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(scene, result, r, points);
-  if (result.computed.steady) {
+  if (result.searched_peaks) {
     std::vector<double> critical, critical_x;
     for (const CriticalPoint& point : result.critical) critical_x.push_back(point.peak.x);
     std::sort(critical_x.begin(), critical_x.end());
@@ -211,7 +211,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
     Json& list = json["critical"] = Json::array();
     for (const CriticalPoint& point : result.critical) list.push_back(critical_json(result, point, scene));
   }
-  if (result.computed.stability) {
+  if (result.searched_bands) {
     Json& bands = json["unstable_bands"] = Json::object();
     Json& details = json["band_details"] = Json::object();
     for (const SweepRod& rod : result.rods) {

@@ -163,8 +163,12 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     for (const std::size_t k : rows) add_point(text, scene, result, r, result.points[k], distances);
     if (rows.size() < values.size())
       add(text, "  ({} of {} points; --json and --out have all)\n", rows.size(), values.size());
-    if (result.computed.stability) add_bands(text, scene, rod);
-    if (result.computed.steady) add_peaks(text, scene, result, r);
+    if (result.searched_bands) add_bands(text, scene, rod);
+    if (result.searched_peaks) add_peaks(text, scene, result, r);
+    if (result.computed.stability && !result.searched_bands)
+      add(text, "  unstable bands between the points were not looked for\n");
+    if (result.computed.steady && !result.searched_peaks)
+      add(text, "  resonance peaks between the points were not looked for\n");
   }
   const auto closed = static_cast<std::size_t>(std::count_if(
       result.points.begin(), result.points.end(), [](const SweepPoint& point) { return point.problem.empty(); }));

@@ -24,6 +24,7 @@ std::uint64_t sweep_key(const SweepScene& scene) {
   for (const double x : scene.axis().values) key.add(x);
   key.add(static_cast<double>(std::get<int>(settings.modes))).add(settings.tolerance);
   key.add(settings.only.steady).add(settings.only.stability).add(settings.only.reactions).add(settings.only.shape);
+  key.add(settings.only.growth).add(settings.only.verdict).add(settings.search);
   for (const std::string& rod : settings.rods) key.add(rod);
   key.add(static_cast<double>(settings.steady_method)).add(static_cast<double>(settings.stability_method));
   // Numbers of the scene by what they lead to, at both ends of the axis; files that the scene names are in them.

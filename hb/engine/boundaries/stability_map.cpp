@@ -84,9 +84,15 @@ struct Cell {
 
 class Mesh {
  public:
-  Mesh(const MapSystemAt& at, Axis x, Axis y, const MapOptions& options)
-      : at_(at), x_(std::move(x)), y_(std::move(y)), options_(options) {
+  Mesh(const MapSystemAt& at, Axis x, Axis y, bool every_value, const MapOptions& options)
+      : at_(at),
+        x_(std::move(x)),
+        y_(std::move(y)),
+        options_(options),
+        grid_alone_(every_value && !options.boundaries) {
     at_nodes_ = rough_exponents(options.search.stability);
+    at_nodes_.leading_only = grid_alone_;
+    at_nodes_.verdict_only = grid_alone_ && options.verdict_only;
     leading_ = at_nodes_;
     leading_.leading_only = true;
   }
@@ -95,10 +101,11 @@ class Mesh {
     first_mesh();
     make_edge_search();
     evaluate();
+    if (grid_alone_) return;
     growth_range();
     for (;;) {
       refine();
-      if (!refine_curves()) break;
+      if (!options_.boundaries || !refine_curves()) break;
     }
   }
 
@@ -106,7 +113,7 @@ class Mesh {
     StabilityMap map;
     if (!options_.curves_only) fill(map);
     for (const CurveChain& chain : chains_) add_curves(chain, map.boundaries);
-    for (const Crossing& crossing : crossings_) map.not_converged += !crossing.boundary.converged;
+    for (const Crossing& crossing : crossings_) map.not_converged += options_.boundaries && !reached(crossing.boundary);
     map.samples = samples_;
     map.x = x_.values;
     map.y = y_.values;
@@ -118,6 +125,11 @@ class Mesh {
   std::vector<Result> results(std::size_t count, const std::function<Result(std::size_t)>& compute,
                               const Visit& visit) const {
     return computed_parts<Result>(options_.parts, count, compute, visit);
+  }
+
+  // Error within ten times what was asked, or within what searches promise.
+  bool reached(const StabilityBoundary& boundary) const {
+    return boundary.converged || boundary.error <= 10 * options_.search.tolerance * std::abs(boundary.x);
   }
 
   // All exponents at a node; the leading ones suffice elsewhere.
@@ -193,6 +205,7 @@ class Mesh {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
         });
     for (Sample& sample : samples) nodes_[evaluated_nodes_++].sample = std::move(sample);
+    if (grid_alone_) return;
 
     using Found = std::optional<std::vector<StabilityBoundary>>;
     const std::vector<Found> found = results<Found>(
@@ -516,6 +529,7 @@ class Mesh {
   const MapSystemAt& at_;
   const Axis x_, y_;
   const MapOptions& options_;
+  const bool grid_alone_;  // every point evaluated, nothing between them
   StabilityOptions at_nodes_, leading_;  // leading_: where the leading exponents suffice
   std::optional<EdgeSearch> edge_search_;  // empty while no system was seen
   mutable std::atomic<std::size_t> samples_ = 0;
@@ -534,7 +548,8 @@ class Mesh {
 StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                            const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
-  Mesh mesh(system, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), options);
+  Mesh mesh(system, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), every_value,
+            options);
   mesh.build();
   return mesh.result();
 }

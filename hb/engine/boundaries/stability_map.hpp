@@ -22,6 +22,8 @@ struct MapOptions {
   SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
   std::size_t evaluate_all = 40000;  // grids of at most so many points are evaluated at every point
   double sag = 5e-4;  // of a boundary's chord, relative to the map's width and height
+  bool boundaries = true;  // false: the grid alone
+  bool verdict_only = false;  // of a grid without boundaries: growth where no bound proves stability
   bool curves_only = false;  // no grid values; the grid serves the search alone
   PartsOf parts;  // who computes the parts of a step; empty: one after the other
 };
