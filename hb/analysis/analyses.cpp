@@ -142,9 +142,7 @@ bool Check::reached() const {
   return std::ranges::all_of(speeds, [](const SpeedCheck& check) { return check.shortfalls.empty(); });
 }
 
-Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
-  Check result;
-  result.settings = settings_of(request, scene);
+std::vector<double> speeds_of(const CheckRequest& request, const Scene& scene) {
   std::vector<double> speeds;
   for (const double rpm : request.rpms) {
     speeds.push_back(speed_from_rpm(rpm, scene.units));
@@ -152,6 +150,13 @@ Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
       throw RequestError("rpms", fmt::format("{}", rpm), "positive speeds");
   }
   if (speeds.empty()) speeds.push_back(speed_of(request, scene).omega);
+  return speeds;
+}
+
+Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
+  Check result;
+  result.settings = settings_of(request, scene);
+  const std::vector<double> speeds = speeds_of(request, scene);
   if (!(request.case_limit > 0)) throw RequestError("case_limit", fmt::format("{}", request.case_limit), "seconds > 0");
   result.model = std::make_shared<const SceneModel>(make_model(scene, result.settings));
   result.speeds.resize(speeds.size());

@@ -15,6 +15,7 @@
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/command/parameter_range.hpp"
@@ -30,6 +31,7 @@ namespace hb::tools {
 namespace {
 
 struct TuneFlags : CommonFlags {
+  std::string theory = "linear";
   std::string minimise, maximise, over, algorithm, seed, analyses, speeds;
   std::vector<std::string> vary, keep, tie, height;
 };
@@ -353,6 +355,7 @@ int run_tune(const TuneFlags& flags) {
                     "computed",
                     flags.only));
   // Numbers of --set become part of the scene that is tuned.
+  require_linear(flags.theory, "designs are compared by the linear theory; look at the one found with hb sweep --theory nonlinear");
   const SceneInput input = scene_input(flags.scene_file);
   const SceneSource& as_written = input.source;
   const std::vector<Override> set = overrides(flags);
@@ -445,6 +448,7 @@ void add_tune_command(CLI::App& app, int& status) {
       app.add_subcommand("tune", "design: scene numbers that minimise a goal under conditions over a range of speeds");
   const auto flags = std::make_shared<TuneFlags>();
   add_scene_flags(*command, *flags);
+  add_linear_theory_flag(*command, flags->theory);
   add_analysis_flags(*command, *flags);
   add_html_flag(*command, *flags);
   const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* help, const char* type) {
