@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/analysis/disturbance.hpp"
 #include "hb/analysis/nearest_resonance.hpp"
 #include "hb/analysis/rod_stress.hpp"
 #include "hb/analysis/steady.hpp"
@@ -74,12 +75,43 @@ TEST(NearestResonance, OfAnOscillatorIsTheNearestFractionOfItsFrequency) {
     EXPECT_EQ(nearest->order, order) << speed;
     EXPECT_NEAR(nearest->speed, omega / order, 1e-12 * omega);
     EXPECT_NEAR(nearest->frequency, omega, 1e-12 * omega);
-    EXPECT_NEAR(*quasi_static_response(system, speed), h / c, 1e-12);
+    EXPECT_NEAR(*quasi_static_response(system, 1, speed), h / c, 1e-12);
   }
   system.stiffness[0].c(0, 0) = -c;
   EXPECT_FALSE(nearest_resonance(system, 1.3));
   system.load[0] = FourierSeries();
-  EXPECT_FALSE(quasi_static_response(system, 1.3));
+  EXPECT_FALSE(quasi_static_response(system, system.num_modes(), 1.3));
+}
+
+// Constant coefficients: one line, at the damped frequency.
+TEST(DisturbanceLines, OfAnOscillatorAreItsOwnFrequency) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Constant(1, 1, 1);
+  system.damping = Eigen::MatrixXd::Constant(1, 1, 0.2);
+  system.stiffness[0] = FourierSeries(1, 0);
+  system.stiffness[0].c(0, 0) = 4;
+  const double speed = 0.7;
+  const std::vector<DisturbanceLine> lines =
+      disturbance_lines(system, speed, analyse_stability(system, speed).exponents.front());
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_NEAR(lines[0].frequency, std::sqrt(4 - 0.01), 1e-9);
+}
+
+// Inside the first tongue of Mathieu's equation a disturbance is, for a small variation, cos of half the speed.
+TEST(DisturbanceLines, InTheFirstTongueOfMathieuLieAtHalfTheSpeed) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Constant(1, 1, 1);
+  system.damping = Eigen::MatrixXd::Zero(1, 1);
+  system.stiffness[0] = FourierSeries(1, 1);
+  system.stiffness[0].c(0, 0) = 1;
+  system.stiffness[0].c(0, 1) = 0.05;
+  const Stability stability = analyse_stability(system, 2);
+  ASSERT_EQ(stability.verdict, Verdict::unstable);
+  const std::vector<DisturbanceLine> lines = disturbance_lines(system, 2, stability.exponents.front(), 1e-3);
+  ASSERT_GE(lines.size(), 2u);
+  EXPECT_NEAR(lines[0].frequency, 1, 1e-9);
+  EXPECT_NEAR(lines[1].frequency, 3, 1e-9);
+  EXPECT_NEAR(lines[1].share, 0.1 / 2 / (9 - 1), 1e-3);
 }
 
 // C changes its sign over the turn: there is no load applied slowly.
@@ -92,7 +124,7 @@ TEST(NearestResonance, AStiffnessThatVanishesHasNoQuasiStaticResponse) {
   system.stiffness[0].c(0, 1) = 1;
   system.load[0] = FourierSeries(1, 0);
   system.load[0].c(0, 0) = 1;
-  EXPECT_FALSE(quasi_static_response(system, 1));
+  EXPECT_FALSE(quasi_static_response(system, system.num_modes(), 1));
 }
 
 }  // namespace

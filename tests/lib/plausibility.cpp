@@ -62,8 +62,8 @@ branch = 1
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(
       warnings[0],
-      "file.toml:5: rod.elastic.E: found 210 MPa; 210 GPa if the number was in MPa (solids have 1 GPa to 1.5 TPa), "
-      "allowed");
+      "file.toml:5: rod.elastic.E: found 210 MPa; 210 GPa if the number was in MPa (solids have 1 GPa to 1.5 TPa); "
+      "taken as given");
 }
 
 TEST(Plausibility, GravitySectionsMassesAndSizesAreLookedAt) {

@@ -219,7 +219,8 @@ void AskedMap::compute_all(Work& work) {
 }
 
 MapDocument AskedMap::document() const {
-  return {result_, plane_->scene(), plane_options_.num_modes, search_.search.tolerance, search_.boundaries, complete_};
+  return {result_,           plane_->scene(),     plane_options_.num_modes,
+          search_.search.tolerance, search_.boundaries, complete_};
 }
 
 std::string AskedMap::evidence() const { return plane_->evidence(); }

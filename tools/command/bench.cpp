@@ -26,7 +26,6 @@
 #include "tools/work/progress.hpp"
 #include "tools/output/wording.hpp"
 #include "tools/work/interrupts.hpp"
-#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -176,9 +175,11 @@ int run_bench(const BenchFlags& flags) {
                                                      : number_flag("--case-limit", flags.case_limit, 1e-3, 1e6,
                                                                    "seconds from 0.001 to 1000000");
   const bool nonlinear = is_nonlinear(flags.theory);
+  std::optional<InterruptGuard> guard;
+  if (nonlinear) guard.emplace(false);
   NonlinearOptions motion;
   motion.turns = turns_of(flags.theory);
-  motion.stop = early_end(out.folder.has_value());
+  motion.stop = stop_of();
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "bench", provenance(flags.common.line, input));
 

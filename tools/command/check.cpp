@@ -99,6 +99,15 @@ class CheckProgress {
   std::mutex mutex_;
 };
 
+// Drops what was not computed; gives how many.
+std::size_t keep_done(std::vector<SpeedCheck>& checks, const std::vector<char>& done) {
+  std::vector<SpeedCheck> kept;
+  for (std::size_t k = 0; k < done.size(); ++k)
+    if (done[k]) kept.push_back(std::move(checks[k]));
+  checks = std::move(kept);
+  return done.size() - checks.size();
+}
+
 int run_nonlinear_check(const CheckFlags& flags) {
   const SceneInput input = scene_input(flags.common.scene_file);
   Scene scene = input.source.with(overrides(flags.common));
@@ -108,9 +117,10 @@ int run_nonlinear_check(const CheckFlags& flags) {
   if (flags.march) throw UsageError("--march: found with --theory nonlinear, allowed: with the linear theory");
   if (check_with.integrator == Integrator::collocation)
     throw UsageError("--integrator: found \"collocation\" with --theory nonlinear, allowed: automatic, adams, bdf");
+  const InterruptGuard guard(false);
   NonlinearOptions asked;
   asked.turns = turns_of(flags.theory);
-  asked.stop = early_end(out.folder.has_value());
+  asked.stop = stop_of();
   const std::vector<double> speeds = speeds_of(speed_range(flags.common, scene), scene.units);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "check", provenance(flags.common.line, input));
@@ -120,13 +130,10 @@ int run_nonlinear_check(const CheckFlags& flags) {
   all.only.steady = true;
   const SceneModel model = make_model(std::move(scene), all, false);
   std::vector<NonlinearCheck> checks(speeds.size());
-  {
-    const InterruptGuard guard(!out.folder);
-    parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
-      checks[k] = nonlinear_check(model, speeds[k], options, check_with, asked);
-      if (!checks[k].not_compared.empty()) say_ended_early(checks[k].shortfalls);
-    });
-  }
+  parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
+    checks[k] = nonlinear_check(model, speeds[k], options, check_with, asked);
+    if (!checks[k].not_compared.empty()) say_time_limit(flags.common.time_limit, asked.stop, checks[k].shortfalls);
+  });
 
   const nlohmann::ordered_json document = nonlinear_check_json(model, checks, options);
   const bool agree = std::ranges::all_of(checks, &NonlinearCheck::agrees);
@@ -142,15 +149,6 @@ int run_nonlinear_check(const CheckFlags& flags) {
                               : reached ? exit_ok
                                         : exit_not_reached),
                  delivery);
-}
-
-// Drops what was not computed; gives how many.
-std::size_t keep_done(std::vector<SpeedCheck>& checks, const std::vector<char>& done) {
-  std::vector<SpeedCheck> kept;
-  for (std::size_t k = 0; k < done.size(); ++k)
-    if (done[k]) kept.push_back(std::move(checks[k]));
-  checks = std::move(kept);
-  return done.size() - checks.size();
 }
 
 int run_check(const CheckFlags& flags) {

@@ -71,8 +71,10 @@ int run_map(const MapFlags& flags) {
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       return page_of(map, json, input, origin, std::move(pictures));
     };
+  // No tolerance of boundaries was asked for without the flag.
+  const bool reached = flags.boundaries.tolerance.empty() || boundary_points_not_reached(map.result()) == 0;
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             ended_status(document.complete ? exit_ok : exit_not_reached), delivery);
+                             ended_status(document.complete && reached ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) {
     std::size_t samples = 0;
     for (const StabilityMap& of_rod : map.result().maps) samples += of_rod.samples;

@@ -76,9 +76,10 @@ int run_nonlinear(const SteadyFlags& flags) {
   const Settings options = settings(flags, scene);
   const Output out = output(flags);
   const double speed = single_speed(flags, scene);
+  const InterruptGuard guard(false);
   NonlinearOptions asked;
   asked.turns = turns_of(flags.theory);
-  asked.stop = early_end(out.folder.has_value());
+  asked.stop = stop_of();
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
 
@@ -86,11 +87,8 @@ int run_nonlinear(const SteadyFlags& flags) {
   Settings all = options;
   all.only.steady = true;
   const SceneModel model = make_model(std::move(scene), all, false);
-  NonlinearResult result = [&] {
-    const InterruptGuard guard(!out.folder);
-    return nonlinear_steady(model, speed, options, asked);
-  }();
-  say_ended_early(result.shortfalls);
+  NonlinearResult result = nonlinear_steady(model, speed, options, asked);
+  say_time_limit(flags.time_limit, asked.stop, result.shortfalls);
   const nlohmann::ordered_json document =
       out.json || folder ? nonlinear_json(model, result, options, out.stats) : nlohmann::ordered_json();
   Delivery delivery;

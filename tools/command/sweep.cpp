@@ -45,7 +45,7 @@ int run_sweep_command(const SweepFlags& flags) {
   const bool nonlinear = is_nonlinear(flags.theory);
   NonlinearSweepOptions branches_asked;
   branches_asked.turns = turns_of(flags.theory);
-  branches_asked.stop = early_end(out.folder.has_value());
+  branches_asked.stop = stop_of();
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -57,9 +57,9 @@ int run_sweep_command(const SweepFlags& flags) {
   if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return stopped_status();
   std::optional<NonlinearSweep> branches;
   if (nonlinear) {
-    const InterruptGuard guard;
+    const InterruptGuard guard(false);
     branches = nonlinear_sweep(sweep_scene, branches_asked);
-    if (branches->stopped) say_ended_early(branches->shortfalls);
+    if (branches->stopped) say_time_limit(flags.time_limit, branches_asked.stop, branches->shortfalls);
   }
   nlohmann::ordered_json document =
       out.json || folder ? sweep_json(sweep_scene, result, out.stats) : nlohmann::ordered_json();

@@ -41,10 +41,10 @@ int turns_of(const TheoryFlags& flags) {
   return integer_flag("--period", flags.period, 1, 64, "a whole number of turns from 1 to 64");
 }
 
-void say_ended_early(std::vector<std::string>& shortfalls) {
-  if (asked_to_end())
-    shortfalls.push_back(interrupted() ? "interrupted: this is what was found until then"
-                                       : "ended by the time limit: this is what was found until then");
+std::function<bool()> stop_of() { return time_is_up; }
+
+void say_time_limit(const std::string& limit, const std::function<bool()>& stop, std::vector<std::string>& shortfalls) {
+  if (stop()) shortfalls.push_back(fmt::format("ended by --time-limit {} before the answer was complete", limit));
 }
 
 }  // namespace hb::tools

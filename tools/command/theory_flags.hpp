@@ -24,7 +24,9 @@ void require_linear(const std::string& theory, const std::string& why_not);
 
 // Turns of --period; 1 where it was not given.
 [[nodiscard]] int turns_of(const TheoryFlags& flags);
-// Of an answer that ended before its time, by --time-limit or Ctrl-C.
-void say_ended_early(std::vector<std::string>& shortfalls);
+// True once the seconds of --time-limit have passed; for work under an InterruptGuard.
+[[nodiscard]] std::function<bool()> stop_of();
+// "ended by --time-limit LIMIT ..." where `stop` has come true.
+void say_time_limit(const std::string& limit, const std::function<bool()>& stop, std::vector<std::string>& shortfalls);
 
 }  // namespace hb::tools

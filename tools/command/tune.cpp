@@ -56,10 +56,15 @@ int run_tune(const TuneFlags& flags) {
     folder.emplace(*out.folder, "tune", origin);
   }
   task.options.stop = early_end(out.folder.has_value());
-  const TuneResult result = [&] {
+  std::optional<TuneResult> found;
+  try {
     const InterruptGuard guard(!out.folder);
-    return tune(task, SharedWork(out.threads));
-  }();
+    found = tune(task, SharedWork(out.threads));
+  } catch (const RequestError&) {  // no design yet
+    if (!asked_to_end()) throw;
+    return stopped_status();
+  }
+  const TuneResult& result = *found;
   if (task.options.progress) fmt::print(stderr, "\r\033[K");
   task.settings.modes = result.num_modes;
 

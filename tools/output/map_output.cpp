@@ -117,14 +117,14 @@ std::vector<std::string> map_notes(const MapDocument& document) {
                     "be missing");
   const std::size_t missed = boundary_points_not_reached(document.result);
   if (missed == 0) return notes;
+  const MapResult& r = document.result;
   double worst = 0;
-  for (const StabilityMap& map : document.result.maps)
+  for (const StabilityMap& map : r.maps)
     for (const BoundaryCurve& curve : map.boundaries)
       for (const BoundaryPoint& p : curve.points)
-        worst = std::max(worst, p.error / std::max(std::abs(p.along_x ? p.x : p.y), 1e-300));
-  notes.push_back(fmt::format(
-      "{} boundary {} known less well than {:.0e}, where the growth rate's error moves {}: to {:.1e} at worst", missed,
-      missed == 1 ? "point is" : "points are", std::max(1e-10, 10 * document.tolerance), missed == 1 ? "it" : "them", worst));
+        worst = std::max(worst, p.error / (p.along_x ? r.x().back() - r.x().front() : r.y().back() - r.y().front()));
+  notes.push_back(fmt::format("{} boundary {} known less well than the others, to {:.1e} of the axis at worst", missed,
+                              missed == 1 ? "point is" : "points are", worst));
   return notes;
 }
 
@@ -263,7 +263,7 @@ std::string map_verdict(const MapDocument& document) {
   const MapResult& r = document.result;
   const Counts n = counts(r.worst);
   const double all = static_cast<double>(r.worst.size() - n.missing);
-  if (all == 0) return "no system at any point";
+  if (all == 0) return document.complete ? "no system at any point" : "no answer yet at any point";
   std::vector<std::string> because;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
     const std::vector<MapPoint>& points = r.maps[k].points;
@@ -272,8 +272,10 @@ std::string map_verdict(const MapDocument& document) {
       because.push_back(r.rods[k]);
   }
   if (n.unstable > 0)
-    return fmt::format("UNSTABLE at {:.3g} % of the points because of {}", 100 * static_cast<double>(n.unstable) / all,
-                       fmt::join(because, ", "));
+    return fmt::format("UNSTABLE at {:.3g} % of the points{}", 100 * static_cast<double>(n.unstable) / all,
+                       std::holds_alternative<Linkage>(document.scene.model)
+                           ? fmt::format(" because of {}", fmt::join(because, ", "))
+                           : "");
   if (n.undecided > 0) return fmt::format("undecided at {:.3g} % of the points", 100 * static_cast<double>(n.undecided) / all);
   return n.bounded == 0 ? "stable at all points" : n.stable == 0 ? "bounded at all points" : "stable or bounded at all points";
 }
@@ -294,7 +296,7 @@ std::string map_summary(const MapDocument& document) {
   };
   text += fmt::format("  x  {}\n  y  {}\n", axis(r.x_axis, r.x()), axis(r.y_axis, r.y()));
   text += linkage ? fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes)
-                  : fmt::format("  {} unknowns\n\n", document.num_modes);
+                  : fmt::format("  {} {}\n\n", document.num_modes, document.num_modes == 1 ? "unknown" : "unknowns");
   text += fmt::format("  stable {:.4g} %, bounded {:.4g} %, unstable {:.4g} %, undecided {:.4g} %",
                       100 * static_cast<double>(n.stable) / all, 100 * static_cast<double>(n.bounded) / all,
                       100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);

@@ -99,7 +99,7 @@ void add_stability(Text& text, const NonlinearResult& result, const Scene& scene
     add(text, "    ... {} more (--json has all)\n", stability.exponents.size() - most);
   add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
       stability.converged ? "" : "  NOT REACHED");
-  add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene, false));
+  add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene));
 }
 
 void add_forces(Text& text, const NonlinearResult& result, const OutputUnits& units) {

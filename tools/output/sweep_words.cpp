@@ -103,9 +103,15 @@ std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
   std::vector<std::string> bands;
   for (const auto& [from, to] : unstable_anywhere(result)) bands.push_back(fmt::format("{:.6g} to {:.6g}", from, to));
   if (n.unstable == 0 && bands.empty()) {
-    if (n.undecided > 0) return fmt::format("undecided at {} of {} points", n.undecided, n.answers);
-    if (n.bounded > 0) return fmt::format("bounded{} at all {} points", n.bounded < n.answers ? " or stable" : "", n.answers);
-    return fmt::format("stable at all {} points", n.answers);
+    const std::size_t none = result.points.size() - n.answers;
+    const std::string rest = none > 0 ? fmt::format("; no answer at {} points", none) : "";
+    if (n.answers == 0) return "no answer at any point";
+    if (n.undecided > 0) return fmt::format("undecided at {} of {} points{}", n.undecided, n.answers, rest);
+    return fmt::format("{} at all {} points{}{}",
+                       n.bounded == 0           ? "stable"
+                       : n.bounded == n.answers ? "bounded"
+                                                : "bounded or stable",
+                       n.answers, none > 0 ? " that have an answer" : "", rest);
   }
   constexpr std::size_t most = 4;
   std::string where = fmt::format(" at {} of {} points", n.unstable, n.answers);

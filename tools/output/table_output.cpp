@@ -93,7 +93,8 @@ void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, 
       peak.crank_angle * degrees_per_radian);
 }
 
-void add_stability(Text& text, const RodResult& rod, double speed, const Scene& scene, bool multipliers) {
+void add_stability(Text& text, const RodModel& model, const RodResult& rod, double speed, const Scene& scene,
+                   bool multipliers) {
   const Stability& stability = *rod.stability;
   const OutputUnits units = output_units(scene);
   add(text, "{}", exponents_rows(stability, unresolved_exponents(rod), speed, scene));
@@ -101,7 +102,10 @@ void add_stability(Text& text, const RodResult& rod, double speed, const Scene& 
   add(text, "  growth rate       {} {}\n", growth_text(stability), units.rate);
   if (rod.growth_modes_error)
     add(text, "  its cut           {:.1e} of the larger of itself and the speed, estimated\n", *rod.growth_modes_error);
-  add(text, "  {}\n", verdict_sentence(stability, speed, scene));
+  std::vector<DisturbanceLine> lines;
+  if (stability.verdict == Verdict::unstable && !stability.exponents.empty())
+    lines = disturbance_lines(model.system, speed, stability.exponents.front());
+  add(text, "  {}\n", verdict_sentence(stability, speed, scene, lines));
 }
 
 // Digits that an engineer uses: the model is not better than that.
@@ -179,7 +183,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
                error * static_cast<double>(rod.num_modes * rod.num_modes));
     }
     if (rod.stress) add_stress(text, *rod.stress, rod, *model.linkage(), units);
-    if (rod.stability) add_stability(text, rod, result.speed, scene, multipliers);
+    if (rod.stability) add_stability(text, model.rods[r], rod, result.speed, scene, multipliers);
     add(text, "\n");
   }
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");

@@ -26,26 +26,33 @@ std::string order_text(double order, double slack) {
   return n % 2 == 0 ? fmt::format("{}", n / 2) : fmt::format("{}/2", n);
 }
 
-// How the leading exponent's disturbance returns: after one turn the same, reversed, or at a frequency of its own; and
-// the frequency that carries most of it.
-std::string kind_of(const Stability& stability, double speed, const Scene& scene, bool unfolded) {
+// "strongest at 25, 75 and 125 Hz = 1/2, 3/2 and 5/2 of the speed"
+std::string lines_text(const std::vector<DisturbanceLine>& lines, double speed, const Scene& scene, double slack) {
+  constexpr std::size_t most = 4;
+  const FrequencyUnit unit = frequency_unit(scene);
+  std::vector<std::string> frequencies, orders;
+  for (std::size_t k = 0; k < std::min(most, lines.size()); ++k) {
+    frequencies.push_back(fmt::format("{:.4g}", lines[k].frequency * unit.factor));
+    orders.push_back(order_text(lines[k].frequency / speed, slack / speed));
+  }
+  return fmt::format(", strongest at {} {} = {} of the speed", fmt::join(frequencies, ", "), unit.name,
+                     fmt::join(orders, ", "));
+}
+
+// How the leading exponent's disturbance returns: after one turn the same, reversed, or at frequencies of its own.
+std::string kind_of(const Stability& stability, double speed, const Scene& scene,
+                    const std::vector<DisturbanceLine>& lines) {
   if (stability.exponents.empty()) return "";
   const Exponent& leading = stability.exponents.front();
   const double folded = std::abs(leading.value.imag());
   const double slack = std::max(leading.error, 1e-9 * speed);
-  const char* turn = is_linkage(scene) ? "turn of the crank" : "period";
-  const char* turns = is_linkage(scene) ? "turns of the crank" : "periods";
-  const FrequencyUnit unit = frequency_unit(scene);
-  const std::string mainly =
-      unfolded ? fmt::format(", mainly at {:.4g} {} = {} of the speed", leading.frequency * unit.factor, unit.name,
-                             order_text(leading.frequency / speed, slack / speed))
-               : "";
-  if (folded <= slack) return fmt::format(", repeating with every {}{}", turn, mainly);
+  const std::string strongest = lines.empty() ? "" : lines_text(lines, speed, scene, slack);
+  if (folded <= slack)
+    return fmt::format(", repeating with every {}{}", is_linkage(scene) ? "turn of the crank" : "period", strongest);
   if (std::abs(folded - speed / 2) <= slack)
-    return fmt::format(", repeating after two {} (period doubling){}", turns, mainly);
-  return unfolded ? fmt::format(", at {:.4g} {} = {} of the speed", leading.frequency * unit.factor, unit.name,
-                                order_text(leading.frequency / speed, slack / speed))
-                  : "";
+    return fmt::format(", repeating after two {} (period doubling){}", is_linkage(scene) ? "turns of the crank" : "periods",
+                       strongest);
+  return strongest;
 }
 
 // Leaves out the second of conjugate pairs.
@@ -86,7 +93,8 @@ FrequencyUnit frequency_unit(const Scene& scene) {
   return {1 / (2 * std::numbers::pi * scene.units.time_in_s), "Hz"};
 }
 
-std::string verdict_sentence(const Stability& stability, double speed, const Scene& scene, bool unfolded) {
+std::string verdict_sentence(const Stability& stability, double speed, const Scene& scene,
+                             const std::vector<DisturbanceLine>& lines) {
   const double growth = stability.growth_rate + 0.0;  // no -0
   const double turn = 2 * std::numbers::pi / speed;
   const std::string& time = scene.units.time;
@@ -106,7 +114,7 @@ std::string verdict_sentence(const Stability& stability, double speed, const Sce
       return fmt::format(
           "UNSTABLE: disturbances grow {} exp({:.4g} t){}: tenfold in {}{:.3g} {} ({:.3g} {}). The periodic "
           "state exists but would not be seen in {}",
-          certain ? "as" : "at least as fast as", rate, kind_of(stability, speed, scene, unfolded),
+          certain ? "as" : "at least as fast as", rate, kind_of(stability, speed, scene, lines),
           certain ? "" : "at most ", tenfold, time, tenfold / turn, turns,
           is_linkage(scene) ? "a machine" : "an experiment");
     }
@@ -130,6 +138,9 @@ std::string mechanism_verdict(const NamedVerdicts& verdicts) {
   const std::optional<Verdict> verdict = worst_of(verdicts);
   if (!verdict) return "";
   const bool good = *verdict == Verdict::stable || *verdict == Verdict::bounded;
+  // A [hill] scene is one system.
+  if (!good && verdicts.size() == 1 && verdicts.front().first == "system")
+    return *verdict == Verdict::unstable ? "UNSTABLE" : to_string(*verdict);
   const std::string names = join_names(verdicts, verdict), others = join_names(verdicts, std::nullopt);
   return fmt::format("{} {}{}{}{}", *verdict == Verdict::unstable ? "UNSTABLE" : to_string(*verdict),
                      good ? "(" : "because of ", names, good ? ")" : "",
@@ -153,7 +164,7 @@ std::string title_verdict(const NamedVerdicts& verdicts) {
   return to_string(*verdict);
 }
 
-// Of the motion e^(lambda t) p(t) the frequency nu that carries most of it; damping ratio -Re lambda/|Re lambda + i nu|.
+// Damping ratio -Re lambda/|Re lambda + i nu| with nu the frequency shown.
 std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, double speed, const Scene& scene) {
   if (stability.exponents.empty() && stability.uncertain.empty()) return "";
   const OutputUnits units = output_units(scene);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "hb/analysis/disturbance.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "lib/scene/scene.hpp"
 
@@ -18,10 +19,10 @@ struct FrequencyUnit {
 };
 [[nodiscard]] FrequencyUnit frequency_unit(const Scene& scene);
 
-// What the verdict means for a disturbance, with the time to halve or to grow tenfold. `unfolded`: Exponent::frequency
-// is that of the motion.
+// What the verdict means for a disturbance, with the time to halve or to grow tenfold; `lines`: of the leading one, where
+// they are known.
 [[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Scene& scene,
-                                           bool unfolded = true);
+                                           const std::vector<DisturbanceLine>& lines = {});
 
 // The verdict of each elastic link; empty: not looked at.
 using NamedVerdicts = std::vector<std::pair<std::string, std::optional<Verdict>>>;
@@ -31,7 +32,7 @@ using NamedVerdicts = std::vector<std::pair<std::string, std::optional<Verdict>>
 // The same, short, for titles of pictures: "stable", "UNSTABLE because of AB", "stability undecided (AB)".
 [[nodiscard]] std::string title_verdict(const NamedVerdicts& verdicts);
 
-// Rows of growth rate, frequency (unfolded), damping ratio and error; of a conjugate pair one. Those not resolved to a
+// Rows of growth rate, frequency (Exponent::frequency), damping ratio and error; of a conjugate pair one. Those not resolved to a
 // part in 10^6 are marked with ?.
 [[nodiscard]] std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, double speed,
                                          const Scene& scene);

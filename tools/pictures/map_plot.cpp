@@ -130,7 +130,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "set title '{{/:Bold {}}}'.\"\\n\".{}\n"
       "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {}\n"
       "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
-      "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom horizontal maxrows 3 samplen 3 "
+      "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom vertical maxrows 3 samplen 3 "
       "width 1\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(short_name(document.scene) + ", " + map_verdict(document)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),

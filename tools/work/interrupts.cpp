@@ -26,7 +26,7 @@ enum Phase { computing, guarded, delivering, drawing };
 volatile std::sig_atomic_t interrupt_seen = 0, time_up = 0, phase = computing;
 volatile std::sig_atomic_t status_at_end = exit_interrupted;
 std::string time_message, time_document;  // read by a signal handler, not changed once the timer runs
-constexpr unsigned grace = 5;  // seconds in which long work may end by itself
+constexpr unsigned grace = 5, short_grace = 1;  // seconds in which work, asked to end or not, may end by itself
 struct sigaction before_guard[2];  // of SIGINT and SIGTERM
 
 // Only calls that a signal handler may make.
@@ -66,9 +66,9 @@ void remove_unfinished_and_end(int) { remove_unfinished_and_exit(exit_interrupte
 
 // The time limit, or the end of the grace that long work was given.
 void on_alarm(int) {
-  if (phase == delivering || (phase == guarded && interrupt_seen == 0 && time_up == 0)) {
+  if (phase == delivering || (phase != drawing && interrupt_seen == 0 && time_up == 0)) {
     time_up = 1;
-    alarm(grace);
+    alarm(phase == computing ? short_grace : grace);
     return;
   }
   if (interrupt_seen != 0) remove_unfinished_and_exit(exit_interrupted);
