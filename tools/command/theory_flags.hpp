@@ -1,6 +1,7 @@
 // --theory and --period: for the subcommands that know the motion without linearisation.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 

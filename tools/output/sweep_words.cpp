@@ -150,7 +150,7 @@ std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResu
     warnings.push_back(fmt::format(
         "{}: further unstable bands or stable gaps are not excluded in {:.2g} % of the range, the widest place being "
         "{} = {:.10g} .. {:.10g}",
-        subject(scene, result, r), 100 * width / (values.back() - values.front()), scene.axis().path, (*widest)[0],
+        result.rods[r].name, 100 * width / (values.back() - values.front()), scene.axis().path, (*widest)[0],
         (*widest)[1]));
   }
   return warnings;
