@@ -57,6 +57,27 @@ TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
   }
 }
 
+// The range lies between the folds: nothing leads from the lower sheet to the upper one.
+TEST(NonlinearFromCpp, ABranchIsFollowedFromAMotionThatIsGiven) {
+  const Scene scene = read_scene(scenes + "six_link.toml");
+  SweepRequest request;
+  request.modes = 1;
+  request.only = motion_alone;
+  request.x = along("rpm", 1488, 1492, 3);
+  const auto largest = [](const NonlinearAlong& found) {
+    double peak = 0;
+    for (const NonlinearBranch& branch : found.branches.branches)
+      for (const NonlinearPoint& point : branch.points) peak = std::max(peak, point.max_abs[0][0]);
+    return peak;
+  };
+  EXPECT_LT(largest(nonlinear_sweep(scene, request)), 10);
+  const NonlinearSteady above = nonlinear_steady(scene, at(1500, 1, motion_alone));
+  ASSERT_EQ(above.search, MotionSearch::found);
+  const NonlinearAlong found = nonlinear_sweep(scene, request, {.starts = {{1490, 1, above.motion.q}}});
+  EXPECT_NEAR(largest(found), 15.89, 0.05);
+  EXPECT_EQ(found.branches.branches.size(), 3u);  // the lower one; the upper one in both directions
+}
+
 TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {
   int asked = 0;
   const NonlinearSweepOptions options{.stop = [&] { return ++asked > 200; }};

@@ -162,6 +162,21 @@ TEST_F(Nonlinear, SweepFollowsTheDoubledBranch) {
   EXPECT_EQ(found["branches"][0]["verdict"].back(), "unstable");
 }
 
+// The range begins beyond the fold below, so that neither of its ends leads there.
+TEST_F(Nonlinear, SweepStartsFromAMotionThatSteadyWrote) {
+  ASSERT_EQ(hb("steady " + scene("six_link") +
+               " --rpm 1490 --modes 1 --only steady --theory nonlinear --out lower --no-plots").status, 0);
+  const std::string range = " --rpm 1488:1492:2 --modes 1 --only steady";
+  const Json without = document("sweep " + scene("six_link") + range),
+             with = document("sweep " + scene("six_link") + range + " --start lower/steady.json");
+  EXPECT_EQ(with["branches"].size(), without["branches"].size());  // the branch from below passes it already
+  expect_refused("sweep " + scene("six_link") + range + " --start lower/steady.json", "with the linear theory");
+  expect_refused("sweep " + scene("six_link") + " --rpm 600:700:50 --modes 1 --theory nonlinear --start lower/steady.json",
+                 "600 to 700");
+  expect_refused("sweep " + scene("six_link") + " --rpm 1488:1492:2 --modes 2 --theory nonlinear --start lower/steady.json",
+                 "2 asked for");
+}
+
 TEST_F(Nonlinear, TimeLimitEndsWithWhatIsThere) {
   const Json found = document("sweep " + scene("six_link") + " --rpm 900:2400:50 --modes 3 --time-limit 2", 3);
   EXPECT_EQ(found["stopped"], true);

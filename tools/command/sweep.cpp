@@ -14,6 +14,8 @@
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/motion_input.hpp"
+#include "lib/scene/scene_reader.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/command/sweep_axis.hpp"
 #include "tools/report/report_data.hpp"
@@ -31,6 +33,7 @@ namespace {
 struct SweepFlags : CommonFlags {
   std::string x;
   TheoryFlags theory;
+  std::vector<std::string> start;
   bool no_search = false, resume = false, restart = false;
 };
 
@@ -46,12 +49,18 @@ int run_sweep_command(const SweepFlags& flags) {
   NonlinearSweepOptions branches_asked;
   branches_asked.turns = turns_of(flags.theory);
   branches_asked.stop = stop_of();
+  if (!nonlinear && !flags.start.empty())
+    throw UsageError(fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear",
+                                 flags.start.front()));
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "sweep", origin);
 
   const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
+  for (const std::string& file : flags.start)
+    branches_asked.starts.push_back(motion_from_json(read_text_file(file), file, sweep_scene));
+  if (nonlinear) require_nonlinear(sweep_scene, branches_asked);
   SweepResult result;
   KeptRun run("sweep", out.folder, earlier, sweep_key(sweep_scene), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return stopped_status();
@@ -103,6 +112,9 @@ void add_sweep_command(CLI::App& app, int& status) {
   command->add_option("--x", flags->x, "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
       ->type_name("PATH=A:B:STEP|A:B:xN");
   add_theory_flags(*command, flags->theory);
+  command->add_option("--start", flags->start,
+                      "with --theory nonlinear: follow branches from this motion as well, a steady.json of hb steady")
+      ->type_name("FILE");
   command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
   command->add_flag("--restart", flags->restart, "throw away what an interrupted run into the same --out left");
   command->callback([flags, &status] { status = run_sweep_command(*flags); });

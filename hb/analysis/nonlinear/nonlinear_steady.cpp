@@ -32,6 +32,7 @@ class Stopwatch {
 constexpr double weakly_bent = 0.01;
 // Of the motions on the way: enough to stay on the branch.
 constexpr double way_tolerance = 1e-5;
+constexpr double way_exponents = 1e-4;
 // A resonance curve with its folds takes some hundred.
 constexpr int most_points = 600;
 // Exponents depend on accelerations: what the smallest tolerance of the motion allows, of the larger of growth and speed.
@@ -185,8 +186,9 @@ class Search {
     ContinuationOptions options;
     options.motion = motion_options_;
     options.motion.tolerance = std::max(motion_options_.tolerance, way_tolerance);
+    options.exponents.tolerance = way_exponents;
     options.low = 0.5 * from;
-    options.high = options_.turns == 1 ? speed_ : 1.25 * speed_;
+    options.high = speed_;
     options.stops = {speed_};
     options.max_points = most_points;
     options.stability = options_.turns > 1;
@@ -195,40 +197,65 @@ class Search {
   }
 
   void follow(const PeriodicMotion& first, double from) {
-    const ContinuationOptions options = continuation(from);
+    ContinuationOptions options = continuation(from);
     const Branch branch = follow_branch(system_, first, options);
     note_last(branch);
     if (options_.turns > 1) {
-      if (!doubled(branch, options)) no_way(branch);
+      follow_doublings(branch, options);
       return;
     }
-    const auto passage = std::ranges::find_if(branch.points, [&](const BranchPoint& p) { return at_speed(p); });
-    if (passage == branch.points.end()) {
+    const BranchPoint* passage = passage_of(branch);
+    if (!passage) {
       no_way(branch);
       return;
     }
-    const auto place = static_cast<std::size_t>(passage - branch.points.begin());
+    const auto place = static_cast<std::size_t>(passage - branch.points.data());
     for (const Bifurcation& found : branch.bifurcations)
       result_.folds += found.kind == BifurcationKind::fold && found.after < place;
     settle(*passage);
+  }
+
+  const BranchPoint* passage_of(const Branch& branch) const {
+    const auto place = std::ranges::find_if(branch.points, [&](const BranchPoint& p) { return at_speed(p); });
+    return place == branch.points.end() ? nullptr : &*place;
+  }
+
+  // Doublings on the way to the speed; then those beyond it.
+  void follow_doublings(const Branch& to_speed, ContinuationOptions options) {
+    options.high = 1.25 * speed_;
+    if (doubled(to_speed, options)) return;
+    if (!passage_of(to_speed) || stopped()) {
+      no_way(to_speed);
+      return;
+    }
+    ContinuationOptions onward = options;
+    onward.stops.clear();
+    const Branch beyond = follow_branch(system_, to_speed.points.back(), onward);
+    if (!doubled(beyond, options)) no_way(beyond);
   }
 
   // A motion of twice, four times ... as many turns on a branch that leaves this one.
   bool doubled(const Branch& branch, const ContinuationOptions& options) {
     for (const Bifurcation& found : branch.bifurcations) {
       if (found.kind != BifurcationKind::period_doubling || stopped()) continue;
-      for (const BranchPoint& start : branches_at(system_, found, options)) {
+      ContinuationOptions here = options;
+      here.motion.turns = found.point.motion.turns;
+      for (const BranchPoint& start : branches_at(system_, found, here)) {
         ContinuationOptions further = options;
         further.motion.turns = start.motion.turns;
+        const bool wanted = start.motion.turns == options_.turns;
+        further.end_at_stop = wanted;
+        further.stability = !wanted;
         const Branch next = follow_branch(system_, start, further);
         note_last(next);
-        if (start.motion.turns == options_.turns) {
-          const auto passage = std::ranges::find_if(next.points, [&](const BranchPoint& p) { return at_speed(p); });
-          if (passage == next.points.end()) continue;
-          settle(*passage);
-          return true;
+        if (!wanted) {
+          if (start.motion.turns < options_.turns && doubled(next, options)) return true;
+          continue;
         }
-        if (start.motion.turns < options_.turns && doubled(next, further)) return true;
+        const BranchPoint* passage = passage_of(next);
+        if (!passage) continue;
+        settle(*passage);
+        return true;
       }
     }
     return false;
@@ -247,7 +274,7 @@ class Search {
   }
 
   void no_way(const Branch& branch) {
-    result_.search = branch.end == BranchEnd::stopped ? MotionSearch::stopped : MotionSearch::none;
+    result_.search = branch.end == BranchEnd::stopped || stopped() ? MotionSearch::stopped : MotionSearch::none;
     if (options_.turns > 1) {
       result_.why = fmt::format("no branch of {} turns that passes {:.6g} rpm was found", options_.turns, rpm(speed_));
       return;

@@ -112,6 +112,7 @@ class Sweeper {
   NonlinearSweep run() {
     start_from_below();
     start_from_above();
+    for (const BranchStart& start : asked_.starts) start_from(start);
     follow_what_leaves();
     find_jumps();
     find_passages();
@@ -175,9 +176,26 @@ class Sweeper {
     add_branch(follow(motion, -1), nullptr);
   }
 
+  void start_from(const BranchStart& start) {
+    if (stopped()) return;
+    MotionOptions options = options_.motion;
+    options.turns = start.turns;
+    const PeriodicMotion motion = solve_periodic_motion(system_, start.x, start.q, options);
+    if (motion.status != MotionStatus::converged && motion.status != MotionStatus::not_reached) {
+      result_.shortfalls.push_back(fmt::format("no motion was found from the start given at {} = {:.8g}: {}{}",
+                                               scene_.axis().path, start.x, to_string(motion.status),
+                                               motion.failure ? ": " + motion.failure->reason : ""));
+      return;
+    }
+    if (passed(motion)) return;
+    for (const int direction : {1, -1})
+      if (start.x != (direction > 0 ? options_.high : options_.low)) add_branch(follow(motion, direction), nullptr);
+  }
+
   Branch follow(const PeriodicMotion& start, int direction) {
     Stopwatch watch;
     ContinuationOptions options = options_;
+    options.motion.turns = start.turns;
     options.direction = direction;
     Branch branch = follow_branch(system_, start, options);
     note(branch, watch.seconds());
@@ -233,7 +251,7 @@ class Sweeper {
       const std::vector<BranchPoint> starts = branches_at(system_, found, options);
       options.motion.turns = turns;
       for (const BranchPoint& start : starts) {
-        if (!doubles && passed(start)) continue;
+        if (!doubles && passed(start.motion)) continue;
         Stopwatch watch;
         Branch branch = follow_branch(system_, start, options);
         note(branch, watch.seconds());
@@ -251,11 +269,11 @@ class Sweeper {
   }
 
   // A point of a branch that is there already.
-  bool passed(const BranchPoint& start) const {
-    const RodPeaks here = peaks(start.motion.q);
-    const double x = start.motion.parameter;
+  bool passed(const PeriodicMotion& motion) const {
+    const RodPeaks here = peaks(motion.q);
+    const double x = motion.parameter;
     for (const NonlinearBranch& branch : result_.branches) {
-      if (branch.turns != start.motion.turns) continue;
+      if (branch.turns != motion.turns) continue;
       for (std::size_t i = 1; i < branch.points.size(); ++i) {
         const NonlinearPoint &a = branch.points[i - 1], &b = branch.points[i];
         if ((a.x < x) == (b.x < x)) continue;
@@ -334,15 +352,27 @@ class Sweeper {
   bool from_below_ = false;  // the first branch is the one from the axis' first value
 };
 
-void check_request(const SweepScene& scene, const NonlinearSweepOptions& options) {
+}  // namespace
+
+void require_nonlinear(const SweepScene& scene, const NonlinearSweepOptions& options) {
   require_nonlinear(scene.first(), options.turns);
+  Index num_unknowns = 0;
+  for (const RodModel& rod : scene.first().rods) num_unknowns += rod.system.num_modes();
+  const double low = scene.axis().values.front(), high = scene.axis().values.back();
+  for (const BranchStart& start : options.starts) {
+    if (!(start.x >= low && start.x <= high))
+      throw RequestError("start", fmt::format("{} = {:.8g}", scene.axis().path, start.x),
+                         fmt::format("{:.8g} to {:.8g}", low, high));
+    if (start.q.num_components() != num_unknowns)
+      throw RequestError("start", fmt::format("a motion of {} modes", start.q.num_components()),
+                         fmt::format("{}, of all elastic links together", num_unknowns));
+    if (start.turns < 1) throw RequestError("start", fmt::format("{} turns", start.turns), "at least one");
+  }
   if (scene.axis().values.size() < 2) throw RequestError("rpm", "one speed", "a range");
 }
 
-}  // namespace
-
 NonlinearSweep nonlinear_sweep(const SweepScene& scene, const NonlinearSweepOptions& options) {
-  check_request(scene, options);
+  require_nonlinear(scene, options);
   return Sweeper(scene, options).run();
 }
 

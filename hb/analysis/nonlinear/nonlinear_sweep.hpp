@@ -67,15 +67,27 @@ struct NonlinearSweep {
   std::vector<Stage> stages;
 };
 
+// A motion near one of the system, from which a branch is followed both ways.
+struct BranchStart {
+  double x = 0;  // along the axis, within its values
+  int turns = 1;
+  FourierSeries q;  // of all rods, one above the other; harmonic k is k Omega/turns
+};
+
 struct NonlinearSweepOptions {
   int turns = 1;  // motions of up to this many turns, a power of two: from period doublings
+  std::vector<BranchStart> starts = {};  // beside the motions that are looked for
   std::function<bool()> stop = {};  // true ends the work with what is there
 };
 
+// Throws RequestError for a [hill] scene, one without elastic links or with shear, turns that are no power of two, and a
+// start that is none.
+void require_nonlinear(const SweepScene& scene, const NonlinearSweepOptions& options);
+
 // From the motion at the axis' first value (nonlinear_steady) upward, and from its last value downward where the motion
 // there is another one; with every branch that leaves these at a bifurcation of as many turns, or of twice as many.
-// Without settings().only.stability only folds are found.
-// Throws RequestError for a [hill] scene, one without elastic links, and turns that are no power of two.
+// Branches from `starts` follow where no other passes there. Without settings().only.stability only folds are found.
+// Throws as require_nonlinear does.
 [[nodiscard]] NonlinearSweep nonlinear_sweep(const SweepScene& scene, const NonlinearSweepOptions& options = {});
 
 }  // namespace hb

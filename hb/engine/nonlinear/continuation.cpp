@@ -22,9 +22,10 @@ using nonlinear::Unknowns;
 
 namespace {
 
-// Wanted of a step, by experience with resonance curves: first contraction of the corrections, distance from prediction
-// to point over the step, angle between tangents (rad). Beyond `most_angle` or `most_miss` a step is taken again.
-constexpr double wanted_contraction = 0.05, wanted_miss = 0.02, wanted_angle = 0.15;
+// Wanted of a step, by experience with resonance curves: first contraction of the corrections (with the factors of the
+// point before, so that 0.05 would allow steps of a twentieth of a resonance's half width), distance from prediction to
+// point over the step, angle between tangents (rad). Beyond `most_angle` or `most_miss` a step is taken again.
+constexpr double wanted_contraction = 0.25, wanted_miss = 0.02, wanted_angle = 0.15;
 constexpr double most_angle = 0.5, most_miss = 0.2;
 
 void check_options(const NonlinearSystem& system, const ContinuationOptions& options) {
@@ -71,7 +72,7 @@ class Follower {
       const bool closed = comes_back(last, point);
       search(last, point);
       add_stops(last, point, outside);
-      if (outside) return ended(BranchEnd::range);
+      if (outside || (options_.end_at_stop && branch_.points.back().stop)) return ended(BranchEnd::range);
       if (closed) return ended(BranchEnd::closed);
       branch_.points.push_back(std::move(point));
       fit_harmonics();

@@ -19,6 +19,7 @@ struct ContinuationOptions {
   double low = 0, high = 0;  // the parameter's range: the branch ends where it leaves it
   int direction = 1;  // of the parameter at the start: +1 or -1
   std::vector<double> stops = {};  // parameters at which a point is wanted whenever the branch passes
+  bool end_at_stop = false;  // the first passage of one ends the branch, as the end of the range does
   // Lengths along the branch: sqrt((d parameter/parameter_scale)^2 + (rms of dq/size)^2), size the rms of q itself (or
   // motion_scale where that is larger). parameter_scale 0: larger modulus of the range's ends.
   double first_step = 0.01, most_step = 0.1, least_step = 1e-7;

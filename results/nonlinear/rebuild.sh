@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Motion without linearisation beside the linear theory: the six-link mechanism, the slider-crank of the IVP test set, a
+# four-bar.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")"
+
+run=../../tools/study_run.sh
+branches='branches_*.svg branches_*.csv bifurcations.csv'
+
+"$run" six_link "$branches" sweep ../six_link/scene.toml --rpm 200:1720:20 --modes 1 --theory nonlinear --period 2 \
+  --only steady,stability
+"$run" six_link_fold "$branches" sweep ../six_link/scene.toml --rpm 1440:1520:5 --modes 2 --theory nonlinear \
+  --only steady,stability
+"$run" six_link_1500rpm 'response_*.svg response_*.csv joint_forces.csv' steady ../six_link/scene.toml --rpm 1500 --modes 3 \
+  --theory nonlinear
+"$run" six_link_1590rpm 'check.json' check ../six_link/scene.toml --rpm 1590 --modes 1 --theory nonlinear --period 2
+"$run" slider_crank_check 'check.json' check slider_crank.toml --omega 150 --theory nonlinear
+"$run" four_bar "$branches" sweep ../four_bar/scene.toml --rpm 300:1200:20 --modes 2 --theory nonlinear --only steady,stability
+
+# Largest |q_1| and |q_2| of the slider-crank, without linearisation and linear, and the linear answer's theory error.
+peaks() {
+  hb steady slider_crank.toml --omega "$1" --only steady --theory "$2" |
+    awk '$1 == ++k && NF == 3 { printf "%s ", $2; next } { k = 0 } $1 == "theory" { error = $3 } END { printf "%s", error }'
+}
+for omega in 60 150 212.8; do
+  echo "$omega rad/s: nonlinear $(peaks "$omega" nonlinear)linear $(peaks "$omega" linear)"
+done >slider_crank.txt
