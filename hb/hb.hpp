@@ -3,6 +3,7 @@
 
 #include "hb/analysis/analyses.hpp"           // IWYU pragma: export
 #include "hb/analysis/bench_rod.hpp"          // IWYU pragma: export
+#include "hb/analysis/nonlinear/nonlinear_analyses.hpp"  // IWYU pragma: export
 #include "hb/analysis/request.hpp"            // IWYU pragma: export
 #include "hb/analysis/steady.hpp"             // IWYU pragma: export
 #include "hb/analysis/tune/tune_problem.hpp"  // IWYU pragma: export

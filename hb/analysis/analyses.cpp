@@ -166,9 +166,7 @@ bool Check::reached() const {
   return std::ranges::all_of(speeds, [](const SpeedCheck& check) { return check.shortfalls.empty(); });
 }
 
-Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
-  Check result;
-  result.settings = settings_of(request, scene);
+std::vector<double> speeds_of(const CheckRequest& request, const Scene& scene) {
   std::vector<double> speeds;
   const auto add = [&](const char* field, double given, double speed) {
     if (!(speed >= std::numeric_limits<double>::min() && std::isfinite(speed)))
@@ -178,6 +176,13 @@ Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
   for (const double rpm : request.rpms) add("rpms", rpm, speed_from_rpm(rpm, scene.units));
   for (const double omega : request.omegas) add("omegas", omega, omega);
   if (speeds.empty()) speeds.push_back(speed_of(request, scene).omega);
+  return speeds;
+}
+
+Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
+  Check result;
+  result.settings = settings_of(request, scene);
+  const std::vector<double> speeds = speeds_of(request, scene);
   if (!(request.case_limit > 0)) throw RequestError("case_limit", fmt::format("{}", request.case_limit), "seconds > 0");
   result.model = std::make_shared<const SceneModel>(make_model(scene, result.settings));
   result.speeds.resize(speeds.size());

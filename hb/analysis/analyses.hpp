@@ -62,6 +62,9 @@ struct CheckRequest : Request {
   bool march = false;  // also march from rest where the motion is stable
 };
 
+// Rad per unit time, those of `rpms` or the one speed. Throws RequestError.
+[[nodiscard]] std::vector<double> speeds_of(const CheckRequest& request, const Scene& scene);
+
 struct Check {
   Settings settings;
   std::shared_ptr<const SceneModel> model;

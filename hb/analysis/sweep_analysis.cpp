@@ -275,15 +275,27 @@ SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double 
   }
 }
 
-ScenePlace SweepScene::at(double x) const {
+double SweepScene::speed_at(double x) const {
   switch (axis_.kind) {
     case Axis::Kind::rpm:
-      return {first_, speed_from_rpm(x, units_), ""};
+      return speed_from_rpm(x, units_);
     case Axis::Kind::omega:
-      return {first_, x, ""};
+      return x;
     case Axis::Kind::parameter:
       break;
   }
+  return fixed_speed_;
+}
+
+LinkagePlace SweepScene::linkage_at(double x) const {
+  if (axis_.kind != Axis::Kind::parameter) return {*first_->linkage(), ""};
+  FamilyMember member = family_.at({{axis_.path, x}});
+  if (!member.scene) return {std::nullopt, std::move(member.why_not)};
+  return {std::get<Linkage>(std::move(member.scene->model)), ""};
+}
+
+ScenePlace SweepScene::at(double x) const {
+  if (axis_.kind != Axis::Kind::parameter) return {first_, speed_at(x), ""};
   // Several questions are asked at one place in a row.
   struct Last {
     std::size_t owner = 0;

@@ -30,6 +30,12 @@ struct ScenePlace {
   std::string problem;  // why there is none
 };
 
+// The linkage alone, without what is computed from it.
+struct LinkagePlace {
+  std::optional<Linkage> linkage;
+  std::string problem;  // why there is none
+};
+
 // Immutable; free to share by threads.
 class SweepScene {
  public:
@@ -42,6 +48,9 @@ class SweepScene {
                    fixed_speed, fixed_rpm) {}
 
   [[nodiscard]] ScenePlace at(double x) const;
+  [[nodiscard]] double speed_at(double x) const;  // rad per unit time
+  // For a linkage scene; also beyond the axis' values.
+  [[nodiscard]] LinkagePlace linkage_at(double x) const;
   const Axis& axis() const { return axis_; }
   double fixed_rpm() const { return fixed_rpm_; }
   const Settings& settings() const { return settings_; }

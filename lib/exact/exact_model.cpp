@@ -216,6 +216,23 @@ void assemble(const ExactModel::Impl& model, const std::vector<RodDerivatives>& 
   }
 }
 
+ExactResidual evaluate(const ExactModel::Impl& model, double speed, const CrankAngles& angles,
+                       const RitzSamples& motion, bool derivatives) {
+  const std::vector<BentRod> rods = bent_rods(model, motion);
+  ExactResidual result;
+  result.breakdown = folded(model, rods, angles);
+  const std::vector<RodSurroundings> at = surroundings(model, rods, angles, speed, result.breakdown);
+  result.r.resize(model.num_modes(), angles.size());
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    result.r.middleRows(model.first[r], model.rods[r].num_modes) = rods[r].residual(at[r]);
+  if (!derivatives) return result;
+
+  std::vector<RodDerivatives> own;
+  for (std::size_t r = 0; r < rods.size(); ++r) own.push_back(rods[r].derivatives(at[r]));
+  assemble(model, own, Influences(model, rods, angles, speed), angles.size(), result);
+  return result;
+}
+
 std::complex<double> number(const Plane<double>& z) { return {z.x, z.y}; }
 
 }  // namespace
@@ -236,6 +253,14 @@ CrankAngles::CrankAngles(const Linkage& linkage, Index num_samples, int num_turn
           linkage,
           Eigen::VectorXd(
               Eigen::VectorXd::LinSpaced(num_samples + 1, 0, 2 * std::numbers::pi * num_turns).head(num_samples))) {}
+
+CrankAngles CrankAngles::part(Index begin, Index count) const {
+  CrankAngles angles;
+  angles.tau = tau.segment(begin, count);
+  angles.direction = direction.segment(begin, count);
+  angles.slider_forces = slider_forces.middleCols(begin, count);
+  return angles;
+}
 
 ExactModel::ExactModel(Linkage linkage, std::vector<Rod> rods, Index num_points) {
   auto impl = std::make_unique<Impl>();
@@ -282,21 +307,32 @@ double ExactModel::driven_mass(std::size_t rod) const {
   return mass;
 }
 
+// Blocks of angles whose arrays stay in the cache.
 ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, const RitzSamples& motion,
                                    bool derivatives) const {
   check_shapes(*impl_, angles, motion);
-  const std::vector<BentRod> rods = bent_rods(*impl_, motion);
+  constexpr Index most = 64;
+  const Index n = num_modes(), N = angles.size();
   ExactResidual result;
-  result.breakdown = folded(*impl_, rods, angles);
-  const std::vector<RodSurroundings> at = surroundings(*impl_, rods, angles, speed, result.breakdown);
-  result.r.resize(num_modes(), angles.size());
-  for (std::size_t r = 0; r < rods.size(); ++r)
-    result.r.middleRows(first_mode(r), impl_->rods[r].num_modes) = rods[r].residual(at[r]);
-  if (!derivatives) return result;
-
-  std::vector<RodDerivatives> own;
-  for (std::size_t r = 0; r < rods.size(); ++r) own.push_back(rods[r].derivatives(at[r]));
-  assemble(*impl_, own, Influences(*impl_, rods, angles, speed), angles.size(), result);
+  result.r.resize(n, N);
+  if (derivatives) {
+    result.by_speed.resize(n, N);
+    for (MatrixXd* by : {&result.by_q, &result.by_q1, &result.by_q2}) by->resize(n * n, N);
+  }
+  for (Index begin = 0; begin < N; begin += most) {
+    const Index count = std::min(most, N - begin);
+    const CrankAngles part = angles.part(begin, count);
+    const auto columns = [&](const MatrixXd& all) { return all.middleCols(begin, count); };
+    const ExactResidual block =
+        evaluate(*impl_, speed, part, {columns(motion.q), columns(motion.q1), columns(motion.q2)}, derivatives);
+    result.r.middleCols(begin, count) = block.r;
+    if (!result.breakdown) result.breakdown = block.breakdown;
+    if (!derivatives) continue;
+    result.by_speed.middleCols(begin, count) = block.by_speed;
+    result.by_q.middleCols(begin, count) = block.by_q;
+    result.by_q1.middleCols(begin, count) = block.by_q1;
+    result.by_q2.middleCols(begin, count) = block.by_q2;
+  }
   return result;
 }
 

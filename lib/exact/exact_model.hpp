@@ -27,6 +27,10 @@ struct CrankAngles {
   CrankAngles(const Linkage& linkage, Eigen::Index num_samples, int num_turns = 1);
 
   Eigen::Index size() const { return tau.size(); }
+  CrankAngles part(Eigen::Index begin, Eigen::Index count) const;
+
+ private:
+  CrankAngles() = default;
 };
 
 // Where the model ends: the first angle at which a rod's slope |w'| reaches 1, or a dyad with the bent chords does not

@@ -58,6 +58,21 @@ TEST(ExactSystem, MotionOfTheSliderCrankIsTheReferences) {
   }
 }
 
+// Angles were compared over the length of the longer list: those of an earlier call served for a single one that was
+// the first of them.
+TEST(ExactSystem, OneAngleAfterManyIsThatAngleAlone) {
+  const NonlinearSystem system = system_of(six_link::linkage(), 1);
+  const auto at_rest = [](Index N) {
+    const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(2, N);
+    return MotionSamples{Eigen::VectorXd::LinSpaced(N, 0, double(N - 1)), none, none, none};
+  };
+  ResidualSamples many, one;
+  ASSERT_FALSE(system.evaluate(10, at_rest(4), Derivatives::none, many));
+  ASSERT_FALSE(system.evaluate(10, at_rest(1), Derivatives::none, one));
+  ASSERT_EQ(one.r.cols(), 1);
+  EXPECT_EQ(one.r.col(0), many.r.col(0));
+}
+
 TEST(ExactSystem, FoldedRodsAreSaidWithTheirAngle) {
   const Linkage linkage = six_link::linkage();
   const NonlinearSystem system = system_of(linkage, 1);

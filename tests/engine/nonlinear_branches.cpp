@@ -240,6 +240,27 @@ TEST(Continuation, ThePendulumsRestDoublesItsPeriodAtTheEdgesOfMathieusTongue) {
   EXPECT_NEAR(squares.back() / squares.front(), 2, 0.02);
 }
 
+// Damping that grows with the swing holds the motion between both edges of the tongue.
+TEST(Continuation, ADoubledBranchEndsWhereItJoinsTheMotionItLeft) {
+  const NonlinearSystem system =
+      test::differentiated(1, [](double, double tau, const auto& q, const auto& v, const auto& a) {
+        auto r = a;
+        r(0) = a(0) + (0.1 + q(0) * q(0)) * v(0) + (1 + 0.5 * std::cos(tau)) * q(0);
+        return r;
+      });
+  ContinuationOptions options{.motion = {.tolerance = 1e-8}, .low = 1.5, .high = 2.6, .motion_scale = 1};
+  const Branch branch = from_rest(system, 1.5, options);
+  const auto doublings = of_kind(branch, BifurcationKind::period_doubling);
+  ASSERT_EQ(doublings.size(), 2u);
+  const std::vector<BranchPoint> starts = branches_at(system, doublings[0], options);
+  ASSERT_EQ(starts.size(), 1u);
+  options.motion.turns = 2;
+  const Branch doubled = follow_branch(system, starts[0], options);
+  EXPECT_EQ(doubled.end, BranchEnd::joined);
+  EXPECT_NEAR(doubled.points.back().motion.parameter, doublings[1].point.motion.parameter, 0.02);
+  for (const BranchPoint& point : doubled.points) EXPECT_EQ(point.stability->verdict, Verdict::stable);
+}
+
 TEST(Continuation, SaysWhyAndWhereABranchEnds) {
   NonlinearSystem system = test::duffing({0.1, 0, 0.1});
   const auto whole = system.evaluate;

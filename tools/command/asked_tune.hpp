@@ -11,6 +11,7 @@
 namespace hb::tools {
 
 struct TuneFlags : CommonFlags {
+  std::string theory = "linear";
   std::string minimise, maximise, over, algorithm, seed, analyses, speeds;
   std::vector<std::string> vary, keep, tie, height;
 };

@@ -14,10 +14,12 @@
 
 #include "lib/rod/time_domain_rod.hpp"
 #include "hb/analysis/bench_rod.hpp"
+#include "hb/analysis/nonlinear/nonlinear_bench.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
@@ -40,18 +42,19 @@ double peak_memory_megabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
-std::string bench_text(const SceneModel& model, double speed, const std::vector<RodBench>& benches, double geometry) {
+std::string bench_text(const SceneModel& model, double speed, const std::vector<RodBench>& benches, double geometry,
+                       bool nonlinear) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}, {}: error against run time of the periodic state\n", scene_name(model.scene),
-                 speed_text(speed, model.scene));
+  fmt::format_to(out, "{}, {}: error against run time of the periodic state{}\n", scene_name(model.scene),
+                 speed_text(speed, model.scene), nonlinear ? ", motion without linearisation of all rods together" : "");
   fmt::format_to(out,
                  "Geometry, once for all speeds (harmonic balance only): {:.3g} s. Integration evaluates the "
                  "equations from the {} at every step.\n",
                  geometry, model.linkage() != nullptr ? "kinematics" : "series");
   for (const RodBench& bench : benches) {
-    fmt::format_to(out, "\n{}, {}; reference by Radau collocation, error {:.1e}\n", bench.name,
-                   to_string(bench.verdict), bench.reference_error);
+    fmt::format_to(out, "\n{}, {}; reference by {}, error {:.1e}\n", bench.name, to_string(bench.verdict),
+                   nonlinear ? "shooting (CVODE)" : "Radau collocation", bench.reference_error);
     fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10} {:>11} {:>11}\n", "method", "asked", "harm/steps", "error",
                    "min [s]", "median [s]");
     for (const BenchRow& row : bench.rows)
@@ -85,11 +88,13 @@ std::string bench_csv(const SceneModel& model, double speed, const std::vector<R
   return text;
 }
 
-Json bench_json(const SceneModel& model, double speed, const std::vector<RodBench>& benches, double geometry) {
+Json bench_json(const SceneModel& model, double speed, const std::vector<RodBench>& benches, double geometry,
+                bool nonlinear) {
   Json json;
   json["title"] = scene_name(model.scene);
   json["rpm"] = rpm_from_speed(speed, model.scene.units);
   json["omega"] = speed;
+  json["theory"] = nonlinear ? "nonlinear" : "linear";
   json["geometry_seconds"] = geometry;
   json["memory_megabytes"] = peak_memory_megabytes();
   json["rods"] = Json::object();
@@ -142,8 +147,21 @@ Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench
 
 struct BenchFlags {
   CommonFlags common;
+  TheoryFlags theory;
   std::string case_limit;
 };
+
+std::vector<RodBench> bench_rods(const SceneModel& model, double speed, const BenchOptions& options) {
+  std::vector<RodBench> benches;
+  for (const RodModel& rod : model.rods) {
+    if (!rod.reported) continue;
+    const TimeDomainSystem system = model.linkage() != nullptr
+                                        ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
+                                        : time_domain_system(rod.system, speed);
+    benches.push_back(bench_rod(rod, system, options));
+  }
+  return benches;
+}
 
 int run_bench(const BenchFlags& flags) {
   const SceneInput input = scene_input(flags.common.scene_file);
@@ -155,28 +173,26 @@ int run_bench(const BenchFlags& flags) {
   const double time_limit = flags.case_limit.empty() ? 5
                                                      : number_flag("--case-limit", flags.case_limit, 1e-3, 1e6,
                                                                    "seconds from 0.001 to 1000000");
+  const bool nonlinear = is_nonlinear(flags.theory);
+  NonlinearOptions motion;
+  motion.turns = turns_of(flags.theory);
+  motion.stop = stop_of(flags.theory);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "bench", provenance(flags.common.line, input));
 
   const auto start = Clock::now();
   const SceneModel model = make_model(std::move(scene), options);
   const double geometry = seconds_since(start);
-  std::vector<RodBench> benches;
-  const auto num_rods =
-      std::count_if(model.rods.begin(), model.rods.end(), [](const RodModel& rod) { return rod.reported; });
-  std::optional<Progress> progress(std::in_place, "cases", static_cast<std::size_t>(num_rods) * bench_cases());
-  for (const RodModel& rod : model.rods) {
-    if (!rod.reported) continue;
-    const TimeDomainSystem system = model.linkage() != nullptr
-                                        ? time_domain_rod(*model.linkage(), rod.link, rod.system.num_modes(), speed)
-                                        : time_domain_system(rod.system, speed);
-    benches.push_back(bench_rod(rod, system, {options.steady_method, time_limit, [&] { progress->advance(); }}));
-  }
+  const auto num_rods = static_cast<std::size_t>(std::ranges::count_if(model.rods, &RodModel::reported));
+  std::optional<Progress> progress(std::in_place, "cases", nonlinear ? motion_bench_cases() : num_rods * bench_cases());
+  const BenchOptions with{options.steady_method, time_limit, [&] { progress->advance(); }};
+  const std::vector<RodBench> benches = nonlinear ? std::vector{bench_motion(model, speed, options, with, motion)}
+                                                  : bench_rods(model, speed, with);
   progress.reset();
-  const Json document = bench_json(model, speed, benches, geometry);
+  const Json document = bench_json(model, speed, benches, geometry, nonlinear);
   const bool complete = std::none_of(benches.begin(), benches.end(), [](const RodBench& b) { return b.rows.empty(); });
   Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : bench_text(model, speed, benches, geometry);
+  delivery.printed = out.json ? json_text(document) : bench_text(model, speed, benches, geometry, nonlinear);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("bench.json", json_file_text(document));
     place.write("bench.csv", bench_csv(model, speed, benches));
@@ -199,6 +215,7 @@ void add_bench_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<BenchFlags>();
   add_scene_flags(*command, flags->common);
   add_analysis_flags(*command, flags->common, SpeedsTaken::one);
+  add_theory_flags(*command, flags->theory);
   command->add_option("--case-limit", flags->case_limit, "seconds for each case; default 5")->type_name("SECONDS");
   command->footer(
       "Every method runs on one thread at its own list of tolerances, on the periodic state: --tol, --only, "

@@ -19,6 +19,8 @@
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/theory_flags.hpp"
+#include "tools/output/nonlinear_check_output.hpp"
 #include "hb/analysis/cross_check.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
@@ -30,6 +32,7 @@ namespace {
 
 struct CheckFlags {
   CommonFlags common;
+  TheoryFlags theory;
   std::string integrator, case_limit;
   bool march = false;
 };
@@ -94,7 +97,50 @@ class CheckProgress {
   std::mutex mutex_;
 };
 
+int run_nonlinear_check(const CheckFlags& flags) {
+  const SceneInput input = scene_input(flags.common.scene_file);
+  Scene scene = input.source.with(overrides(flags.common));
+  const Settings options = settings(flags.common, scene);
+  const Output out = output(flags.common);
+  const CheckOptions check_with = check_options(flags);
+  if (flags.march) throw UsageError("--march: found with --theory nonlinear, allowed: with the linear theory");
+  if (check_with.integrator == Integrator::collocation)
+    throw UsageError("--integrator: found \"collocation\" with --theory nonlinear, allowed: automatic, adams, bdf");
+  NonlinearOptions asked;
+  asked.turns = turns_of(flags.theory);
+  asked.stop = stop_of(flags.theory);
+  const std::vector<double> speeds = speeds_of(speed_range(flags.common, scene), scene.units);
+  std::optional<OutputFolder> folder;
+  if (out.folder) folder.emplace(*out.folder, "check", provenance(flags.common.line, input));
+
+  // The motion is that of all rods, whatever is compared of it.
+  Settings all = options;
+  all.only.steady = true;
+  const SceneModel model = make_model(std::move(scene), all, false);
+  std::vector<NonlinearCheck> checks(speeds.size());
+  parallel_for(speeds.size(), out.threads, [&](std::size_t k) {
+    checks[k] = nonlinear_check(model, speeds[k], options, check_with, asked);
+    if (!checks[k].not_compared.empty()) say_time_limit(flags.theory, asked.stop, checks[k].shortfalls);
+  });
+
+  const nlohmann::ordered_json document = nonlinear_check_json(model, checks, options);
+  const bool agree = std::ranges::all_of(checks, &NonlinearCheck::agrees);
+  const bool reached = std::ranges::all_of(checks, [](const NonlinearCheck& c) { return c.shortfalls.empty(); });
+  Delivery delivery;
+  delivery.printed = out.json ? json_text(document) : nonlinear_check_report(model, checks, options);
+  delivery.write_data = [&](OutputFolder& place) {
+    place.write("check.json", json_file_text(document));
+    return std::vector<Figure>();
+  };
+  return deliver(folder ? &*folder : nullptr, out.plots,
+                 !agree    ? exit_failed
+                 : reached ? exit_ok
+                           : exit_not_reached,
+                 delivery);
+}
+
 int run_check(const CheckFlags& flags) {
+  if (is_nonlinear(flags.theory)) return run_nonlinear_check(flags);
   const SceneInput input = scene_input(flags.common.scene_file);
   Scene scene = input.source.with(overrides(flags.common));
   const Settings options = settings(flags.common, scene);
@@ -143,6 +189,7 @@ void add_check_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<CheckFlags>();
   add_scene_flags(*command, flags->common);
   add_analysis_flags(*command, flags->common);
+  add_theory_flags(*command, flags->theory);
   command->add_option("--integrator", flags->integrator, "automatic, adams, bdf (CVODE) or collocation (Radau)")
       ->type_name("NAME");
   command->add_option("--case-limit", flags->case_limit, "seconds for each rod and speed; default 60")

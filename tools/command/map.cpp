@@ -12,6 +12,7 @@
 #include "tools/command/delivery.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/report/report_data.hpp"
@@ -22,6 +23,7 @@ namespace hb::tools {
 namespace {
 
 struct MapFlags : CommonFlags {
+  std::string theory = "linear";
   std::string x, y, damping_range, colour = "growth";
   bool resume = false, restart = false;
 };
@@ -42,6 +44,7 @@ std::string page_of(const AskedMap& map, const nlohmann::ordered_json& json, con
 
 int run_map(const MapFlags& flags) {
   const MapColour colour = colour_flag(flags.colour);
+  require_linear(flags.theory, "stability without linearisation goes along one number: hb sweep --theory nonlinear");
   const SceneInput input = scene_input(flags.scene_file);
   const Output out = output(flags);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
@@ -84,6 +87,7 @@ void add_map_command(CLI::App& app, int& status) {
       "map", "stability over two parameters: growth rate on a grid, boundaries with their kind, resonance lines");
   const auto flags = std::make_shared<MapFlags>();
   add_scene_flags(*command, *flags);
+  add_linear_theory_flag(*command, flags->theory);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
   add_html_flag(*command, *flags);
   command->add_option("--x", flags->x, "first parameter, as in rpm=200:6000:100 (100 points)")

@@ -2,8 +2,10 @@
 
 #include <fmt/core.h>
 
+#include "tools/output/branches_output.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/pictures/branch_figure.hpp"
 #include "tools/pictures/figures.hpp"
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/page_pictures.hpp"
@@ -34,6 +36,20 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
     const CsvFile forces = sweep_forces_csv(scene, result);
     folder.write(forces.name, csv_text(forces));
     for (Figure& figure : sweep_force_figures(scene, result, forces)) figures.push_back(std::move(figure));
+  }
+  return figures;
+}
+
+std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear, const NonlinearSweep& sweep,
+                                 OutputFolder& folder) {
+  std::vector<Figure> figures;
+  const CsvFile bifurcations = bifurcations_csv(scene, sweep);
+  folder.write(bifurcations.name, csv_text(bifurcations));
+  for (std::size_t r = 0; r < sweep.rods.size() && !sweep.branches.empty(); ++r) {
+    if (!sweep.reported[r]) continue;
+    const CsvFile branches = branches_csv(scene, sweep, r);
+    folder.write(branches.name, csv_text(branches));
+    figures.push_back(branch_figure(scene, linear, sweep, r, sweep_rod_csv(scene, linear, r), branches));
   }
   return figures;
 }

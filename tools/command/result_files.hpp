@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "tools/output/map_output.hpp"
 #include "tools/output/output_folder.hpp"
@@ -13,6 +14,9 @@
 namespace hb::tools {
 
 [[nodiscard]] std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder);
+// What `linear` has beside it without linearisation.
+[[nodiscard]] std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear,
+                                               const NonlinearSweep& sweep, OutputFolder& folder);
 [[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
 
 // Pictures of a report for readers without script; `map` may be null.

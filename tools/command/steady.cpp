@@ -11,6 +11,7 @@
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
@@ -62,7 +63,7 @@ std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& res
 }
 
 struct SteadyFlags : CommonFlags {
-  std::string theory = "linear", period;
+  TheoryFlags theory;
 };
 
 // Motions of one turn have tables and pictures, longer ones the document alone.
@@ -73,8 +74,8 @@ int run_nonlinear(const SteadyFlags& flags) {
   const Output out = output(flags);
   const double speed = single_speed(flags, scene);
   NonlinearOptions asked;
-  if (!flags.period.empty())
-    asked.turns = integer_flag("--period", flags.period, 1, 64, "a whole number of turns from 1 to 64");
+  asked.turns = turns_of(flags.theory);
+  asked.stop = stop_of(flags.theory);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
 
@@ -82,7 +83,8 @@ int run_nonlinear(const SteadyFlags& flags) {
   Settings all = options;
   all.only.steady = true;
   const SceneModel model = make_model(std::move(scene), all, false);
-  const NonlinearResult result = nonlinear_steady(model, speed, options, asked);
+  NonlinearResult result = nonlinear_steady(model, speed, options, asked);
+  say_time_limit(flags.theory, asked.stop, result.shortfalls);
   const nlohmann::ordered_json document =
       out.json || folder ? nonlinear_json(model, result, options, out.stats) : nlohmann::ordered_json();
   Delivery delivery;
@@ -98,12 +100,7 @@ int run_nonlinear(const SteadyFlags& flags) {
 }
 
 int run_steady(const SteadyFlags& flags) {
-  if (flags.theory != "linear" && flags.theory != "nonlinear")
-    throw UsageError(fmt::format("--theory: found \"{}\", allowed: linear, nonlinear", flags.theory));
-  if (flags.theory == "nonlinear") return run_nonlinear(flags);
-  if (!flags.period.empty())
-    throw UsageError(
-        fmt::format("--period: found {} with the linear theory, allowed: with --theory nonlinear", flags.period));
+  if (is_nonlinear(flags.theory)) return run_nonlinear(flags);
   const SceneInput input = scene_input(flags.scene_file);
   Scene scene = input.source.with(overrides(flags));
   const Settings options = settings(flags, scene);
@@ -147,14 +144,7 @@ void add_steady_command(CLI::App& app, int& status) {
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
   add_single_speed_flags(*command, *flags);
-  command
-      ->add_option("--theory", flags->theory,
-                   "linear, or nonlinear: the motion without linearisation, all rods together")
-      ->type_name("linear|nonlinear");
-  command
-      ->add_option("--period", flags->period,
-                   "with --theory nonlinear: motions of N turns, which leave the others by period doubling")
-      ->type_name("N");
+  add_theory_flags(*command, flags->theory);
   add_html_flag(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }

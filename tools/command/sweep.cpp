@@ -11,6 +11,8 @@
 #include "tools/command/delivery.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/theory_flags.hpp"
+#include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/command/sweep_axis.hpp"
@@ -27,6 +29,7 @@ namespace {
 
 struct SweepFlags : CommonFlags {
   std::string x;
+  TheoryFlags theory;
   bool resume = false, restart = false;
 };
 
@@ -37,6 +40,10 @@ int run_sweep_command(const SweepFlags& flags) {
   Settings options = settings(flags, scene);
   const Output out = output(flags);
   AxisAndSpeed asked = axis_of(flags, flags.x, scene);
+  const bool nonlinear = is_nonlinear(flags.theory);
+  NonlinearSweepOptions branches_asked;
+  branches_asked.turns = turns_of(flags.theory);
+  branches_asked.stop = stop_of(flags.theory);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -46,13 +53,23 @@ int run_sweep_command(const SweepFlags& flags) {
   SweepResult result;
   KeptRun run("sweep", out.folder, earlier, sweep_key(sweep_scene), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return exit_interrupted;
-  const nlohmann::ordered_json document =
+  std::optional<NonlinearSweep> branches;
+  if (nonlinear) {
+    branches = nonlinear_sweep(sweep_scene, branches_asked);
+    if (branches->stopped) say_time_limit(flags.theory, branches_asked.stop, branches->shortfalls);
+  }
+  nlohmann::ordered_json document =
       out.json || folder ? sweep_json(sweep_scene, result, out.stats) : nlohmann::ordered_json();
+  if (branches && !document.is_null()) add_branches(document, sweep_scene, *branches);
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : sweep_table(sweep_scene, result);
+  if (branches && !out.json) delivery.printed += branches_table(sweep_scene, *branches);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
-    return sweep_files(sweep_scene, result, place);
+    std::vector<Figure> figures = sweep_files(sweep_scene, result, place);
+    if (branches)
+      for (Figure& figure : branch_files(sweep_scene, result, *branches, place)) figures.push_back(std::move(figure));
+    return figures;
   };
   delivery.committed = [&] { run.delivered(); };
   if (out.html)
@@ -61,9 +78,11 @@ int run_sweep_command(const SweepFlags& flags) {
       data.add_sweep(sweep_scene, result, places_along(sweep_scene, SharedWork(out.threads)));
       return data.page(page_text(origin, std::move(pictures)));
     };
+  const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+                             reached ? exit_ok : exit_not_reached, delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
+  if (out.stats && !out.json && branches) fmt::print(stderr, "{}", stages_table(branches->stages));
   return status;
 }
 
@@ -78,6 +97,7 @@ void add_sweep_command(CLI::App& app, int& status) {
   add_html_flag(*command, *flags);
   command->add_option("--x", flags->x, "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
       ->type_name("PATH=A:B:STEP|A:B:xN");
+  add_theory_flags(*command, flags->theory);
   command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
   command->add_flag("--restart", flags->restart, "throw away what an interrupted run into the same --out left");
   command->callback([flags, &status] { status = run_sweep_command(*flags); });

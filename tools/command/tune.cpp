@@ -11,6 +11,7 @@
 #include "tools/command/asked_tune.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/table_output.hpp"
@@ -26,8 +27,8 @@ namespace {
 std::function<void(int, bool, double)> progress_on_terminal(const TuneFlags& flags) {
   const double sign = flags.maximise.empty() ? 1 : -1;
   return [sign](int evaluations, bool feasible, double goal) {
-    fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations,
-               feasible ? "" : "(conditions not met) ", sign * goal);
+    fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations, feasible ? "" : "(conditions not met) ",
+               sign * goal);
   };
 }
 
@@ -76,8 +77,8 @@ int run_tune(const TuneFlags& flags) {
       SharedWork work(out.threads);
       return design_page(task, result, scene, document, work, page_text(origin, std::move(pictures)));
     };
-  const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             shortfall(result).empty() ? exit_ok : exit_not_reached, delivery);
+  const int status =
+      deliver(folder ? &*folder : nullptr, out.plots, shortfall(result).empty() ? exit_ok : exit_not_reached, delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
   return status;
 }
@@ -89,6 +90,7 @@ void add_tune_command(CLI::App& app, int& status) {
       app.add_subcommand("tune", "design: scene numbers that minimise a goal under conditions over a range of speeds");
   const auto flags = std::make_shared<TuneFlags>();
   add_scene_flags(*command, *flags);
+  add_linear_theory_flag(*command, flags->theory);
   add_analysis_flags(*command, *flags);
   add_html_flag(*command, *flags);
   const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* help, const char* type) {

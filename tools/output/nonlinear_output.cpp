@@ -132,11 +132,16 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
   json["tolerance"] = settings.tolerance;
+  json["motion_tolerance"] = result.tolerance;
   if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
   json["units"] = units_json(units);
   json["found"] = result.search == MotionSearch::found;
   if (result.followed_from) json["followed_from_rpm"] = rpm_of(*result.followed_from, units);
-  if (result.search != MotionSearch::found && result.last_speed) json["last_rpm"] = rpm_of(*result.last_speed, units);
+  if (result.search != MotionSearch::found && result.last_speed) {
+    Json& last = json["last_motion"] = {{"rpm", rpm_of(*result.last_speed, units)}, {"omega", *result.last_speed}};
+    for (std::size_t r = 0; r < model.rods.size(); ++r)
+      if (model.rods[r].reported) last["rods"][model.rods[r].name] = {{"max_abs", result.last_max_abs[r]}};
+  }
   json["folds_passed"] = result.folds;
   Json& rods = json["rods"] = Json::object();
   for (const NonlinearRod& rod : result.rods)
@@ -155,8 +160,8 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   Json& others = json["other_motions"] = Json::array();
   for (const OtherMotion& other : result.others) {
     Json entry;
-    for (std::size_t r = 0; r < result.rods.size(); ++r)
-      if (result.rods[r].reported) entry["rods"][result.rods[r].name] = {{"max_abs", other.max_abs[r]}};
+    for (std::size_t r = 0; r < model.rods.size(); ++r)
+      if (model.rods[r].reported) entry["rods"][model.rods[r].name] = {{"max_abs", other.max_abs[r]}};
     if (other.verdict) entry["verdict"] = to_string(*other.verdict);
     others.push_back(std::move(entry));
   }
@@ -183,14 +188,19 @@ std::string nonlinear_table(const SceneModel& model, const NonlinearResult& resu
   for (const OtherMotion& other : result.others) {
     add(text, "Another motion at this speed{}:",
         other.verdict ? fmt::format(", {}", to_string(*other.verdict)) : std::string());
-    for (std::size_t r = 0; r < result.rods.size(); ++r)
-      if (result.rods[r].reported)
-        add(text, " {} max |q_1| = {:.6g} {}", result.rods[r].name, other.max_abs[r].front(), units.length);
+    for (std::size_t r = 0; r < model.rods.size(); ++r)
+      if (model.rods[r].reported)
+        add(text, " {} max |q_1| = {:.6g} {}", model.rods[r].name, other.max_abs[r].front(), units.length);
     add(text, "\n");
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
-  if (result.search != MotionSearch::found && result.last_speed)
-    add(text, "  the last motion on the way is at {}\n", speed_text(*result.last_speed, scene));
+  if (result.search != MotionSearch::found && result.last_speed) {
+    add(text, "The last motion on the way is at {}:", speed_text(*result.last_speed, scene));
+    for (std::size_t r = 0; r < model.rods.size(); ++r)
+      if (model.rods[r].reported)
+        add(text, " {} max |q_1| = {:.6g} {}", model.rods[r].name, result.last_max_abs[r].front(), units.length);
+    add(text, "\n");
+  }
   for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }

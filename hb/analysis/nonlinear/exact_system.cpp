@@ -13,7 +13,8 @@ NonlinearSystem exact_system(std::shared_ptr<const ExactModel> model) {
   system.evaluate = [model = std::move(model), angles = std::optional<CrankAngles>()](
                         double speed, const MotionSamples& motion, Derivatives wanted,
                         ResidualSamples& out) mutable -> std::optional<EvaluationFailure> {
-    if (!angles || angles->tau != motion.angle) angles.emplace(model->linkage(), motion.angle);
+    const bool known = angles && angles->size() == motion.num_samples() && angles->tau == motion.angle;
+    if (!known) angles.emplace(model->linkage(), motion.angle);
     ExactResidual at = model->residual(speed, *angles, {motion.q, motion.v, motion.a}, wanted == Derivatives::state);
     if (at.breakdown) return EvaluationFailure{describe(*at.breakdown, model->linkage()), at.breakdown->crank_angle};
     out.r = std::move(at.r);

@@ -30,6 +30,12 @@ class Stopwatch {
 
 // Below this theory error at every lower speed the linear answer starts Newton's method on the branch from low speed.
 constexpr double weakly_bent = 0.01;
+// Of the motions on the way: enough to stay on the branch.
+constexpr double way_tolerance = 1e-5;
+// A resonance curve with its folds takes some hundred.
+constexpr int most_points = 600;
+// Exponents depend on accelerations: what the smallest tolerance of the motion allows, of the larger of growth and speed.
+constexpr double least_tolerance = 1e-9, exponent_tolerance = 1e-7;
 // Two motions are the same if their largest |q_i| agree to this.
 constexpr double same_motion = 1e-4;
 
@@ -54,7 +60,7 @@ class Search {
     for (const RodModel& rod : model.rods) modes_.push_back(rod.system.num_modes());
     exact_ = with_modes(modes_);
     system_ = exact_system(exact_);
-    motion_options_.tolerance = std::max(settings.tolerance, 1e-9);
+    motion_options_.tolerance = std::max(settings.tolerance, least_tolerance);
     motion_options_.stop = options.stop;
   }
 
@@ -82,11 +88,21 @@ class Search {
 
   // Motions that Newton's method finds from elsewhere and that are not the one found.
   void look_for_others() {
-    if (options_.turns > 1 || result_.search != MotionSearch::found) return;
+    if (options_.turns > 1) return;
     for (const FourierSeries& start : {linear_answer(speed_), FourierSeries()}) {
       if (stopped()) return;
       add_other(solve_periodic_motion(system_, speed_, start, motion_options_));
     }
+  }
+
+  // The same motion with half as many harmonics again.
+  std::optional<PeriodicMotion> with_more_harmonics() const {
+    MotionOptions options = motion_options_;
+    options.turns = options_.turns;
+    options.num_harmonics = std::min(options.max_harmonics, result_.motion.num_harmonics * 3 / 2 + 8);
+    PeriodicMotion motion = solve_periodic_motion(system_, speed_, result_.motion.q, options);
+    if (motion.status != MotionStatus::converged) return std::nullopt;
+    return motion;
   }
 
   // The same motion with more modes of every rod, from this one.
@@ -160,7 +176,7 @@ class Search {
   bool usable(const PeriodicMotion& motion, double at) {
     if (motion.status == MotionStatus::converged || motion.status == MotionStatus::not_reached) return true;
     result_.search = motion.status == MotionStatus::stopped ? MotionSearch::stopped : MotionSearch::none;
-    result_.why = fmt::format("no motion was found at {:.6g} rad/{}: {}{}", at, model_.scene.units.time,
+    result_.why = fmt::format("no motion was found at {:.6g} rpm: {}{}", rpm(at),
                               to_string(motion.status), motion.failure ? ": " + motion.failure->reason : "");
     return false;
   }
@@ -168,10 +184,11 @@ class Search {
   ContinuationOptions continuation(double from) const {
     ContinuationOptions options;
     options.motion = motion_options_;
-    options.motion.tolerance = std::max(motion_options_.tolerance, 1e-8);
+    options.motion.tolerance = std::max(motion_options_.tolerance, way_tolerance);
     options.low = 0.5 * from;
     options.high = options_.turns == 1 ? speed_ : 1.25 * speed_;
     options.stops = {speed_};
+    options.max_points = most_points;
     options.stability = options_.turns > 1;
     options.stop = options_.stop;
     return options;
@@ -180,7 +197,7 @@ class Search {
   void follow(const PeriodicMotion& first, double from) {
     const ContinuationOptions options = continuation(from);
     const Branch branch = follow_branch(system_, first, options);
-    if (!branch.points.empty()) result_.last_speed = branch.points.back().motion.speed;
+    note_last(branch);
     if (options_.turns > 1) {
       if (!doubled(branch, options)) no_way(branch);
       return;
@@ -204,7 +221,7 @@ class Search {
         ContinuationOptions further = options;
         further.motion.turns = start.motion.turns;
         const Branch next = follow_branch(system_, start, further);
-        if (!next.points.empty()) result_.last_speed = next.points.back().motion.speed;
+        note_last(next);
         if (start.motion.turns == options_.turns) {
           const auto passage = std::ranges::find_if(next.points, [&](const BranchPoint& p) { return at_speed(p); });
           if (passage == next.points.end()) continue;
@@ -231,20 +248,37 @@ class Search {
 
   void no_way(const Branch& branch) {
     result_.search = branch.end == BranchEnd::stopped ? MotionSearch::stopped : MotionSearch::none;
-    result_.why = options_.turns > 1 && branch.end != BranchEnd::stopped
-                      ? fmt::format("no branch of {} turns that passes this speed was found", options_.turns)
-                      : fmt::format("the branch from low speed does not reach this speed: {}{}", to_string(branch.end),
-                                    branch.failure ? ": " + branch.failure->reason : "");
+    if (options_.turns > 1) {
+      result_.why = fmt::format("no branch of {} turns that passes {:.6g} rpm was found", options_.turns, rpm(speed_));
+      return;
+    }
+    double highest = 0;
+    for (const BranchPoint& point : branch.points) highest = std::max(highest, point.motion.speed);
+    result_.why = fmt::format(
+        "the branch from low speed was followed over {} motions and did not come to {:.6g} rpm: the highest speed on it is "
+        "{:.6g} rpm, the last one {:.6g} rpm ({}{})",
+        branch.points.size(), rpm(speed_), rpm(highest), rpm(result_.last_speed.value_or(0)), to_string(branch.end),
+        branch.failure ? ": " + branch.failure->reason : "");
+  }
+
+  double rpm(double speed) const { return rpm_from_speed(speed, model_.scene.units); }
+
+  void note_last(const Branch& branch) {
+    if (branch.points.empty()) return;
+    result_.last_speed = branch.points.back().motion.speed;
+    result_.last_max_abs = sizes(branch.points.back().motion.q);
+  }
+
+  // Largest |q_i| by rod and mode.
+  std::vector<std::vector<double>> sizes(const FourierSeries& q) const {
+    std::vector<std::vector<double>> values(modes_.size());
+    for (std::size_t r = 0; r < modes_.size(); ++r)
+      for (Index i = 0; i < modes_[r]; ++i) values[r].push_back(fourier::max_abs(q, exact_->first_mode(r) + i).value);
+    return values;
   }
 
   void add_other(const PeriodicMotion& motion) {
     if (motion.status != MotionStatus::converged) return;
-    const auto sizes = [&](const FourierSeries& q) {
-      std::vector<std::vector<double>> values(modes_.size());
-      for (std::size_t r = 0; r < modes_.size(); ++r)
-        for (Index i = 0; i < modes_[r]; ++i) values[r].push_back(fourier::max_abs(q, exact_->first_mode(r) + i).value);
-      return values;
-    };
     const auto same = [&](const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
       for (std::size_t r = 0; r < a.size(); ++r) {
         const double size = *std::ranges::max_element(a[r]);
@@ -254,7 +288,7 @@ class Search {
       return true;
     };
     OtherMotion other{sizes(motion.q), std::nullopt};
-    if (same(other.max_abs, sizes(result_.motion.q))) return;
+    if (result_.search == MotionSearch::found && same(other.max_abs, sizes(result_.motion.q))) return;
     for (const OtherMotion& known : result_.others)
       if (same(other.max_abs, known.max_abs)) return;
     if (result_.computed.stability) other.verdict = motion_stability(system_, motion).verdict;
@@ -386,32 +420,45 @@ ForceErrors errors_of(const ExactModel& exact, const NonlinearResult& result) {
           safety * change.row(last).cwiseAbs().maxCoeff() / torque, 0, 0};
 }
 
-void check_request(const SceneModel& model, const Settings& settings) {
+}  // namespace
+
+void require_nonlinear(const SceneModel& model, int turns) {
   if (!model.linkage())
     throw RequestError("theory", "\"nonlinear\" for a [hill] scene", "linear: the system is linear as it is given");
   if (model.rods.empty()) throw RequestError("theory", "\"nonlinear\" for a linkage without elastic links", "linear");
-  if (std::holds_alternative<AutoModes>(settings.modes))
-    throw RequestError("modes", "\"auto\"", "a number of modes with the nonlinear theory");
+  for (const RodModel& rod : model.rods)
+    if (body_at(*model.linkage(), rod.link)->elastic->shear)
+      throw RequestError("theory", fmt::format("\"nonlinear\" with shear of {}", rod.name),
+                         "linear, or the scene without shear");
+  if (turns < 1 || (turns & (turns - 1)) != 0)
+    throw RequestError("period", fmt::format("{}", turns), "1, 2, 4, 8, ...: motions that double their period");
 }
-
-}  // namespace
 
 NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                  const NonlinearOptions& options) {
-  check_request(model, settings);
+  require_nonlinear(model, options.turns);
+  if (std::holds_alternative<AutoModes>(settings.modes))
+    throw RequestError("modes", "\"auto\"", "a number of modes with the nonlinear theory");
   NonlinearResult result;
   result.speed = speed;
   result.turns = options.turns;
   result.computed = settings.only;
+  result.tolerance = std::max(settings.tolerance, least_tolerance);
   Search search(model, speed, settings, options, result);
   Stopwatch watch;
   search.run();
   result.stages.push_back({"periodic motion of all rods", watch.seconds(),
                            fmt::format("{} harmonics, {} samples, {} factorisations", result.motion.num_harmonics,
                                        result.motion.num_samples, result.motion.factorisations)});
+  const auto look_for_others = [&] {
+    Stopwatch others_watch;
+    search.look_for_others();
+    result.stages.push_back({"other motions", others_watch.seconds(), fmt::format("{} found", result.others.size())});
+  };
   if (result.search != MotionSearch::found) {
-    result.shortfalls.push_back(result.search == MotionSearch::stopped ? "stopped before a motion was found"
-                                                                       : result.why);
+    const bool stopped = result.search == MotionSearch::stopped;
+    result.shortfalls.push_back(stopped ? "stopped before a motion was found" : result.why);
+    if (!stopped) look_for_others();
     return result;
   }
   const double wanted = search.motion_options().tolerance;
@@ -421,7 +468,14 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
   add_rods(model, search.exact(), search, result);
   if (settings.only.stability) {
     Stopwatch stability_watch;
-    result.stability = motion_stability(search.system(), result.motion);
+    const StabilityOptions exponents{.tolerance = std::max(exponent_tolerance, settings.tolerance)};
+    result.stability = motion_stability(search.system(), result.motion, exponents);
+    if (!result.stability->converged)
+      if (const std::optional<PeriodicMotion> finer = search.with_more_harmonics())
+        result.stability = motion_stability(search.system(), *finer, exponents);
+    if (!result.stability->converged)
+      result.shortfalls.push_back(fmt::format("the growth rate's error {:.1e} exceeds {:.1e} of the larger of growth and speed",
+                                              result.stability->growth_error, exponents.tolerance));
     result.stages.push_back({"stability of the motion", stability_watch.seconds(), result.stability->evidence});
   }
   if (settings.only.reactions) {
@@ -430,9 +484,7 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
     result.force_errors = errors_of(search.exact(), result);
     result.stages.push_back({"joint forces", forces_watch.seconds(), ""});
   }
-  Stopwatch others_watch;
-  search.look_for_others();
-  result.stages.push_back({"other motions", others_watch.seconds(), fmt::format("{} found", result.others.size())});
+  look_for_others();
   return result;
 }
 

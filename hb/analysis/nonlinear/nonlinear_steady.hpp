@@ -38,17 +38,20 @@ struct OtherMotion {
 
 enum class MotionSearch {
   found,
-  none,  // no motion; see `why`, and `last` if the branch was followed
+  none,  // no motion; see `why`, and last_speed if the branch was followed
   stopped,
 };
 
 struct NonlinearResult {
   double speed = 0;  // rad per unit time
   int turns = 1;
+  double tolerance = 0;  // that the motion was solved to: the one asked for, at least 1e-9
   Only computed;
   MotionSearch search = MotionSearch::none;
   std::string why;  // no motion: in words
-  std::optional<double> last_speed;  // of the last motion on the way
+  // No motion: the last one on the way, its speed and largest |q_i| by rod and mode.
+  std::optional<double> last_speed;
+  std::vector<std::vector<double>> last_max_abs;
   // By continuation from this speed, weakly bent; empty: the linear theory holds at all lower speeds that were looked
   // at, and Newton's method started from its answer.
   std::optional<double> followed_from;
@@ -63,9 +66,13 @@ struct NonlinearResult {
   std::vector<Stage> stages;
 };
 
+// Throws RequestError for what the theory does not know: a [hill] scene, one without elastic links or with shear, and a
+// number of turns that is no power of two.
+void require_nonlinear(const SceneModel& model, int turns);
+
 // The branch followed in speed from the weakly bent motion at low speed, at its first passage of this speed; of T > 1
 // turns the first motion found on a branch that leaves it by period doubling. `model` with a fixed number of modes.
-// Throws RequestError for a [hill] scene, one without elastic links, and modes = "auto".
+// Throws RequestError as require_nonlinear does, and for modes = "auto".
 [[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                                const NonlinearOptions& options = {});
 

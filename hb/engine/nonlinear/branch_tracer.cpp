@@ -53,11 +53,32 @@ Unknowns tangent_of(const BranchPoint& point) {
   return {to_unknowns(point.tangent, point.tangent.num_harmonics()), point.parameter_tangent};
 }
 
+namespace {
+
+// Shares of both points and of both tangents in the cubic.
+struct Hermite {
+  double a, b, slope_a, slope_b;
+  Hermite(double s, double length) {
+    const double x = s / length;
+    b = x * x * (3 - 2 * x);
+    a = 1 - b;
+    slope_a = x * (1 - x) * (1 - x) * length;
+    slope_b = x * x * (x - 1) * length;
+  }
+};
+
+}  // namespace
+
 Unknowns between(const BranchPoint& a, const BranchPoint& b, double s) {
-  const double length = b.arc - a.arc, x = s / length;
-  const double to_b = x * x * (3 - 2 * x), slope_a = x * (1 - x) * (1 - x) * length, slope_b = x * x * (x - 1) * length;
-  const Unknowns values = combination(1 - to_b, place_of(a), to_b, place_of(b));
-  return combination(1, values, 1, combination(slope_a, tangent_of(a), slope_b, tangent_of(b)));
+  const Hermite share(s, b.arc - a.arc);
+  return combination(1, combination(share.a, place_of(a), share.b, place_of(b)), 1,
+                     combination(share.slope_a, tangent_of(a), share.slope_b, tangent_of(b)));
+}
+
+double parameter_between(const BranchPoint& a, const BranchPoint& b, double s) {
+  const Hermite share(s, b.arc - a.arc);
+  return share.a * a.motion.parameter + share.b * b.motion.parameter + share.slope_a * a.parameter_tangent +
+         share.slope_b * b.parameter_tangent;
 }
 
 BranchTracer::BranchTracer(const NonlinearSystem& system, const ContinuationOptions& options)

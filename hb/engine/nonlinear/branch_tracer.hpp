@@ -30,6 +30,7 @@ struct Metric {
 
 // Cubic through two points with their tangents, at arc length s behind the first.
 [[nodiscard]] Unknowns between(const BranchPoint& a, const BranchPoint& b, double s);
+[[nodiscard]] double parameter_between(const BranchPoint& a, const BranchPoint& b, double s);
 
 struct Trace {
   CorrectionStatus status = CorrectionStatus::no_convergence;

@@ -54,6 +54,7 @@ class Follower {
     Trace first = hold_parameter ? tracer_.trace_at_parameter(start, direction, options_.stability)
                                  : tracer_.trace(start, direction, false, options_.stability);
     if (first.status != CorrectionStatus::converged) return ended(end_of(first));
+    first.point.stop = hold_parameter && std::ranges::count(options_.stops, start.p) > 0;
     branch_.points.push_back(std::move(first.point));
     double step = options_.first_step;
     while (true) {
@@ -66,6 +67,7 @@ class Follower {
       BranchPoint point = std::move(next->point);
       before_last_ = last;
       const bool outside = !(point.motion.parameter >= options_.low && point.motion.parameter <= options_.high);
+      if (joins(last, point)) return ended(BranchEnd::joined);
       const bool closed = comes_back(last, point);
       search(last, point);
       add_stops(last, point, outside);
@@ -202,7 +204,7 @@ class Follower {
     double before = a.motion.parameter;
     for (int i = 1; i <= pieces; ++i) {
       const double s = length * i / pieces;
-      const double p = i == pieces ? b.motion.parameter : between(a, b, s).p;
+      const double p = i == pieces ? b.motion.parameter : nonlinear::parameter_between(a, b, s);
       for (const double stop : wanted)
         if ((before < stop) != (p < stop) && stop != before && stop != b.motion.parameter) {
           const double share = (stop - before) / (p - before);
@@ -224,6 +226,18 @@ class Follower {
       branch_.points.push_back(std::move(trace.point));
       if (outside && p == wanted.back()) return;
     }
+  }
+
+  // Whether what sets the motion apart from one of half as many turns, its odd harmonics, passes zero.
+  bool joins(const BranchPoint& a, const BranchPoint& b) const {
+    if (branch_.turns % 2 != 0) return false;
+    const Eigen::MatrixXcd &c = a.motion.q.c, &d = b.motion.q.c;
+    double product = 0, size = 0;
+    for (Index k = 1; k < std::min(c.cols(), d.cols()); k += 2) {
+      product += c.col(k).dot(d.col(k)).real();
+      size += d.col(k).squaredNorm();
+    }
+    return product < 0 && size > 0;
   }
 
   // Whether the start lies on the way from a to b, in the same direction.
@@ -303,6 +317,8 @@ const char* to_string(BranchEnd end) {
       return "end of the range";
     case BranchEnd::closed:
       return "closed";
+    case BranchEnd::joined:
+      return "a motion of half as many turns";
     case BranchEnd::no_residual:
       return "the equations do not exist beyond";
     case BranchEnd::no_convergence:

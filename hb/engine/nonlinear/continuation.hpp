@@ -58,6 +58,7 @@ struct Bifurcation {
 enum class BranchEnd {
   range,  // the parameter left its range
   closed,  // the branch came back to its start
+  joined,  // it came to a motion of half as many turns, where the same motions half a period later begin
   no_residual,  // the equations end here; see failure
   no_convergence,  // steps below least_step
   points,  // max_points reached

@@ -2,7 +2,7 @@
 //     q = sum_k c_k e^{i k sigma},  c_-k = conj(c_k),     R_k = (1/N) sum_j r(sigma_j) e^{-i k sigma_j},   k = 0..H,
 // sigma = tau/T = omega t over T turns, omega = Omega/T, by N samples of the time domain; with the exact derivative of
 // these sums, the block Hill matrix (T. M. Cameron, J. H. Griffin, J. Appl. Mech. 56 (1989) 149,
-// doi:10.1115/1.3176036).
+// https://hal.science/hal-01333697).
 #pragma once
 
 #include <optional>

@@ -1,0 +1,81 @@
+// Branches of the motion without linearisation along the speed or any other number of the scene: through folds, with
+// stability, bifurcations and the speeds at which the motion jumps.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/sweep_analysis.hpp"
+#include "hb/engine/nonlinear/continuation.hpp"
+
+namespace hb {
+
+// Largest |q_i| over the motion, by rod and mode.
+using RodPeaks = std::vector<std::vector<double>>;
+
+struct NonlinearPoint {
+  double x = 0, speed = 0;  // along the axis; rad per unit time
+  bool asked = false;  // at a value of the axis; else a step of the continuation
+  RodPeaks max_abs;
+  double error_bound = 0;  // estimate of max |error of q| / max |q|, where x may differ by x_error
+  double x_error = 0;
+  std::optional<Stability> stability;  // of all rods together
+};
+
+struct NonlinearBranch {
+  int turns = 1;  // T: motions of period 2 pi T/Omega
+  std::vector<NonlinearPoint> points;  // along the arc
+  BranchEnd end = BranchEnd::range;
+  std::string why;  // where the equations end: rod, crank angle
+};
+
+struct NonlinearEvent {
+  BifurcationKind kind = BifurcationKind::fold;
+  double x = 0, speed = 0, error = 0;  // error: estimate, of x
+  int turns = 1;
+  std::size_t branch = 0, after = 0;  // behind this point of this branch
+  RodPeaks max_abs;
+};
+
+// A stable motion ends at a fold when x is moved slowly in one direction.
+struct Jump {
+  double x = 0, speed = 0, error = 0;
+  bool upward = true;  // x rises
+  RodPeaks from;
+  std::vector<RodPeaks> to;  // stable motions of other parts of the branches there, interpolated between their points
+};
+
+// A point of a branch.
+struct BranchPlace {
+  std::size_t branch = 0, point = 0;
+};
+
+struct NonlinearSweep {
+  double tolerance = 0;  // that motions were solved to: the one asked for, at least 1e-8
+  std::vector<std::string> rods;
+  std::vector<bool> reported;
+  std::vector<NonlinearBranch> branches;
+  std::vector<NonlinearEvent> folds, bifurcations;
+  std::vector<Jump> jumps;
+  // At each value of the axis the first passage of the branch followed from its first value; empty: it does not come
+  // there.
+  std::vector<std::optional<BranchPlace>> followed;
+  bool stopped = false;
+  std::vector<std::string> shortfalls;
+  std::vector<Stage> stages;
+};
+
+struct NonlinearSweepOptions {
+  int turns = 1;  // motions of up to this many turns, a power of two: from period doublings
+  std::function<bool()> stop = {};  // true ends the work with what is there
+};
+
+// From the motion at the axis' first value (nonlinear_steady) upward, and from its last value downward where the motion
+// there is another one; with every branch that leaves these at a bifurcation of as many turns, or of twice as many.
+// Without settings().only.stability only folds are found.
+// Throws RequestError for a [hill] scene, one without elastic links, and turns that are no power of two.
+[[nodiscard]] NonlinearSweep nonlinear_sweep(const SweepScene& scene, const NonlinearSweepOptions& options = {});
+
+}  // namespace hb

@@ -1,0 +1,113 @@
+// The motion without linearisation asked for from C++.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hb/hb.hpp"
+
+namespace {
+
+using namespace hb;
+
+const std::string scenes = HB_SOURCE_DIR "/tests/scenes/";
+constexpr Only motion_alone{.steady = true, .stability = false, .reactions = false, .shape = false};
+constexpr Only with_stability{.steady = true, .stability = true, .reactions = false, .shape = false};
+
+Request at(double rpm, int modes, const Only& only) {
+  Request request;
+  request.rpm = rpm;
+  request.modes = modes;
+  request.only = only;
+  return request;
+}
+
+TEST(NonlinearFromCpp, SteadyIsTheReferencesMotion) {
+  const NonlinearSteady found = nonlinear_steady(read_scene(scenes + "six_link.toml"), at(900, 2, motion_alone));
+  ASSERT_EQ(found.search, MotionSearch::found);
+  EXPECT_EQ(found.given.rpm, 900);
+  EXPECT_NEAR(found.rods[0].max_abs[0].value, 1.3632967558, 3e-7 * 1.3632967558);
+  EXPECT_NEAR(found.rods[1].max_abs[0].value, 0.9390832626, 3e-7 * 0.9390832626);
+}
+
+TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
+  const Linkage linkage = std::get<Linkage>(read_scene(scenes + "six_link.toml").model);
+  const SceneFamily by_function({{"J", 45}}, [linkage](const std::vector<double>& values) {
+    Linkage changed = linkage;
+    Body& rod = changed.dyads[0].coupler;
+    rod.elastic->second_moment = values[0];
+    rod.inertia = rod.mass * rod.length * rod.length / 12 + rod.elastic->density * values[0] * rod.length;
+    return changed;
+  }, read_scene(scenes + "six_link.toml").units);
+  SweepRequest request;
+  request.rpm = 700;
+  request.modes = 1;
+  request.only = motion_alone;
+  request.x = along("AB.J", 40, 50, 3);
+  const NonlinearAlong text = nonlinear_sweep(SceneSource(scenes + "six_link.toml"), request);
+  request.x.path = "J";
+  const NonlinearAlong function = nonlinear_sweep(by_function, request);
+  ASSERT_EQ(text.branches.branches.size(), 1u);
+  ASSERT_EQ(function.branches.branches.size(), 1u);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto &a = text.branches.followed[k], &b = function.branches.followed[k];
+    ASSERT_TRUE(a && b) << k;
+    const double p = text.branches.branches[0].points[a->point].max_abs[0][0],
+                 q = function.branches.branches[0].points[b->point].max_abs[0][0];
+    EXPECT_NEAR(p, q, 1e-6 * p);
+  }
+}
+
+TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {
+  int asked = 0;
+  const NonlinearSweepOptions options{.stop = [&] { return ++asked > 200; }};
+  SweepRequest request;
+  request.modes = 2;
+  request.only = with_stability;
+  request.x = along("rpm", 300, 1500, 13);
+  const NonlinearAlong found = nonlinear_sweep(read_scene(scenes + "six_link.toml"), request, options);
+  EXPECT_TRUE(found.branches.stopped);
+  EXPECT_FALSE(found.branches.shortfalls.empty());
+  ASSERT_EQ(found.branches.branches.size(), 1u);
+  EXPECT_EQ(found.branches.branches[0].end, BranchEnd::stopped);
+  EXPECT_FALSE(found.branches.followed.back());
+}
+
+TEST(NonlinearFromCpp, CheckAgreesOverSeveralSpeeds) {
+  CheckRequest request;
+  request.rpms = {600, 1200};
+  request.modes = 1;
+  const NonlinearChecks found = nonlinear_check(read_scene(scenes + "six_link.toml"), request);
+  ASSERT_EQ(found.speeds.size(), 2u);
+  EXPECT_TRUE(found.agrees());
+  for (const NonlinearCheck& check : found.speeds) {
+    ASSERT_EQ(check.rods.size(), 2u);
+    EXPECT_LE(check.rods[0].q.difference, 1e-7);
+    ASSERT_TRUE(check.exponents);
+  }
+}
+
+// A rod of 1 mm^4 folds far below 1500 rpm.
+TEST(NonlinearFromCpp, WhereNoMotionIsFoundItSaysHowFarItCame) {
+  Scene scene = read_scene(scenes + "six_link.toml");
+  std::get<Linkage>(scene.model).dyads[0].coupler.elastic->second_moment = 1;
+  const NonlinearSteady found = nonlinear_steady(scene, at(3000, 1, motion_alone));
+  ASSERT_EQ(found.search, MotionSearch::none);
+  EXPECT_FALSE(found.shortfalls.empty());
+  ASSERT_TRUE(found.last_speed);
+  EXPECT_GT(*found.last_speed, 0);
+  EXPECT_LT(*found.last_speed, 3000 * 3.1416 / 30);
+  EXPECT_GT(found.last_max_abs[0][0], 0);
+  EXPECT_NE(found.why.find("rpm"), std::string::npos) << found.why;
+}
+
+TEST(NonlinearFromCpp, RequestsThatCannotBeMetAreRefused) {
+  const Scene scene = read_scene(scenes + "six_link.toml");
+  EXPECT_THROW((void)nonlinear_steady(read_scene(scenes + "mathieu.toml"), Request{.omega = 1}), RequestError);
+  EXPECT_THROW((void)nonlinear_steady(scene, at(300, 1, motion_alone), {.turns = 3}), RequestError);
+  CheckRequest march;
+  march.rpm = 300;
+  march.march = true;
+  EXPECT_THROW((void)nonlinear_check(scene, march), RequestError);
+}
+
+}  // namespace

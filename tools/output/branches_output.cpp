@@ -1,0 +1,289 @@
+#include "tools/output/branches_output.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tools/output/output_folder.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/sweep_output.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Text = fmt::memory_buffer;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+template <class... Args>
+void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
+}
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+bool is_speed(const SweepScene& scene) { return scene.axis().kind != Axis::Kind::parameter; }
+
+double rpm_at(const SweepScene& scene, double x, double speed) {
+  return scene.axis().kind == Axis::Kind::rpm ? x : rpm_from_speed(speed, scene.scene().units);
+}
+
+// What a fold is called by: its speed in rpm, or the number of the axis.
+double place_of(const SweepScene& scene, double x, double speed) {
+  return is_speed(scene) ? rpm_at(scene, x, speed) : x;
+}
+
+const char* kind_text(BifurcationKind kind) {
+  switch (kind) {
+    case BifurcationKind::fold:
+    case BifurcationKind::branch_point:
+      return "+1";
+    case BifurcationKind::period_doubling:
+      return "-1";
+    case BifurcationKind::neimark_sacker:
+      return "complex";
+  }
+  return "";
+}
+
+template <class Value>
+Json over(const std::vector<NonlinearPoint>& points, const Value& value) {
+  Json array = Json::array();
+  for (const NonlinearPoint& point : points) array.push_back(value(point));
+  return array;
+}
+
+Json branch_json(const SweepScene& scene, const NonlinearSweep& sweep, const NonlinearBranch& branch) {
+  const std::vector<NonlinearPoint>& points = branch.points;
+  Json json;
+  json["period"] = branch.turns;
+  json["x"] = over(points, [](const NonlinearPoint& p) { return Json(p.x); });
+  json["rpm"] = over(points, [&](const NonlinearPoint& p) {
+    return Json(is_speed(scene) ? rpm_at(scene, p.x, p.speed) : scene.fixed_rpm());
+  });
+  json["omega"] = over(points, [](const NonlinearPoint& p) { return Json(p.speed); });
+  json["asked"] = over(points, [](const NonlinearPoint& p) { return Json(p.asked); });
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+    if (sweep.reported[r])
+      json["rods"][sweep.rods[r]]["max_abs"] = over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
+  json["error_bound"] = over(points, [](const NonlinearPoint& p) { return number(p.error_bound); });
+  json["growth_rate"] =
+      over(points, [](const NonlinearPoint& p) { return p.stability ? number(p.stability->growth_rate) : Json(); });
+  json["growth_error"] =
+      over(points, [](const NonlinearPoint& p) { return p.stability ? number(p.stability->growth_error) : Json(); });
+  json["verdict"] = over(points, [](const NonlinearPoint& p) {
+    return p.stability ? Json(to_string(p.stability->verdict)) : Json();
+  });
+  json["end"] = to_string(branch.end);
+  if (!branch.why.empty()) json["why"] = branch.why;
+  return json;
+}
+
+Json event_json(const SweepScene& scene, const NonlinearEvent& event) {
+  Json json;
+  if (is_speed(scene)) json["rpm"] = rpm_at(scene, event.x, event.speed);
+  json["x"] = event.x;
+  json["omega"] = event.speed;
+  json["kind"] = kind_text(event.kind);
+  json["name"] = to_string(event.kind);
+  json["error"] = number(event.error);
+  json["period"] = event.turns;
+  json["branch"] = event.branch;
+  return json;
+}
+
+Json peaks_json(const NonlinearSweep& sweep, const RodPeaks& peaks) {
+  Json rods = Json::object();
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+    if (sweep.reported[r]) rods[sweep.rods[r]] = {{"max_abs", peaks[r]}};
+  return rods;
+}
+
+Json jump_json(const SweepScene& scene, const NonlinearSweep& sweep, const Jump& jump) {
+  Json json;
+  if (is_speed(scene)) json["rpm"] = rpm_at(scene, jump.x, jump.speed);
+  json["x"] = jump.x;
+  json["omega"] = jump.speed;
+  json["direction"] = jump.upward ? "upward" : "downward";
+  json["error"] = number(jump.error);
+  json["from"] = peaks_json(sweep, jump.from);
+  json["to"] = Json::array();
+  for (const RodPeaks& peaks : jump.to) json["to"].push_back(peaks_json(sweep, peaks));
+  return json;
+}
+
+// The motion followed from the first value, at each value of the axis: where its branch passes first.
+void add_followed(Json& json, const SweepScene& scene, const NonlinearSweep& sweep) {
+  const bool stability = scene.settings().only.stability;
+  if (json.contains("verdict")) {
+    json["linear_verdict"] = std::move(json["verdict"]);
+    json.erase("verdict");
+  }
+  Json& system = json["system"] = Json::object();
+  for (const auto& place : sweep.followed) {
+    const NonlinearPoint* point = place ? &sweep.branches[place->branch].points[place->point] : nullptr;
+    system["branch"].push_back(place ? Json(place->branch) : Json());
+    system["point"].push_back(place ? Json(place->point) : Json());
+    system["error_bound"].push_back(point ? number(point->error_bound) : Json());
+    if (!stability) continue;
+    const bool known = point && point->stability;
+    system["growth_rate"].push_back(known ? number(point->stability->growth_rate) : Json());
+    system["growth_error"].push_back(known ? number(point->stability->growth_error) : Json());
+    system["verdict"].push_back(known ? Json(to_string(point->stability->verdict)) : Json());
+  }
+  if (stability) json["verdict"] = system["verdict"];
+}
+
+std::string peaks_text(const NonlinearSweep& sweep, const RodPeaks& peaks, const OutputUnits& units) {
+  std::string text;
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+    if (sweep.reported[r])
+      text += fmt::format("{}{} {:.4g}", text.empty() ? "" : ", ", sweep.rods[r], peaks[r].front());
+  return text + " " + units.length;
+}
+
+std::string located(double x, double error) {
+  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : 12;
+  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, 3, 12));
+}
+
+}  // namespace
+
+void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& sweep) {
+  json["theory"] = "nonlinear";
+  json["motion_tolerance"] = sweep.tolerance;
+  if (!sweep.shortfalls.empty()) {
+    json["status"] = "tolerance not reached";
+    for (const std::string& sentence : sweep.shortfalls) json["notes"].push_back(sentence);
+  }
+  Json& branches = json["branches"] = Json::array();
+  for (const NonlinearBranch& branch : sweep.branches) branches.push_back(branch_json(scene, sweep, branch));
+  Json &folds = json["folds"] = Json::array(), &details = json["fold_details"] = Json::array();
+  for (const NonlinearEvent& fold : sweep.folds) {
+    folds.push_back(place_of(scene, fold.x, fold.speed));
+    details.push_back(event_json(scene, fold));
+  }
+  Json& bifurcations = json["bifurcations"] = Json::array();
+  for (const NonlinearEvent& event : sweep.bifurcations) bifurcations.push_back(event_json(scene, event));
+  Json& jumps = json["jumps"] = Json::array();
+  for (const Jump& jump : sweep.jumps) jumps.push_back(jump_json(scene, sweep, jump));
+  json["stopped"] = sweep.stopped;
+  add_followed(json, scene, sweep);
+}
+
+std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep) {
+  const OutputUnits units = output_units(scene.scene());
+  const std::string path = scene.axis().path;
+  Text text;
+  add(text, "\nMotion without linearisation, all rods together\n");
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b) {
+    const NonlinearBranch& branch = sweep.branches[b];
+    add(text, "\nbranch {}: {} turn{}, {} points, ends: {}{}\n", b + 1, branch.turns, branch.turns == 1 ? "" : "s",
+        branch.points.size(), to_string(branch.end), branch.why.empty() ? "" : " (" + branch.why + ")");
+    add(text, "  {:>14}", path);
+    for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+      if (sweep.reported[r]) add(text, "  {:>20}", sweep.rods[r] + " max |q_1|" + bracketed(units.response));
+    add(text, "  {:>16}  {}\n", "growth" + bracketed(units.rate), "verdict");
+    constexpr std::size_t rows = 24;
+    const std::size_t every = (branch.points.size() + rows - 1) / rows;
+    for (std::size_t k = 0; k < branch.points.size(); k += every) {
+      const NonlinearPoint& point = branch.points[k];
+      add(text, "  {:>14.8g}", point.x);
+      for (std::size_t r = 0; r < sweep.rods.size(); ++r)
+        if (sweep.reported[r]) add(text, "  {:>20.8g}", point.max_abs[r].front());
+      if (point.stability)
+        add(text, "  {:>16.6g}  {}", point.stability->growth_rate,
+            point.stability->verdict == Verdict::unstable ? "UNSTABLE" : to_string(point.stability->verdict));
+      add(text, "\n");
+    }
+    if (every > 1) add(text, "  (every {}th point; --json and --out have all)\n", every);
+  }
+  add(text, "\n{}\n", sweep.folds.empty() ? "no fold" : "folds: the branch turns back");
+  for (const NonlinearEvent& fold : sweep.folds)
+    add(text, "  branch {}  {} = {}\n", fold.branch + 1, path, located(fold.x, fold.error));
+  if (!sweep.jumps.empty())
+    add(text, "jumps: a stable motion ends when {} is changed slowly\n  {:<9}  {:>16}  {:<32}  {}\n", path, "direction",
+        path, "from max |q_1|", "to a stable motion with about");
+  for (const Jump& jump : sweep.jumps) {
+    std::string to;
+    for (const RodPeaks& peaks : jump.to) to += (to.empty() ? "" : "; or ") + peaks_text(sweep, peaks, units);
+    add(text, "  {:<9}  {:>16}  {:<32}  {}\n", jump.upward ? "upward" : "downward", located(jump.x, jump.error),
+        peaks_text(sweep, jump.from, units), to.empty() ? "none found" : to);
+  }
+  add(text, "{}\n", sweep.bifurcations.empty() ? "no other bifurcation" : "other bifurcations");
+  for (const NonlinearEvent& event : sweep.bifurcations)
+    add(text, "  branch {}  {} = {}  {} ({})\n", event.branch + 1, path, located(event.x, event.error),
+        to_string(event.kind), kind_text(event.kind));
+  for (const std::string& sentence : sweep.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
+  return fmt::to_string(text);
+}
+
+int branch_verdict_column(const NonlinearSweep& sweep, std::size_t rod) {
+  const std::size_t modes = sweep.branches.empty() ? 0 : sweep.branches.front().points.front().max_abs[rod].size();
+  return branch_first_peak_column + static_cast<int>(modes) + 3;
+}
+
+CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::size_t r) {
+  const OutputUnits units = output_units(scene.scene());
+  const int verdict = branch_verdict_column(sweep, r);
+  const int modes = verdict - 3 - branch_first_peak_column;
+  CsvFile file;
+  file.name = file_name("branches_" + sweep.rods[r]) + ".csv";
+  file.comment = {scene_name(scene.scene()) + ": " + sweep.rods[r] + " along " + scene.axis().path +
+                      ", motion without linearisation",
+                  "points of each branch along its arc; growth rate and verdict of all rods together",
+                  verdict_numbers};
+  file.columns = {"branch", "turns", axis_label(scene), "asked for"};
+  for (int i = 1; i <= modes; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));
+  file.columns.insert(file.columns.end(), {"error bound", "growth rate" + bracketed(units.rate),
+                                           "growth error" + bracketed(units.rate), "verdict"});
+  std::size_t count = 0;
+  for (const NonlinearBranch& branch : sweep.branches) count += branch.points.size();
+  file.rows.setConstant(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(file.columns.size()), nan);
+  Eigen::Index line = 0;
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    for (const NonlinearPoint& point : sweep.branches[b].points) {
+      auto row = file.rows.row(line++);
+      Eigen::Index column = 0;
+      row(column++) = static_cast<double>(b + 1);
+      row(column++) = sweep.branches[b].turns;
+      row(column++) = point.x;
+      row(column++) = point.asked ? 1 : 0;
+      for (const double value : point.max_abs[r]) row(column++) = value;
+      row(column++) = point.error_bound;
+      if (!point.stability) continue;
+      row(column++) = point.stability->growth_rate;
+      row(column++) = point.stability->growth_error;
+      row(column++) = verdict_number(point.stability->verdict);
+    }
+  return file;
+}
+
+CsvFile bifurcations_csv(const SweepScene& scene, const NonlinearSweep& sweep) {
+  CsvFile file;
+  file.name = "bifurcations.csv";
+  file.comment = {scene_name(scene.scene()) + ": folds, bifurcations and jumps along " + scene.axis().path,
+                  "kind: 0 fold, 1 branch point (+1), 2 period doubling (-1), 3 Neimark-Sacker (complex pair); jump: 1 a "
+                  "stable motion ends there upward, -1 downward, 0 no jump"};
+  file.columns = {"branch", axis_label(scene), "error", "kind", "jump"};
+  std::vector<NonlinearEvent> all = sweep.folds;
+  all.insert(all.end(), sweep.bifurcations.begin(), sweep.bifurcations.end());
+  file.rows.resize(static_cast<Eigen::Index>(all.size()), 5);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    double jumps = 0;
+    for (const Jump& jump : sweep.jumps)
+      if (all[k].kind == BifurcationKind::fold && jump.x == all[k].x) jumps = jump.upward ? 1 : -1;
+    file.rows.row(static_cast<Eigen::Index>(k)) << static_cast<double>(all[k].branch + 1), all[k].x, all[k].error,
+        static_cast<double>(all[k].kind), jumps;
+  }
+  return file;
+}
+
+}  // namespace hb::tools

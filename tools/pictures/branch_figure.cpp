@@ -1,0 +1,59 @@
+#include "tools/pictures/branch_figure.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tools/output/branches_output.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+
+Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const NonlinearSweep& sweep, std::size_t r,
+                     const CsvFile& linear_csv, const CsvFile& branches) {
+  Figure figure;
+  figure.name = file_name("branches_" + sweep.rods[r]);
+  std::string& text = figure.commands;
+  const std::vector<double>& values = scene.axis().values;
+  double top = 0;
+  for (const NonlinearBranch& branch : sweep.branches)
+    for (const NonlinearPoint& point : branch.points) top = std::max(top, point.max_abs[r].front());
+  text += "set title '{/:Bold " + literal(scene_name(scene.scene()) + ", " + sweep.rods[r]) +
+          "}'.\"\\n\".'motion without linearisation: solid stable, dashed unstable; grey: linear theory'\n";
+  text += fmt::format(
+      "set xrange [{}:{}]\nset xlabel {}\nset ylabel 'largest |q_1| [{}]'\nset yrange [0:{}]\n"
+      "set key outside right top Left reverse samplen 2\nplot ",
+      values.front(), values.back(), quoted(axis_label(scene)), literal(output_units(scene.scene()).length),
+      top > 0 ? 1.15 * top : 1);
+  const int peak = branch_first_peak_column, verdict = branch_verdict_column(sweep, r);
+  if (const int column = sweep_columns(scene, linear, r).first_peak; column > 0)
+    text += fmt::format("'{}' using 1:{} with lines linecolor rgb '#aaaaaa' linewidth 2 title 'linear', ",
+                        linear_csv.name, column);
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b) {
+    const int turns = sweep.branches[b].turns;
+    const std::string of_branch = fmt::format("column({}) == {}", branch_column, b + 1);
+    text += fmt::format(
+        "'{0}' using ({1} ? column({2}) : NaN):({1} && column({3}) >= 0 ? column({4}) : NaN) with lines linetype {5} "
+        "dashtype 2 linewidth 1.6 notitle, '{0}' using ({1} ? column({2}) : NaN):({1} && column({3}) < 0 ? column({4}) "
+        ": NaN) with lines linetype {5} linewidth 2 title '{6}'{7}",
+        branches.name, of_branch, branch_x_column, verdict, peak, b + 1,
+        turns == 1 ? fmt::format("branch {}", b + 1) : fmt::format("branch {}, {} turns", b + 1, turns),
+        b + 1 < sweep.branches.size() ? ", " : "");
+  }
+  const auto marks = [&](const std::vector<NonlinearEvent>& events, const char* colour) {
+    std::string labels;
+    for (const NonlinearEvent& event : events)
+      labels += fmt::format("set label '' at {}, {} point pointtype 7 pointsize 0.8 linecolor rgb '{}' front\n", event.x,
+                            event.max_abs[r].front(), colour);
+    return labels;
+  };
+  text.insert(text.rfind("plot "), marks(sweep.folds, "#000000") + marks(sweep.bifurcations, "#d55e00"));
+  text +=
+      "\nunset label\nset xrange [*:*]\nset yrange [*:*]\nunset title\nunset xlabel\nunset ylabel\nset key default\n";
+  return figure;
+}
+
+}  // namespace hb::tools
