@@ -36,6 +36,11 @@ def sweep(four_bar):
             {"x": "hill.damping.0.0=0.05:0.2:x4", "omega": 2.1},
             ["--x", "hill.damping.0.0=0.05:0.2:x4", "--omega", "2.1"],
         ),
+        (
+            "four_bar.toml",
+            {"rpm": (200, 400, 100), "modes": 1, "theory": "nonlinear"},
+            ["--rpm", "200:400:100", "--modes", "1", "--theory", "nonlinear"],
+        ),
         ("slider_crank.toml", {"rpm": (1000, 3000, "x3"), "modes": 2}, ["--rpm", "1000:3000:x3", "--modes", "2"]),
     ],
 )
@@ -80,6 +85,16 @@ def test_a_sweeps_arrays_hold_the_documents_numbers():
     assert sweep.verdict.tolist() == document["verdict"]
     assert not rod.max_abs.flags.writeable
     assert np.isnan(rod.theory_error).all()
+
+
+def test_branches_stand_beside_the_linear_sweep():
+    sweep = hb.load(FOUR_BAR).sweep(rpm=(200, 400, 100), modes=1, theory="nonlinear")
+    document = sweep.to_dict()
+    assert sweep.branches == document["branches"] and len(sweep.branches) >= 1
+    assert sweep.folds.tolist() == document["folds"] and sweep.bifurcations == document["bifurcations"]
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    assert sweep.plot("branches").get_title(loc="left")
+    pyplot.close("all")
 
 
 def test_places_without_a_linkage_are_nan():
@@ -134,6 +149,11 @@ def without_seconds(document):
         ("slider_crank.toml", {"rpm": 1500, "modes": 1, "integrator": "adams"}, ["--rpm", "1500", "--modes", "1", "--integrator", "adams"]),
         ("mathieu.toml", {"omega": (1.0, 2.0, 0.5), "integrator": "bdf"}, ["--omega", "1:2:0.5", "--integrator", "bdf"]),
         (
+            "four_bar.toml",
+            {"rpm": 200, "modes": 1, "theory": "nonlinear", "integrator": "adams"},
+            ["--rpm", "200", "--modes", "1", "--theory", "nonlinear", "--integrator", "adams"],
+        ),
+        (
             "mathieu.toml",
             {"omega": 2.1, "integrator": "collocation"},
             ["--omega", "2.1", "--integrator", "collocation"],
@@ -173,6 +193,8 @@ def test_a_check_is_the_commands(scene, arguments, flags):
         ({"rpm": (300, 900, 50), "threads": "many"}, "threads"),
         ({"rpm": (300, 900, 50), "rods": "none"}, "rods"),
         ({"rpm": (300, 900, 50), "progress": 3}, "progress"),
+        ({"rpm": (300, 900, 50), "theory": "quadratic"}, "theory"),
+        ({"rpm": (300, 900, 50), "period": 2}, "period"),
     ],
 )
 def test_a_sweep_refuses_by_name(six_link, arguments, field):

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "tools/command/command.hpp"
-#include "tools/command/theory_flags.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/theory_flags.hpp"
 
 namespace hb::tools {
 namespace {
@@ -285,7 +285,8 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
         fmt::format("--only: found \"{}\", allowed: not with tune, where goal and conditions say what is "
                     "computed",
                     flags.only));
-  require_linear(flags.theory, "designs are compared by the linear theory; look at the one found with hb sweep --theory nonlinear");
+  require_linear(flags.theory,
+                 "designs are compared by the linear theory; look at the one found with hb sweep --theory nonlinear");
   // Numbers of --set become part of the scene that is tuned.
   const SceneSource& as_written = input.source;
   const std::vector<Override> set = overrides(flags);
@@ -294,16 +295,15 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
     given = as_written.with(set);
   } catch (const ObstructedLinkage&) {  // an infeasible start
   }
-  TuneTask task{
-      .source = set.empty() ? as_written : SceneSource(as_written.text_with(set), input.name, input.folder),
-      .variables = {},
-      .goal = flags.maximise.empty() ? parse_goal(flags.minimise) : parse_largest_goal(flags.maximise),
-      .keeps = {},
-      .span = {},
-      .in_rpm = true,
-      .heights = {},
-      .settings = {},
-      .options = design_options(flags, flags.vary.size())};
+  TuneTask task{.source = set.empty() ? as_written : SceneSource(as_written.text_with(set), input.name, input.folder),
+                .variables = {},
+                .goal = flags.maximise.empty() ? parse_goal(flags.minimise) : parse_largest_goal(flags.maximise),
+                .keeps = {},
+                .span = {},
+                .in_rpm = true,
+                .heights = {},
+                .settings = {},
+                .options = design_options(flags, flags.vary.size())};
   for (const std::string& text : flags.keep) task.keeps.push_back(parse_keep(text));
   for (const std::string& text : flags.height) {
     const NamedRange height = named_range("--height", text);

@@ -28,8 +28,8 @@ namespace {
 std::function<void(int, bool, double)> progress_on_terminal(const TuneFlags& flags) {
   const double sign = flags.maximise.empty() ? 1 : -1;
   return [sign](int evaluations, bool feasible, double goal) {
-    fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations,
-               feasible ? "" : "(conditions not met) ", sign * goal);
+    fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations, feasible ? "" : "(conditions not met) ",
+               sign * goal);
   };
 }
 

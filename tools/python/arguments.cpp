@@ -88,7 +88,8 @@ std::string shown(py::handle object) {
 
 double number(const std::string& field, py::handle object) {
   if (PyFloat_CheckExact(object.ptr())) return PyFloat_AS_DOUBLE(object.ptr());
-  if (!PyBool_Check(object.ptr()) && (PyLong_Check(object.ptr()) || PyObject_HasAttrString(object.ptr(), "__float__"))) {
+  if (!PyBool_Check(object.ptr()) &&
+      (PyLong_Check(object.ptr()) || PyObject_HasAttrString(object.ptr(), "__float__"))) {
     const double value = PyFloat_AsDouble(object.ptr());
     if (PyErr_Occurred() == nullptr) return value;
     PyErr_Clear();
@@ -187,8 +188,8 @@ Request read_request(const py::dict& arguments) {
                                                   {"direct", SteadyMethod::direct},
                                                   {"iterative", SteadyMethod::iterative}});
   if (const auto bound = given(arguments, "bound"))
-    request.bound = choice<SteadyBound>("bound", *bound,
-                                        {{"estimated", SteadyBound::estimated}, {"proved", SteadyBound::proved}});
+    request.bound =
+        choice<SteadyBound>("bound", *bound, {{"estimated", SteadyBound::estimated}, {"proved", SteadyBound::proved}});
   if (const auto method = given(arguments, "stability_method"))
     request.stability_method = choice<StabilityMethod>("stability_method", *method,
                                                        {{"automatic", StabilityMethod::automatic},
@@ -198,6 +199,16 @@ Request read_request(const py::dict& arguments) {
                                                         {"determinant", StabilityMethod::determinant},
                                                         {"bound", StabilityMethod::bound}});
   return request;
+}
+
+std::optional<int> read_turns(const py::dict& arguments) {
+  constexpr int most = 64;
+  const auto theory = given(arguments, "theory"), period = given(arguments, "period");
+  const std::string name = theory ? text("theory", *theory) : "linear";
+  if (name == "nonlinear") return period ? integer("period", *period, 1, most) : 1;
+  if (name != "linear") throw RequestError("theory", shown(*theory), "linear, nonlinear");
+  if (period) throw RequestError("period", shown(*period) + " with the linear theory", "with theory=\"nonlinear\"");
+  return std::nullopt;
 }
 
 int read_threads(const py::dict& arguments) {
@@ -223,8 +234,7 @@ std::vector<double> range_values(const std::string& field, py::handle object, Th
                                                : "a tuple (from, to, count), or an array of values";
     if (parts.size() != 3) throw RequestError(field, shown(object), allowed);
     const double from = number(field, parts[0]), to = number(field, parts[1]);
-    if (is_text(parts[2]))
-      return range_by_count(field, fmt::format("{}:{}:{}", from, to, text(field, parts[2])));
+    if (is_text(parts[2])) return range_by_count(field, fmt::format("{}:{}:{}", from, to, text(field, parts[2])));
     if (!(std::isfinite(from) && std::isfinite(to))) throw RequestError(field, shown(object), "finite numbers");
     if (third == Third::count) {
       const int count = integer(field, parts[2], 2, static_cast<int>(max_range_points));

@@ -2,10 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hb/analysis/analyses.hpp"
+#include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
 #include "tools/output/check_json.hpp"
 #include "tools/output/check_report.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/nonlinear_check_output.hpp"
 #include "tools/python/arguments.hpp"
 #include "tools/python/python_work.hpp"
 #include "tools/python/scene.hpp"
@@ -14,11 +15,20 @@
 namespace hb::python {
 namespace {
 
+// By one of the two theories.
+struct CheckCore {
+  std::optional<Check> linear;
+  std::optional<NonlinearChecks> nonlinear;
+};
+
 Integrator read_integrator(py::handle object) {
   const std::string name = text("integrator", object);
-  for (const Integrator integrator :
-       {Integrator::automatic, Integrator::adams, Integrator::bdf, Integrator::collocation})
-    if (name == to_string(integrator)) return integrator;
+  const std::vector<std::pair<const char*, Integrator>> known = {{"automatic", Integrator::automatic},
+                                                                 {"adams", Integrator::adams},
+                                                                 {"bdf", Integrator::bdf},
+                                                                 {"collocation", Integrator::collocation}};
+  for (const auto& [word, integrator] : known)
+    if (name == word) return integrator;
   throw RequestError("integrator", "\"" + name + "\"", "automatic, adams, bdf, collocation");
 }
 
@@ -32,7 +42,7 @@ std::vector<double> several(const char* field, const std::optional<py::object>& 
   return range_values(field, py::make_tuple(scene->from, scene->to, scene->step), Third::step);
 }
 
-std::shared_ptr<Check> checked(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+std::shared_ptr<CheckCore> checked(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
   py::dict rest = arguments.attr("copy")();
   const auto rpm = given(arguments, "rpm"), omega = given(arguments, "omega");
   if (rpm && omega) throw RequestError("omega", shown(*omega) + " beside rpm = " + shown(*rpm), "one of the two");
@@ -48,29 +58,58 @@ std::shared_ptr<Check> checked(const SceneCore& core, const py::dict& arguments,
   if (const auto integrator = given(arguments, "integrator")) request.integrator = read_integrator(*integrator);
   if (const auto limit = given(arguments, "case_limit")) request.case_limit = number("case_limit", *limit);
   if (const auto march = given(arguments, "march")) request.march = py::bool_(*march);
+  const std::optional<int> turns = read_turns(arguments);
   PythonWork work(read_threads(arguments), progress);
-  return work.run([&] { return std::make_shared<Check>(check(core.scene, request, work)); });
+  return work.run([&] {
+    auto result = std::make_shared<CheckCore>();
+    if (!turns) {
+      result->linear = check(core.scene, request, work);
+      return result;
+    }
+    NonlinearOptions options;
+    options.turns = *turns;
+    options.stop = [&work] { return work.stopped(); };
+    result->nonlinear = nonlinear_check(core.scene, request, options, work);
+    if (work.stopped()) throw Stopped();
+    return result;
+  });
+}
+
+std::string json(const CheckCore& core) {
+  if (core.linear)
+    return tools::json_text(tools::check_json(*core.linear->model, core.linear->speeds, core.linear->settings));
+  const NonlinearChecks& found = *core.nonlinear;
+  return tools::json_text(tools::nonlinear_check_json(*found.model, found.speeds, found.settings));
+}
+
+std::string words(const CheckCore& core) {
+  if (core.linear) return tools::check_report(*core.linear->model, core.linear->speeds, core.linear->settings, false);
+  const NonlinearChecks& found = *core.nonlinear;
+  return tools::nonlinear_check_report(*found.model, found.speeds, found.settings);
+}
+
+template <class Checks>
+py::list shortfalls(const Checks& speeds) {
+  py::list sentences;
+  for (const auto& speed : speeds)
+    for (const std::string& sentence : speed.shortfalls) sentences.append(decoded(sentence));
+  return sentences;
 }
 
 }  // namespace
 
 void add_check(py::module_& module) {
-  py::class_<Check, std::shared_ptr<Check>>(module, "Check")
-      .def_property_readonly("agrees", &Check::agrees)
+  py::class_<CheckCore, std::shared_ptr<CheckCore>>(module, "Check")
+      .def_property_readonly(
+          "agrees",
+          [](const CheckCore& core) { return core.linear ? core.linear->agrees() : core.nonlinear->agrees(); })
       .def_property_readonly("shortfalls",
-                             [](const Check& check) {
-                               py::list sentences;
-                               for (const SpeedCheck& speed : check.speeds)
-                                 for (const std::string& sentence : speed.shortfalls) sentences.append(decoded(sentence));
-                               return sentences;
+                             [](const CheckCore& core) {
+                               return core.linear ? shortfalls(core.linear->speeds)
+                                                  : shortfalls(core.nonlinear->speeds);
                              })
-      .def("json",
-           [](const Check& check) {
-             return decoded(tools::json_text(tools::check_json(*check.model, check.speeds, check.settings)));
-           })
-      .def("words", [](const Check& check) {
-        return decoded(tools::check_report(*check.model, check.speeds, check.settings, false));
-      });
+      .def("json", [](const CheckCore& core) { return decoded(json(core)); })
+      .def("words", [](const CheckCore& core) { return decoded(words(core)); });
   module.def("check", &checked, py::arg("scene"), py::arg("arguments"), py::arg("progress"));
 }
 

@@ -28,7 +28,8 @@ Refusal refusal(const std::string& text) {
   parts.found = rest.substr(0, allowed);
   if (allowed != std::string::npos) parts.allowed = rest.substr(allowed + 7);
   if (parts.found.starts_with("found ")) parts.found.erase(0, 6);
-  while (!parts.found.empty() && std::string(" ,;").find(parts.found.back()) != std::string::npos) parts.found.pop_back();
+  while (!parts.found.empty() && std::string(" ,;").find(parts.found.back()) != std::string::npos)
+    parts.found.pop_back();
   while (!parts.allowed.empty() && std::string(" :").find(parts.allowed.front()) != std::string::npos)
     parts.allowed.erase(0, 1);
   return parts;
@@ -65,9 +66,8 @@ void add_errors(py::module_&) {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const SceneError& error) {
       const py::object type = exception("SceneError");
-      set_error(type, type(py::reinterpret_steal<py::object>(
-                          PyUnicode_DecodeUTF8(error.what(), static_cast<Py_ssize_t>(std::string(error.what()).size()),
-                                               "replace"))));
+      set_error(type, type(py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+                          error.what(), static_cast<Py_ssize_t>(std::string(error.what()).size()), "replace"))));
     } catch (const RequestError& error) {
       set_request_error(error.what(), error.field, error.found, error.allowed);
     } catch (const tools::UsageError& error) {

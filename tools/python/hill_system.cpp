@@ -134,7 +134,8 @@ StabilityView analysed(const HillCore& core, const py::dict& arguments) {
   StabilityOptions options;
   options.method = request.stability_method;
   // As hb steady takes it: the asked tolerance loosens, it does not tighten.
-  if (request.tolerance) options.tolerance = std::max(options.tolerance, 10 * settings_of(request, core.scene).tolerance);
+  if (request.tolerance)
+    options.tolerance = std::max(options.tolerance, 10 * settings_of(request, core.scene).tolerance);
   auto found = std::make_unique<Stability>();
   {
     const py::gil_scoped_release release;
@@ -151,8 +152,8 @@ void add_hill_system(py::module_& module) {
   py::class_<HillCore, std::shared_ptr<HillCore>>(module, "HillSystem")
       .def(py::init(&hill_core))
       .def_property_readonly("size", [](const HillCore& core) { return core.system.num_modes(); })
-      .def_property_readonly("mass",
-                             [](const py::object& self) { return view(self.cast<const HillCore&>().system.mass, self); })
+      .def_property_readonly(
+          "mass", [](const py::object& self) { return view(self.cast<const HillCore&>().system.mass, self); })
       .def_property_readonly(
           "damping", [](const py::object& self) { return view(self.cast<const HillCore&>().system.damping, self); })
       .def("stiffness_series",

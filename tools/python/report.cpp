@@ -37,8 +37,9 @@ void steady_report(const SceneCore& core, const Answer& answer, const std::strin
 }
 
 // A sweep, and beside it a map where one is given.
-void sweep_report(const SceneCore& core, const Sweep& sweep, const Map* map, const std::string& file,
+void sweep_report(const SceneCore& core, const SweepCore& swept, const Map* map, const std::string& file,
                   const std::string& call, bool pictures, int threads) {
+  const Sweep& sweep = swept.linear;
   PythonWork work(threads, py::none());
   write_page(file, work, [&] {
     ReportData data(sweep.scene->scene());

@@ -24,9 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-SceneCore loaded(const std::string& file) {
-  return {read_text_file(file), file, fs::path(file).parent_path()};
-}
+SceneCore loaded(const std::string& file) { return {read_text_file(file), file, fs::path(file).parent_path()}; }
 
 SceneCore changed(const SceneCore& core, const std::vector<std::pair<std::string, std::string>>& values) {
   std::vector<Override> overrides;

@@ -34,8 +34,8 @@ struct Angles {
 Angles angles(const Answer& answer, const py::object& given_angles) {
   const std::vector<double> list = numbers("angle", given_angles);
   const double unit = angle_unit(answer.model->scene.units) / answer.turns();
-  Angles result{Eigen::VectorXd(static_cast<Eigen::Index>(list.size())), py::isinstance<py::float_>(given_angles) ||
-                                                                             py::isinstance<py::int_>(given_angles)};
+  Angles result{Eigen::VectorXd(static_cast<Eigen::Index>(list.size())),
+                py::isinstance<py::float_>(given_angles) || py::isinstance<py::int_>(given_angles)};
   for (std::size_t k = 0; k < list.size(); ++k) {
     if (!std::isfinite(list[k])) throw RequestError("angle", fmt::format("{}", list[k]), "finite numbers");
     result.phase(static_cast<Eigen::Index>(k)) = unit * list[k];
@@ -74,8 +74,7 @@ const FourierSeries& solved_q(const RodView& rod) {
 py::object field_at(const RodView& rod, const py::object& places, const py::object& given_angles, bool moment) {
   const Answer& answer = *rod.answer;
   const Linkage* linkage = answer.model->linkage();
-  if (linkage == nullptr)
-    throw RequestError("x", "a [hill] scene", "an elastic link: a [hill] system has no shape");
+  if (linkage == nullptr) throw RequestError("x", "a [hill] scene", "an elastic link: a [hill] system has no shape");
   const FourierSeries& q = solved_q(rod);
   const RodResult& result = rod.result();
   const RodModel& model = answer.model->rods[rod.rod];
@@ -134,22 +133,19 @@ std::shared_ptr<Answer> linear(const SceneCore& core, const py::dict& arguments)
   return answer;
 }
 
-std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& arguments) {
+std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& arguments, int turns) {
   const Request request = read_request(arguments);
-  NonlinearOptions options;
-  if (const auto period = given(arguments, "period")) options.turns = integer("period", *period, 1, 64);
   PythonWork work(1, py::none());
+  NonlinearOptions options;
+  options.turns = turns;
   options.stop = [&work] { return work.stopped(); };
   return work.run([&] {
-    auto answer = std::make_shared<Answer>();
-    answer->settings = settings_of(request, core.scene);
-    const double speed = speed_of(request, core.scene).omega;
-    // The motion is that of all rods, whatever is shown of it.
-    Settings all = answer->settings;
-    all.only.steady = true;
-    answer->model = std::make_shared<const SceneModel>(make_model(core.scene, all, false));
-    answer->nonlinear = nonlinear_steady(*answer->model, speed, answer->settings, options);
+    NonlinearSteady found = nonlinear_steady(core.scene, request, options);
     if (work.stopped()) throw Stopped();
+    auto answer = std::make_shared<Answer>();
+    answer->settings = std::move(found.settings);
+    answer->model = std::move(found.model);
+    answer->nonlinear = std::move(static_cast<NonlinearResult&>(found));
     answer->result = tools::as_speed_result(*answer->nonlinear);
     answer->result.shortfalls = answer->nonlinear->shortfalls;
     for (std::size_t r = 0; r < answer->result.rods.size(); ++r)
@@ -159,12 +155,7 @@ std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& argumen
 }
 
 std::shared_ptr<Answer> answer_of(const SceneCore& core, const py::dict& arguments) {
-  const auto theory = given(arguments, "theory");
-  const std::string name = theory ? text("theory", *theory) : "linear";
-  if (name == "nonlinear") return nonlinear(core, arguments);
-  if (name != "linear") throw RequestError("theory", shown(*theory), "linear, nonlinear");
-  if (const auto period = given(arguments, "period"))
-    throw RequestError("period", shown(*period) + " with the linear theory", "with theory=\"nonlinear\"");
+  if (const std::optional<int> turns = read_turns(arguments)) return nonlinear(core, arguments, *turns);
   return linear(core, arguments);
 }
 
@@ -194,11 +185,13 @@ auto of_stability(Value value) {
 
 void add_rod(py::module_& module) {
   py::class_<RodView>(module, "Rod", "The response and stability of one elastic link at one speed.")
-      .def_property_readonly("name", [](const RodView& rod) { return decoded(rod.result().name); }, "Its name.")
-      .def_property_readonly("modes", [](const RodView& rod) { return rod.result().num_modes; },
-                             "Number of Ritz terms I.")
       .def_property_readonly(
-          "harmonics", [](const RodView& rod) -> py::object {
+          "name", [](const RodView& rod) { return decoded(rod.result().name); }, "Its name.")
+      .def_property_readonly(
+          "modes", [](const RodView& rod) { return rod.result().num_modes; }, "Number of Ritz terms I.")
+      .def_property_readonly(
+          "harmonics",
+          [](const RodView& rod) -> py::object {
             const auto& steady = rod.result().steady;
             return steady ? py::cast(std::max<Eigen::Index>(0, steady->q.num_harmonics())) : py::none();
           },
@@ -236,8 +229,9 @@ void add_rod(py::module_& module) {
             return steady && steady->status != SteadyStatus::singular ? py::cast(steady->error_bound) : py::none();
           },
           "Bound on max |error of q| / max |q| for this number of modes.")
-      .def_property_readonly("modes_error", [](const RodView& rod) { return optional(rod.result().modes_error); },
-                             "Estimated relative error of the deflection from cutting the Ritz series; None: not asked.")
+      .def_property_readonly(
+          "modes_error", [](const RodView& rod) { return optional(rod.result().modes_error); },
+          "Estimated relative error of the deflection from cutting the Ritz series; None: not asked.")
       .def_property_readonly(
           "theory_error",
           [](const RodView& rod) {
@@ -262,10 +256,9 @@ void add_rod(py::module_& module) {
                                return py::float_(s.growth_error);
                              }),
                              "Error of the growth rate.")
-      .def_property_readonly("verdict", of_stability([](const Stability& s, const py::object&) {
-                               return py::str(to_string(s.verdict));
-                             }),
-                             "\"stable\", \"bounded\", \"unstable\" or \"undecided\"; None: not computed.")
+      .def_property_readonly(
+          "verdict", of_stability([](const Stability& s, const py::object&) { return py::str(to_string(s.verdict)); }),
+          "\"stable\", \"bounded\", \"unstable\" or \"undecided\"; None: not computed.")
       .def(
           "response",
           [](const RodView& rod, const py::object& angle) {
@@ -283,7 +276,9 @@ void add_rod(py::module_& module) {
           "Deflection at x from joint 0, (len(x), len(angle)), in the scene's unit of length; to the left positive.")
       .def(
           "bending_moment",
-          [](const RodView& rod, const py::object& x, const py::object& angle) { return field_at(rod, x, angle, true); },
+          [](const RodView& rod, const py::object& x, const py::object& angle) {
+            return field_at(rod, x, angle, true);
+          },
           py::arg("x"), py::arg("angle"), "Bending moment EJ w'' at x, (len(x), len(angle)), in the scene's units.")
       .def("_table", [](const RodView& rod, const std::string& what) { return table_of(rod_table(rod, what)); })
       .def_property_readonly("_owner", [](const RodView& rod) { return rod.owner; })
@@ -306,8 +301,7 @@ void add_force(py::module_& module) {
           "rigid", [](const ForceView& f, const py::object& angle) { return force_at(f, *f.rigid, angle); },
           py::arg("angle"), "Of the rigid mechanism, shaped as elastic(angle).")
       .def_property_readonly(
-          "elastic_series",
-          [](const py::object& self) { return view(self.cast<const ForceView&>().elastic->c, self); },
+          "elastic_series", [](const py::object& self) { return view(self.cast<const ForceView&>().elastic->c, self); },
           "Fourier coefficients over the crank angle, (components, harmonics + 1) complex, read-only.")
       .def_property_readonly(
           "rigid_series", [](const py::object& self) { return view(self.cast<const ForceView&>().rigid->c, self); },
@@ -348,10 +342,11 @@ void add_steady(py::module_& module) {
                if (answer.result.rods[r].reported) rods[decoded(answer.result.rods[r].name)] = rod_of(self, r);
              return rods;
            })
-      .def("rod", [](const py::object& self, std::size_t rod) {
-        if (rod >= self.cast<const Answer&>().result.rods.size()) throw py::index_error();
-        return rod_of(self, rod);
-      })
+      .def("rod",
+           [](const py::object& self, std::size_t rod) {
+             if (rod >= self.cast<const Answer&>().result.rods.size()) throw py::index_error();
+             return rod_of(self, rod);
+           })
       .def("joints",
            [](const py::object& self) {
              const auto& answer = self.cast<const Answer&>();
@@ -365,7 +360,8 @@ void add_steady(py::module_& module) {
            [](const py::object& self) -> py::object {
              const auto& answer = self.cast<const Answer&>();
              if (!answer.result.forces) return py::none();
-             return py::cast(ForceView{self, &answer, &answer.result.forces->torque, &answer.result.forces->torque_rigid});
+             return py::cast(
+                 ForceView{self, &answer, &answer.result.forces->torque, &answer.result.forces->torque_rigid});
            })
       .def("json", [](const Answer& answer) { return decoded(answer.json()); })
       .def("words",

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "hb/analysis/nonlinear/nonlinear_steady.hpp"
+#include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
 #include "hb/analysis/steady.hpp"
 #include "tools/python/bindings.hpp"
 

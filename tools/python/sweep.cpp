@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hb/analysis/analyses.hpp"
+#include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/python/arguments.hpp"
@@ -35,7 +35,7 @@ Along axis_of(const SceneCore& core, const py::dict& arguments, Request& request
   return {name, range_values(name, py::make_tuple(speeds->from, speeds->to, speeds->step), Third::step)};
 }
 
-std::shared_ptr<Sweep> swept(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
   py::dict rest = arguments.attr("copy")();
   rest["rpm"] = py::none();
   rest["omega"] = py::none();
@@ -43,41 +43,71 @@ std::shared_ptr<Sweep> swept(const SceneCore& core, const py::dict& arguments, c
   static_cast<Request&>(request) = read_request(rest);
   request.x = axis_of(core, arguments, request);
   if (request.only.verdict) throw RequestError("only", "\"verdict\"", "steady, stability, reactions, shape");
+  const std::optional<int> turns = read_turns(arguments);
   PythonWork work(read_threads(arguments), progress);
-  return work.run([&] { return std::make_shared<Sweep>(sweep(core.source, request, work)); });
+  return work.run([&] {
+    if (!turns) return std::make_shared<SweepCore>(SweepCore{sweep(core.source, request, work), std::nullopt});
+    NonlinearSweepOptions options;
+    options.turns = *turns;
+    options.stop = [&work] { return work.stopped(); };
+    NonlinearAlong found = nonlinear_sweep(core.source, request, options, work);
+    if (work.stopped()) throw Stopped();
+    return std::make_shared<SweepCore>(SweepCore{std::move(found.linear), std::move(found.branches)});
+  });
 }
 
-std::size_t rod_place(const Sweep& sweep, const std::string& name) {
-  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
-    if (sweep.rods[r].name == name && sweep.rods[r].reported) return r;
+std::string json(const SweepCore& core) {
+  nlohmann::ordered_json document = tools::sweep_json(*core.linear.scene, core.linear, false);
+  if (core.branches) tools::add_branches(document, *core.linear.scene, *core.branches);
+  return tools::json_text(document);
+}
+
+std::string words(const SweepCore& core) {
+  std::string table = tools::sweep_table(*core.linear.scene, core.linear);
+  if (core.branches) table += tools::branches_table(*core.linear.scene, *core.branches);
+  return table;
+}
+
+std::size_t rod_place(const SweepCore& core, const std::string& name) {
+  const std::vector<SweepRod>& rods = core.linear.rods;
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    if (rods[r].name == name && rods[r].reported) return r;
   throw py::key_error(name);
+}
+
+py::dict columns_of(const SweepCore& core, const std::string& rod) {
+  const tools::SweepColumns at = tools::sweep_columns(*core.linear.scene, core.linear, rod_place(core, rod));
+  py::dict columns;
+  columns["first_peak"] = at.first_peak;
+  columns["deflection"] = at.deflection;
+  columns["beyond"] = at.beyond;
+  columns["growth"] = at.growth;
+  columns["first_frequency"] = at.first_frequency;
+  return columns;
 }
 
 }  // namespace
 
 void add_sweep(py::module_& module) {
-  py::class_<Sweep, std::shared_ptr<Sweep>>(module, "Sweep")
-      .def("json",
-           [](const Sweep& sweep) { return decoded(tools::json_text(tools::sweep_json(*sweep.scene, sweep, false))); })
-      .def("words", [](const Sweep& sweep) { return decoded(tools::sweep_table(*sweep.scene, sweep)); })
+  py::class_<SweepCore, std::shared_ptr<SweepCore>>(module, "Sweep")
+      .def("json", [](const SweepCore& core) { return decoded(json(core)); })
+      .def("words", [](const SweepCore& core) { return decoded(words(core)); })
+      .def_property_readonly("shortfalls",
+                             [](const SweepCore& core) {
+                               std::vector<std::string> all = core.linear.shortfalls;
+                               if (core.branches)
+                                 all.insert(all.end(), core.branches->shortfalls.begin(),
+                                            core.branches->shortfalls.end());
+                               return decoded(all);
+                             })
       .def("rod_table",
-           [](const Sweep& sweep, const std::string& rod) {
-             return table_of(tools::sweep_rod_csv(*sweep.scene, sweep, rod_place(sweep, rod)));
+           [](const SweepCore& core, const std::string& rod) {
+             return table_of(tools::sweep_rod_csv(*core.linear.scene, core.linear, rod_place(core, rod)));
            })
       .def("forces_table",
-           [](const Sweep& sweep) { return table_of(tools::sweep_forces_csv(*sweep.scene, sweep)); })
-      .def("columns",
-           [](const Sweep& sweep, const std::string& rod) {
-             const tools::SweepColumns at = tools::sweep_columns(*sweep.scene, sweep, rod_place(sweep, rod));
-             py::dict columns;
-             columns["first_peak"] = at.first_peak;
-             columns["deflection"] = at.deflection;
-             columns["beyond"] = at.beyond;
-             columns["growth"] = at.growth;
-             columns["first_frequency"] = at.first_frequency;
-             return columns;
-           })
-      .def("axis_label", [](const Sweep& sweep) { return decoded(tools::axis_label(*sweep.scene)); });
+           [](const SweepCore& core) { return table_of(tools::sweep_forces_csv(*core.linear.scene, core.linear)); })
+      .def("columns", &columns_of)
+      .def("axis_label", [](const SweepCore& core) { return decoded(tools::axis_label(*core.linear.scene)); });
   module.def("sweep", &swept, py::arg("scene"), py::arg("arguments"), py::arg("progress"));
 }
 

@@ -23,9 +23,8 @@ std::string word(const std::string& field, py::handle object) {
 
 // {path: (from, to)} or a list of "PATH=FROM:TO".
 std::vector<std::string> bounds(const std::string& field, const py::object& object) {
-  if (!py::isinstance<py::dict>(object)) return py::isinstance<py::str>(object)
-                                                    ? std::vector{text(field, object)}
-                                                    : texts(field, object);
+  if (!py::isinstance<py::dict>(object))
+    return py::isinstance<py::str>(object) ? std::vector{text(field, object)} : texts(field, object);
   std::vector<std::string> words;
   for (const auto& [path, range] : py::reinterpret_borrow<py::dict>(object)) {
     const std::string name = text(field, path);
@@ -40,9 +39,8 @@ std::vector<std::string> bounds(const std::string& field, const py::object& obje
 
 // {path: value} with a number, a text or a pair (factor, path); or a list of "PATH=VALUE".
 std::vector<std::string> assignments(const std::string& field, const py::object& object) {
-  if (!py::isinstance<py::dict>(object)) return py::isinstance<py::str>(object)
-                                                    ? std::vector{text(field, object)}
-                                                    : texts(field, object);
+  if (!py::isinstance<py::dict>(object))
+    return py::isinstance<py::str>(object) ? std::vector{text(field, object)} : texts(field, object);
   std::vector<std::string> words;
   for (const auto& [path, value] : py::reinterpret_borrow<py::dict>(object)) {
     const std::string name = text(field, path);
@@ -102,7 +100,8 @@ std::shared_ptr<TuneCore> tuned(const SceneCore& core, const py::dict& arguments
   PythonWork work(read_threads(arguments), py::none());
   return work.run([&] {
     tools::AskedTune asked = tools::asked_tune(flags, {core.name, core.text, core.folder, core.source});
-    auto result = std::make_shared<TuneCore>(TuneCore{std::move(asked.task), std::move(asked.scene), {}, asked.remarks});
+    auto result =
+        std::make_shared<TuneCore>(TuneCore{std::move(asked.task), std::move(asked.scene), {}, asked.remarks});
     const int most = result->task.options.max_evaluations;
     const double sign = flags.maximise.empty() ? 1 : -1;
     result->task.options.progress = [&](int evaluations, bool feasible, double goal) {
@@ -119,8 +118,8 @@ std::shared_ptr<TuneCore> tuned(const SceneCore& core, const py::dict& arguments
 
 std::string scene_text(const TuneCore& core, const std::string& name, const std::string& folder) {
   const std::filesystem::path place = folder.empty() ? "." : folder;
-  return tools::tuned_scene(core.task, core.result, core.before.units,
-                            place / std::filesystem::path(name).filename(), place);
+  return tools::tuned_scene(core.task, core.result, core.before.units, place / std::filesystem::path(name).filename(),
+                            place);
 }
 
 }  // namespace
@@ -134,10 +133,8 @@ void add_tune(py::module_& module) {
       .def("words",
            [](const TuneCore& core) { return decoded(tools::tune_table(core.task, core.result, core.before)); })
       .def("table", [](const TuneCore& core) { return table_of(tools::history_csv(core.task, core.result)); })
-      .def("scene_text",
-           [](const TuneCore& core, const std::string& name, const std::string& folder) {
-             return decoded(scene_text(core, name, folder));
-           })
+      .def("scene_text", [](const TuneCore& core, const std::string& name,
+                            const std::string& folder) { return decoded(scene_text(core, name, folder)); })
       .def_property_readonly("shortfall", [](const TuneCore& core) { return decoded(tools::shortfall(core.result)); })
       .def_property_readonly("remarks", [](const TuneCore& core) { return decoded(core.remarks); });
   module.def("tune", &tuned, py::arg("scene"), py::arg("arguments"), py::arg("progress"));

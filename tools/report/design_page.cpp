@@ -46,8 +46,8 @@ std::string design_page(const TuneTask& task, const TuneResult& result, const Sc
       curves.push_back({"Largest deflection of " + last.rods[r], units.response, speeds(first),
                         values(first.deflection.col(column)), speeds(last), values(last.deflection.col(column))});
     }
-    curves.push_back(
-        {"Growth rate, largest of the links", units.rate, speeds(first), values(first.growth), speeds(last), values(last.growth)});
+    curves.push_back({"Growth rate, largest of the links", units.rate, speeds(first), values(first.growth),
+                      speeds(last), values(last.growth)});
   }
   data.add_design(document, tune_table(task, result, before), before, curves);
   return data.page(std::move(text));

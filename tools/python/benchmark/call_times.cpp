@@ -46,8 +46,7 @@ int main(int argc, char** argv) {
   system.damping = Eigen::MatrixXd::Constant(1, 1, 0.1);
   system.stiffness[0] = series({1.2, 0.2});
   constexpr int speeds = 10000;
-  const double stability = shortest(std::max(1, rounds / 10), speeds, [&](int k) {
-    (void)hb::analyse_stability(system, 0.5 + 3.0 * k / speeds);
-  });
+  const double stability = shortest(std::max(1, rounds / 10), speeds,
+                                    [&](int k) { (void)hb::analyse_stability(system, 0.5 + 3.0 * k / speeds); });
   fmt::print("{{\"steady\": {}, \"stability\": {}}}\n", steady, stability);
 }

@@ -34,12 +34,12 @@ class RodCheck:
     @property
     def exponent_difference(self) -> Any:
         """Largest distance of the exponents that both paths resolve, 1/time."""
-        return self._entry["exponent_difference"]
+        return self._entry.get("exponent_difference")
 
     @property
     def exponent_allowed(self) -> Any:
         """What the error bars allow for exponent_difference."""
-        return self._entry["exponent_allowed"]
+        return self._entry.get("exponent_allowed")
 
     @property
     def not_compared(self) -> Optional[str]:

@@ -125,7 +125,7 @@ def of_check(result: "Check") -> "pandas.DataFrame":
     rows = []
     for name, entry in document["rods"].items():
         for k, rpm in enumerate(document["rpm"] if several else [document["rpm"]]):
-            rows.append({"rod": name, "rpm": rpm} | {key: entry[key][k] if several else entry[key] for key in keys})
+            rows.append({"rod": name, "rpm": rpm} | {key: entry[key][k] if several else entry[key] for key in keys if key in entry})
     return pandas.DataFrame(rows).set_index(["rod", "rpm"])
 
 

@@ -40,7 +40,7 @@ class HillSystem:
         damping = None if damping is None else _square("damping", damping)
         c_terms, c_samples = _terms("stiffness", stiffness, (size, size))
         h_terms, h_samples = _terms("load", load, (size,))
-        self._parts = (mass, damping, c_terms, c_samples, h_terms, h_samples)
+        self._parts: tuple[Any, ...] = (mass, damping, c_terms, c_samples, h_terms, h_samples)
         self._core = _core.HillSystem(*self._parts)
 
     @property

@@ -161,8 +161,10 @@ def _curve(ax: "Axes", x: Any, y: Any, beyond: Any, **style: Any) -> None:
 
 
 def sweep_rod(rod: "SweepRod", kind: str = "campbell", ax: Optional["Axes"] = None) -> "Axes":
-    require_kind(kind, ("campbell", "growth", "peaks", "deflection"))
+    require_kind(kind, ("campbell", "growth", "peaks", "deflection", "branches"))
     ax = _axes(ax)
+    if kind == "branches":
+        return _branches(ax, rod)
     columns, rows, at = _points(rod)
     beyond = _beyond(rows, at)
     {"campbell": _campbell, "growth": _growth, "peaks": _peaks, "deflection": _largest}[kind](ax, rod, columns, rows, at, beyond)
@@ -288,6 +290,32 @@ def _largest(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: dic
     _curve(ax, rows[:, 0], rows[:, at["deflection"] - 1], beyond, color=LINES[0])
     ax.set(yscale="log", ylabel=columns[at["deflection"] - 1])
     _title(ax, _subject(rod), "largest deflection over rod and turn" + note)
+
+
+def _branches(ax: "Axes", rod: "SweepRod") -> "Axes":
+    """Solid where stable, dashed where not, over the linear response; folds black, bifurcations red."""
+    import numpy as np
+
+    sweep = rod._sweep
+    if not sweep.branches:
+        from .errors import refused
+
+        raise refused("kind", "a sweep of the linear theory", 'branches of theory="nonlinear"')
+    along = sweep.path if sweep.path in ("rpm", "omega") else "x"
+    if rod.max_abs.shape[1]:
+        ax.plot(sweep.x, np.nanmax(rod.max_abs, axis=1), color="#bbbbbb", linewidth=1, label="linear theory")
+    for k, branch in enumerate(sweep.branches):
+        x = np.array(branch[along])
+        y = np.array([max(values) for values in branch["rods"][rod.name]["max_abs"]])
+        verdicts = np.array(branch.get("verdict", ["stable"] * len(x)), dtype=object)
+        stable = np.isin(verdicts, ("stable", "bounded"))
+        colour = LINES[k % 7]
+        ax.plot(x, np.where(stable, y, np.nan), color=colour)
+        ax.plot(x, np.where(stable & np.roll(stable, 1) & np.roll(stable, -1), np.nan, y), "--", color=colour, linewidth=1)
+    ax.set(xlabel=sweep._core.axis_label(), ylabel="largest $|q_i|$", yscale="log")
+    _title(ax, _subject(rod), "motion without linearisation: solid stable, dashed not")
+    _legend(ax)
+    return ax
 
 
 def sweep(result: "Sweep", kind: str, name: Optional[str], ax: Optional["Axes"]) -> "Axes":

@@ -165,6 +165,8 @@ class Scene:
         tol: Optional[float] = None,
         rods: Names = None,
         only: Names = None,
+        theory: str = "linear",
+        period: Optional[int] = None,
         steady_method: Optional[str] = None,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
@@ -173,7 +175,8 @@ class Scene:
         """Along the speed or any other number, with resonance peaks and unstable bands located: hb.Sweep.
 
         rpm (or omega): a range (from, to, step), "FROM:TO:STEP", "FROM:TO:xN" (N points), or an array of values. x: a
-        number of the scene instead, "AB.J=30:60:1" or ("AB.J", range), at one rpm or omega. threads: 1 or more, or
+        number of the scene instead, "AB.J=30:60:1" or ("AB.J", range), at one rpm or omega. theory: "nonlinear" adds the
+        branches of the motion without linearisation, of up to `period` turns. threads: 1 or more, or
         "all"; the answer has the same bits. progress: True, or a function of (what, done, total).
         """
         from .sweep import Sweep
@@ -186,6 +189,8 @@ class Scene:
             "tol": tol,
             "rods": rods,
             "only": only,
+            "theory": theory,
+            "period": period,
             "steady_method": steady_method,
             "stability_method": stability_method,
             "threads": threads,
@@ -238,6 +243,8 @@ class Scene:
         integrator: Optional[str] = None,
         case_limit: Optional[float] = None,
         march: bool = False,
+        theory: str = "linear",
+        period: Optional[int] = None,
         threads: Union[int, str] = 1,
         progress: Progress = False,
     ) -> "Check":
@@ -258,6 +265,8 @@ class Scene:
             "integrator": integrator,
             "case_limit": case_limit,
             "march": bool(march),
+            "theory": theory,
+            "period": period,
             "threads": threads,
         }
         return Check(self, arguments, _long(_core.check, self, arguments, progress))

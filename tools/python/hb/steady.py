@@ -164,14 +164,14 @@ def _again(scene: "Scene", arguments: dict[str, Any]) -> Steady:
     return Steady(scene, arguments, _answer(scene, arguments))
 
 
-def _rod_to_dict(rod: Rod) -> dict[str, Any]:
+def _rod_to_dict(self: Rod) -> dict[str, Any]:
     """Its entry under "rods" of `hb steady --json`."""
-    document: dict[str, Any] = json.loads(rod._owner.json())["rods"][rod.name]
+    document: dict[str, Any] = json.loads(self._owner.json())["rods"][self.name]
     return document
 
 
-def _rod_reduce(rod: Rod) -> tuple[Any, ...]:
-    return _rod_again, (*rod._owner.origin, rod._index)
+def _rod_reduce(self: Rod) -> tuple[Any, ...]:
+    return _rod_again, (*self._owner.origin, self._index)
 
 
 def _rod_again(function: Any, arguments: tuple[Any, ...], index: int) -> Rod:
@@ -180,21 +180,26 @@ def _rod_again(function: Any, arguments: tuple[Any, ...], index: int) -> Rod:
     return answer.rod(index)
 
 
-def _rod_plot(rod: Rod, kind: str = "response", ax: Optional["Axes"] = None) -> "Axes":
+def _rod_plot(self: Rod, kind: str = "response", ax: Optional["Axes"] = None) -> "Axes":
     """Draws "response", "spectrum", "phase", "deflection", "bending_moment" or "exponents"."""
     from . import plots
 
-    return plots.rod(rod, kind, ax)
+    return plots.rod(self, kind, ax)
 
 
-def _rod_to_frame(rod: Rod, what: str = "response") -> "pandas.DataFrame":
+def _rod_to_frame(self: Rod, what: str = "response") -> "pandas.DataFrame":
     """A table of the command: "response", "fourier", "deflection", "bending_moment" or "exponents"."""
     from . import frames
 
-    return frames.of_table(rod._table(what))
+    return frames.of_table(self._table(what))
 
 
-Rod.to_dict = _rod_to_dict  # type: ignore[method-assign]
-Rod.to_frame = _rod_to_frame  # type: ignore[method-assign]
-Rod.plot = _rod_plot  # type: ignore[method-assign]
-Rod.__reduce__ = _rod_reduce  # type: ignore[method-assign]
+for _name, _function in {
+    "to_dict": _rod_to_dict,
+    "to_frame": _rod_to_frame,
+    "plot": _rod_plot,
+    "__reduce__": _rod_reduce,
+}.items():
+    _function.__name__ = _name
+    _function.__qualname__ = f"Rod.{_name}"
+    setattr(Rod, _name, _function)

@@ -117,7 +117,7 @@ class SweepRod:
         return frames.of_table(self._sweep._core.rod_table(self.name))
 
     def plot(self, kind: str = "campbell", ax: Optional["Axes"] = None) -> "Axes":
-        """Draws "campbell", "growth", "peaks" or "deflection" along the axis, unstable bands shaded."""
+        """Draws "campbell", "growth", "peaks", "deflection" or "branches" along the axis, unstable bands shaded."""
         from . import plots
 
         return plots.sweep_rod(self, kind, ax)
@@ -131,6 +131,7 @@ class Sweep(Result):
 
     def __init__(self, scene: Any, arguments: dict[str, Any], core: _core.Sweep) -> None:
         super().__init__(scene, arguments, core)
+        self._missed: list[str] = core.shortfalls
         self._rods = {name: SweepRod(self, name) for name in self._document["rods"]}
 
     def _computed(self) -> _core.Sweep:
@@ -182,6 +183,26 @@ class Sweep(Result):
         return {name: rod.unstable_bands for name, rod in self._rods.items()}
 
     @property
+    def branches(self) -> list[dict[str, Any]]:
+        """Of the motion without linearisation, along the arc, with the keys of the document; else empty."""
+        return [dict(branch) for branch in self._document.get("branches", [])]
+
+    @cached_property
+    def folds(self) -> "NDArray[Any]":
+        """Where a branch turns back, along the axis (a speed in rpm)."""
+        return floats(self._document.get("folds", []))
+
+    @property
+    def bifurcations(self) -> list[dict[str, Any]]:
+        """Where branches of the motion without linearisation meet or lose their stability."""
+        return [dict(event) for event in self._document.get("bifurcations", [])]
+
+    @property
+    def shortfalls(self) -> list[str]:
+        """One sentence for each thing that missed its tolerance."""
+        return list(self._missed)
+
+    @property
     def joints(self) -> dict[str, Any]:
         """Smallest and largest joint forces at each point, as in the document."""
         return dict(self._document.get("joints", {}))
@@ -204,7 +225,7 @@ class Sweep(Result):
         return frames.sweep_dataset(self)
 
     def plot(self, kind: str = "campbell", rod: Optional[str] = None, ax: Optional["Axes"] = None) -> "Axes":
-        """Draws one rod (default: the first): "campbell", "growth", "peaks" or "deflection"."""
+        """Draws one rod (default: the first): "campbell", "growth", "peaks", "deflection" or "branches"."""
         from . import plots
 
         return plots.sweep(self, kind, rod, ax)
