@@ -73,9 +73,16 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   if (only.stability) {  // of every rod: the mechanism is stable where all are
     StabilityOptions options;
     options.method = settings.stability_method;
-    options.verdict_only = only.verdict;
-    options.leading_only = !only.all_exponents();
-    point.stability = StabilitySample{x, speed, analyse_stability(rod.system, speed, options)};
+    if (only.all_exponents()) {
+      point.stability = stability_sample(scale_system(rod.system, speed), x, options);
+    } else {
+      options.verdict_only = only.verdict;
+      options.leading_only = true;
+      point.stability.emplace();
+      point.stability->x = x;
+      point.stability->speed = speed;
+      point.stability->stability = analyse_stability(rod.system, speed, options);
+    }
   }
   return point;
 }
@@ -377,7 +384,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   Stopwatch between_watch;
   const std::size_t intervals = values.size() - 1, num_tasks = intervals * reported.size();
   struct Between {
-    std::vector<StabilitySample> bands;
+    SearchedInterval bands;
     std::vector<ResponseSample> peaks;
   };
   std::vector<Between> between(num_tasks);
@@ -389,66 +396,54 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
           const std::size_t r = reported[task / intervals], k = task % intervals;
           const SweepPoint &a = result.points[k], &b = result.points[k + 1];
           if (!a.problem.empty() || !b.problem.empty() || work.ends_early()) return found;
-          found.bands = look_between([&](double x) { return along[r].system(x); }, *a.rods[r].stability,
-                                     *b.rods[r].stability, modes[r][k], modes[r][k + 1], sweep_options);
+          const auto sample_at = [&](std::size_t place) -> const StabilitySample* {
+            if (place >= values.size() || !result.points[place].problem.empty()) return nullptr;
+            return &*result.points[place].rods[r].stability;
+          };
+          found.bands = search_interval([&](double x) { return along[r].system(x); }, *sample_at(k), *sample_at(k + 1),
+                                        sample_at(k - 1), sample_at(k + 2), sweep_options);
           if (only.steady)
             found.peaks = resonances_between(along[r], a, b, a.rods[r], b.rods[r], modes[r][k], modes[r][k + 1]);
           return found;
         },
         [](auto& visit, Between& found) {
-          visit_elements(visit, found.bands, [&](StabilitySample& sample) { visit_sample(visit, sample); });
+          visit_interval(visit, found.bands);
           visit_elements(visit, found.peaks, [&](ResponseSample& sample) {
             visit(sample.x);
             visit_elements(visit, sample.max_abs, visit);
           });
         });
   }
-  if (only.stability && !result.searched_bands)
-    result.stages.push_back({"narrow bands and peaks", 0, why_not, true});
-  else
-    result.stages.push_back({"narrow bands and peaks", between_watch.seconds(), counted("")});
-
-  // Boundaries.
-  Stopwatch boundary_watch;
-  struct BoundaryTask {
-    std::size_t rod;
-    const StabilitySample *a, *b;
-  };
-  std::vector<BoundaryTask> boundary_tasks;
-  std::vector<std::vector<const StabilitySample*>> samples(result.rods.size());
+  // Bands and what may have been missed.
+  std::size_t num_boundaries = 0;
   if (result.searched_bands) {
     for (std::size_t i = 0; i < reported.size(); ++i) {
       const std::size_t r = reported[i];
+      SweepRod& rod = result.rods[r];
+      std::vector<const StabilitySample*> samples;
       for (std::size_t k = 0; k < values.size(); ++k) {
         const SweepPoint& point = result.points[k];
-        samples[r].push_back(point.problem.empty() ? &*point.rods[r].stability : nullptr);
-        if (k < intervals)
-          for (const StabilitySample& sample : between[i * intervals + k].bands) samples[r].push_back(&sample);
+        samples.push_back(point.problem.empty() ? &*point.rods[r].stability : nullptr);
+        if (k == intervals) break;
+        const SearchedInterval& found = between[i * intervals + k].bands;
+        for (const StabilitySample& sample : found.samples) samples.push_back(&sample);
+        rod.boundaries.insert(rod.boundaries.end(), found.boundaries.begin(), found.boundaries.end());
+        rod.not_excluded.insert(rod.not_excluded.end(), found.not_excluded.begin(), found.not_excluded.end());
       }
-      for (std::size_t k = 1; k < samples[r].size(); ++k) {
-        const StabilitySample *a = samples[r][k - 1], *b = samples[r][k];
-        if (a && b && is_unstable(*a) != is_unstable(*b)) boundary_tasks.push_back({r, a, b});
+      rod.bands = unstable_bands(samples, rod.boundaries);
+      num_boundaries += rod.boundaries.size();
+      for (const StabilityBoundary& boundary : rod.boundaries) {
+        if (boundary.converged) continue;
+        result.notes.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only", rod.name,
+                                           scene.axis().path, boundary.x, boundary.error));
       }
     }
-    const std::vector<StabilityBoundary> boundaries = work.results<StabilityBoundary>(
-        "boundaries", boundary_tasks.size(),
-        [&](std::size_t k) {
-          const BoundaryTask& task = boundary_tasks[k];
-          return locate_boundary([&](double x) { return along[task.rod].system(x); }, *task.a, *task.b, sweep_options);
-        },
-        [](auto& visit, StabilityBoundary& boundary) { visit_boundary(visit, boundary); });
-    for (std::size_t k = 0; k < boundaries.size(); ++k) {
-      SweepRod& rod = result.rods[boundary_tasks[k].rod];
-      if (!boundaries[k].converged) {
-        result.shortfalls.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only",
-                                                rod.name, scene.axis().path, boundaries[k].x, boundaries[k].error));
-      }
-      rod.boundaries.push_back(boundaries[k]);
-    }
-    for (const std::size_t r : reported) result.rods[r].bands = unstable_bands(samples[r], result.rods[r].boundaries);
   }
-  result.stages.push_back(
-      {"boundaries", boundary_watch.seconds(), counted(fmt::format("{} located, ", boundary_tasks.size()))});
+  if (only.stability && !result.searched_bands)
+    result.stages.push_back({"narrow bands and peaks", 0, why_not, true});
+  else
+    result.stages.push_back({"narrow bands and peaks", between_watch.seconds(),
+                             counted(fmt::format("{} boundaries located, ", num_boundaries))});
 
   // Resonance peaks: of the largest component, and of each component where its own mode resonates.
   Stopwatch peak_watch;
@@ -553,7 +548,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
       for (const double t : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) places.push_back(point.peak.x + t * width);
   }
   for (const Between& found : between)
-    for (const StabilitySample& sample : found.bands) places.push_back(sample.x);
+    for (const StabilitySample& sample : found.bands.samples) places.push_back(sample.x);
   if (work.ends_early()) places.clear();
   std::sort(places.begin(), places.end());
   std::erase_if(places, [&](double x) {

@@ -2,6 +2,7 @@
 // unstable bands, both located.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -11,6 +12,8 @@
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/work.hpp"
+#include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/mode_tracks.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 #include "hb/engine/steady/response_peak.hpp"
 
@@ -110,6 +113,7 @@ struct SweepRod {
   int num_modes = 0;
   std::vector<StabilityBoundary> boundaries;
   std::vector<UnstableBand> bands;
+  std::vector<std::array<double, 2>> not_excluded;  // where a band or a gap may have been missed, ascending
 };
 
 struct SweepResult {

@@ -1,4 +1,6 @@
 // Unstable bands, resonance peaks and tracked modes against closed forms and root searches of the test's own.
+#include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/mode_tracks.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 
 #include <gtest/gtest.h>
@@ -6,8 +8,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/engine/boundaries/part.hpp"
 #include "hb/engine/steady/response_peak.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/rod/rod.hpp"
+#include "tests/support/six_link.hpp"
 
 namespace {
 
@@ -40,6 +45,7 @@ struct Sweep {
   std::vector<StabilitySample> samples;
   std::vector<StabilityBoundary> boundaries;
   std::vector<UnstableBand> bands;
+  std::vector<std::array<double, 2>> not_excluded;
   std::vector<std::vector<ModeState>> modes;
 };
 
@@ -47,7 +53,7 @@ SystemAt along_speed(const HillSystem& system) {
   return [&system](double x) { return scale_system(system, x); };
 }
 
-// As `hb sweep` does it: a grid, what lies between its points, boundaries.
+// As `hb sweep` does it: a grid, what lies between its points, bands.
 Sweep sweep(const HillSystem& system, double from, double to, int intervals) {
   Sweep result;
   const SystemAt at = along_speed(system);
@@ -59,20 +65,17 @@ Sweep sweep(const HillSystem& system, double from, double to, int intervals) {
   std::vector<TrackedPlace> places;
   for (const StabilitySample& sample : grid) places.push_back({sample.x, sample.speed, &sample.stability});
   result.modes = track_modes(places, static_cast<int>(system.num_modes()));
-  for (int k = 0; k <= intervals; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    result.samples.push_back(grid[i]);
-    if (k == intervals) break;
-    for (StabilitySample& sample :
-         look_between(at, grid[i], grid[i + 1], result.modes[i], result.modes[i + 1], options))
-      result.samples.push_back(std::move(sample));
+  for (std::size_t k = 0; k < grid.size(); ++k) {
+    result.samples.push_back(grid[k]);
+    if (k + 1 == grid.size()) break;
+    const SearchedInterval found = search_interval(at, grid[k], grid[k + 1], k > 0 ? &grid[k - 1] : nullptr,
+                                                   k + 2 < grid.size() ? &grid[k + 2] : nullptr, options);
+    result.samples.insert(result.samples.end(), found.samples.begin(), found.samples.end());
+    result.boundaries.insert(result.boundaries.end(), found.boundaries.begin(), found.boundaries.end());
+    result.not_excluded.insert(result.not_excluded.end(), found.not_excluded.begin(), found.not_excluded.end());
   }
   std::vector<const StabilitySample*> pointers;
-  for (std::size_t k = 0; k < result.samples.size(); ++k) {
-    pointers.push_back(&result.samples[k]);
-    if (k > 0 && is_unstable(result.samples[k - 1]) != is_unstable(result.samples[k]))
-      result.boundaries.push_back(locate_boundary(at, result.samples[k - 1], result.samples[k], options));
-  }
+  for (const StabilitySample& sample : result.samples) pointers.push_back(&sample);
   result.bands = unstable_bands(pointers, result.boundaries);
   return result;
 }
@@ -144,6 +147,97 @@ TEST(Sweep, FindsTheDifferenceResonanceOfOscillatorsThatFeedEachOther) {
   ASSERT_GE(found.bands.size(), 1u);
   EXPECT_LT(found.bands[0].from, 1);
   EXPECT_GT(found.bands[0].to, 1);
+}
+
+// Bands were looked for along tracked frequencies, which continuity over coarse steps unfolds by a wrong order: whether
+// a band was found depended on where the range began.
+TEST(Sweep, BandsDoNotDependOnWhereTheRangeBeginsNorOnTheStep) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(2, 2);
+  system.damping = Eigen::Vector2d(0.0006907509677922141, 0.0007469844861333518).asDiagonal();
+  system.stiffness[0] = FourierSeries(4, 1);
+  system.stiffness[0].c.col(0) << 1.8579582395656333, 0, 0, 5.429150249451666;
+  using cplx = std::complex<double>;
+  const double off = -0.4279480856181529;
+  system.stiffness[0].c.col(1) << cplx(-0.0639570349496675, -0.014458361655203575), off, off,
+      cplx(0.9857699107816944, 0.007156608197201);
+  system.stiffness[0].c.col(1) /= 2;
+  // By a grid of 0.0005 and bisection.
+  const std::vector<std::array<double, 2>> known = {
+      {1.1529, 1.1537}, {1.2270, 1.2285}, {1.3649, 1.3710}, {1.5432, 1.5465}, {1.8365, 1.8453},
+      {2.3040, 2.3337}, {2.6962, 2.7431}, {3.5601, 3.7988}, {4.4534, 4.8742}};
+  for (const double from : {0.35, 1.0, 1.1})
+    for (const int intervals : {5, 12, 77, 400}) {
+      const Sweep found = sweep(system, from, 8, intervals);
+      ASSERT_EQ(found.bands.size(), known.size()) << from << " " << intervals;
+      for (std::size_t k = 0; k < known.size(); ++k) {
+        EXPECT_NEAR(found.bands[k].from, known[k][0], 1e-4);
+        EXPECT_NEAR(found.bands[k].to, known[k][1], 1e-4);
+      }
+      EXPECT_TRUE(found.not_excluded.empty());
+    }
+}
+
+// Stable gaps inside bands, narrower than the step, were missed.
+TEST(Sweep, FindsTheGapsBetweenTheBandsOfTheSixLinkMechanismAtAnyStep) {
+  const Linkage linkage = six_link::linkage({.J = 45});
+  const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+  const HillSystem system = ritz_system(*body_at(linkage, coefficients.links[0]), coefficients.rods[0], 5);
+  constexpr double rpm = std::numbers::pi / 30;
+  for (const int intervals : {1, 3, 8}) {
+    const Sweep found = sweep(system, 1500 * rpm, 3500 * rpm, intervals);
+    ASSERT_EQ(found.bands.size(), 3u) << intervals;
+    EXPECT_NEAR(found.bands[0].to / rpm, 1895.07, 0.01);
+    EXPECT_EQ(found.bands[0].kind_to, BoundaryKind::minus_one);
+    EXPECT_NEAR(found.bands[1].from / rpm, 1909.98, 0.01);
+    EXPECT_EQ(found.bands[1].kind_from, BoundaryKind::plus_one);
+    EXPECT_NEAR(found.bands[1].to, 280.872514, 1e-5);
+    EXPECT_NEAR(found.bands[2].from, 281.036195, 1e-5);
+  }
+}
+
+// Coupled one way: the second mode alone has tongues, where the two frequencies meet nothing grows.
+TEST(Sweep, ExponentsThatMeetWithoutExcitingEachOtherMakeNoBand) {
+  HillSystem system = two_oscillators(0.002, 0.3);
+  system.stiffness[0].c(2, 1) = 0;
+  const Sweep found = sweep(system, 0.7, 3.6, 9);
+  EXPECT_TRUE(found.bands.empty());
+  EXPECT_TRUE(found.not_excluded.empty());
+}
+
+// A single exponent crosses by itself: damping that changes its sign along the parameter, twice within one step.
+TEST(Sweep, FindsABandThatASingleExponentMakesByItself) {
+  HillSystem system = oscillator(0.01, 1, 0.01);
+  const SystemAt at = [&](double x) {
+    system.damping(0, 0) = 0.01 * ((x - 0.43) * (x - 0.43) / 0.01 - 1);
+    return scale_system(system, 0.77);
+  };
+  const StabilityOptions options;
+  const StabilitySample a = *stability_sample(at, 0.0, options), b = *stability_sample(at, 1.0, options);
+  const SearchedInterval found = search_interval(at, a, b, nullptr, nullptr);
+  ASSERT_EQ(found.boundaries.size(), 2u);
+  EXPECT_NEAR(found.boundaries[0].x, 0.33, 1e-9);
+  EXPECT_NEAR(found.boundaries[1].x, 0.53, 1e-9);
+}
+
+// Kinds differed between runs that kept their parts and runs that did not: exponents that are not resolved were lost.
+TEST(Sweep, AKeptSampleTellsTheSameKind) {
+  StabilitySample sample;
+  sample.speed = 2;
+  sample.stability.growth_rate = 0.5;
+  sample.stability.growth_error = 1e-4;
+  sample.stability.uncertain = {{{0.5, 1}, 1e-4, 0, 1}, {{-0.6, 1}, 1e-4, 0, 1}};
+  sample.mean = {{{-0.1, 1.5}, 0.2}};
+  ASSERT_EQ(boundary_kind(sample.stability, sample.speed), BoundaryKind::minus_one);
+  PartWriter writer;
+  visit_sample(writer, sample);
+  PartReader reader(writer.numbers);
+  StabilitySample kept;
+  visit_sample(reader, kept);
+  EXPECT_TRUE(reader.at_end());
+  EXPECT_EQ(boundary_kind(kept.stability, kept.speed), BoundaryKind::minus_one);
+  ASSERT_EQ(kept.mean.size(), 1u);
+  EXPECT_EQ(kept.mean[0].coupling, 0.2);
 }
 
 TEST(Sweep, AModeOfConstantCoefficientsStaysAStraightLine) {

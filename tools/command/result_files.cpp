@@ -17,6 +17,8 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
   if (only.stability) {
     const CsvFile bands = bands_csv(scene, result);
     folder.write(bands.name, csv_text(bands));
+    const CsvFile not_excluded = not_excluded_csv(scene, result);
+    folder.write(not_excluded.name, csv_text(not_excluded));
   }
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     if (!result.rods[r].reported || !(only.steady || only.stability || only.shape)) continue;

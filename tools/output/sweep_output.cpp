@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -167,8 +168,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   notes.insert(notes.end(), result.notes.begin(), result.notes.end());
   if (!notes.empty()) json["notes"] = std::move(notes);
   std::vector<std::string> warnings = scene.scene().warnings;
-  for (std::string& sentence : theory_warnings(scene, result)) warnings.push_back(std::move(sentence));
-  for (std::string& sentence : limit_warnings(scene, result)) warnings.push_back(std::move(sentence));
+  for (std::string& sentence : sweep_warnings(scene, result)) warnings.push_back(std::move(sentence));
   if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["tolerance"] = scene.settings().tolerance;
   json["units"] = units_json(units);
@@ -213,6 +213,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   }
   if (result.searched_bands) {
     Json& bands = json["unstable_bands"] = Json::object();
+    Json& not_excluded = json["not_excluded"] = Json::object();
     Json& details = json["band_details"] = Json::object();
     for (const SweepRod& rod : result.rods) {
       if (!rod.reported) continue;
@@ -222,6 +223,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
         list.push_back(band_json(band));
       }
       bands[rod.name] = std::move(pairs);
+      not_excluded[rod.name] = rod.not_excluded;
       details[rod.name] = std::move(list);
     }
   }
@@ -418,6 +420,26 @@ CsvFile bands_csv(const SweepScene& scene, const SweepResult& result) {
           kind(band.kind_from), kind(band.kind_to), band.fastest, band.fastest_x;
     }
   }
+  return file;
+}
+
+CsvFile not_excluded_csv(const SweepScene& scene, const SweepResult& result) {
+  CsvFile file;
+  file.name = "not_excluded.csv";
+  std::string rods;
+  std::size_t count = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
+    count += result.rods[r].not_excluded.size();
+  }
+  file.comment = {about(scene, "where further unstable bands or stable gaps are not excluded along " + scene.axis().path),
+                  "rods: " + rods};
+  file.columns = {"rod", axis_label(scene) + " from", "to"};
+  file.rows.resize(static_cast<Eigen::Index>(count), 3);
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    for (const auto& [from, to] : result.rods[r].not_excluded)
+      file.rows.row(row++) << static_cast<double>(r + 1), from, to;
   return file;
 }
 

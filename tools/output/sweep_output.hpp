@@ -24,6 +24,7 @@ namespace hb::tools {
 // One row per critical point, one per unstable band; the first column is the number of the rod (from 1).
 [[nodiscard]] CsvFile critical_csv(const SweepScene& scene, const SweepResult& result);
 [[nodiscard]] CsvFile bands_csv(const SweepScene& scene, const SweepResult& result);
+[[nodiscard]] CsvFile not_excluded_csv(const SweepScene& scene, const SweepResult& result);
 
 // Columns of sweep_rod_csv, from 1 as in gnuplot; 0: not there.
 struct SweepColumns {

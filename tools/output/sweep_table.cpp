@@ -102,6 +102,9 @@ void add_bands(Text& text, const SweepScene& scene, const SweepRod& rod) {
         band.fastest_x, unit, band.open_from ? "before the sweep" : kind_words(band.kind_from, linkage),
         band.open_to ? "beyond the sweep" : kind_words(band.kind_to, linkage));
   }
+  if (!rod.not_excluded.empty()) add(text, "  bands or gaps not excluded\n");
+  for (const auto& [from, to] : rod.not_excluded)
+    add(text, "    {:.12g} .. {:.12g}{}, width {:.2g}\n", from, to, unit, to - from);
 }
 
 void add_peaks(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r) {
@@ -182,9 +185,8 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
   for (const std::string& sentence : result.notes) add(text, "NOTE: {}\n", sentence);
   for (const std::string& warning : scene.scene().warnings) add(text, "WARNING: {}\n", warning);
-  if (has_theory(scene, result))
-    for (const std::string& warning : theory_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
-  for (const std::string& warning : limit_warnings(scene, result)) add(text, "WARNING: {}\n", warning);
+  for (const std::string& warning : sweep_warnings(scene, result))
+    if (!warning.ends_with("theory not judged: q was not computed")) add(text, "WARNING: {}\n", warning);
   if (!verdict.empty()) add(text, "Verdict: {}\n", verdict);
   return fmt::to_string(text);
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tools/output/path_unit.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 
 namespace hb::tools {
@@ -130,6 +131,26 @@ std::string sweep_title_verdict(const SweepResult& result) {
   const NamedVerdicts verdicts = worst_along(result);
   const std::string text = title_verdict(verdicts);
   return text.starts_with("UNSTABLE") ? "UNSTABLE at some speeds" + text.substr(8) : text;
+}
+
+std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResult& result) {
+  std::vector<std::string> warnings = theory_warnings(scene, result);
+  const std::vector<double>& values = scene.axis().values;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const std::vector<std::array<double, 2>>& places = result.rods[r].not_excluded;
+    if (places.empty()) continue;
+    double width = 0;
+    for (const auto& [from, to] : places) width += to - from;
+    const auto widest = std::ranges::max_element(
+        places, {}, [](const std::array<double, 2>& place) { return place[1] - place[0]; });
+    warnings.push_back(fmt::format(
+        "{}: further unstable bands or stable gaps are not excluded in {:.2g} % of the range, the widest place being "
+        "{} = {:.10g} .. {:.10g}",
+        result.rods[r].name, 100 * width / (values.back() - values.front()), scene.axis().path, (*widest)[0],
+        (*widest)[1]));
+  }
+  for (std::string& sentence : limit_warnings(scene, result)) warnings.push_back(std::move(sentence));
+  return warnings;
 }
 
 }  // namespace hb::tools

@@ -26,4 +26,7 @@ namespace hb::tools {
 // The same, short, for titles of pictures.
 [[nodiscard]] std::string sweep_title_verdict(const SweepResult& result);
 
+// What the theory does not hold for, where the search for bands was not settled, what is beyond small deflections.
+[[nodiscard]] std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResult& result);
+
 }  // namespace hb::tools

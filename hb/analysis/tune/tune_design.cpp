@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "hb/engine/boundaries/sweep.hpp"
+#include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/design/worst_case.hpp"
 
 namespace hb {
@@ -156,25 +156,23 @@ void DesignAnalysis::find_instabilities() {
   std::vector<std::vector<double>> found(num_nodes);
   SweepOptions options;
   options.stability.method = settings_.stability_method;
-  options.stability.leading_only = true;
   for (const RequiredDecay& required : required_) {
     for (std::size_t r = 0; r < num_rods; ++r) {
       const RodModel& rod = model_.rods[r];
       if (!rod.reported) continue;
       std::vector<StabilitySample> samples;
-      std::vector<TrackedPlace> places;
       for (std::size_t k = 0; k < num_nodes; ++k) {
         const double speed = nodes_[k]->speed;
-        samples.push_back({speed, speed, shifted(known[k][r], required.at(speed))});
+        samples.push_back({speed, speed, shifted(known[k][r], required.at(speed)), {}});
       }
-      for (const StabilitySample& sample : samples) places.push_back({sample.x, sample.speed, &sample.stability});
-      const auto modes = track_modes(places, static_cast<int>(rod.system.num_modes()));
       const SystemAt at = [&](double speed) {
         return std::optional<ScaledSystem>(scale_system(shifted(rod.system, required.at(speed)), speed));
       };
       work_.for_each(num_nodes - 1, [&](std::size_t k) {
-        for (const StabilitySample& sample :
-             look_between(at, samples[k], samples[k + 1], modes[k], modes[k + 1], options))
+        const SearchedInterval interval =
+            search_interval(at, samples[k], samples[k + 1], k > 0 ? &samples[k - 1] : nullptr,
+                            k + 2 < num_nodes ? &samples[k + 2] : nullptr, options);
+        for (const StabilitySample& sample : interval.samples)
           found[k].push_back(sample.x);
       });
     }

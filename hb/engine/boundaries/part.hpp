@@ -1,13 +1,14 @@
 // Results as lists of numbers, so that a part of long work can be kept in a file or come from another process.
 #pragma once
 
+#include <complex>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <vector>
 
-#include "hb/engine/boundaries/sweep.hpp"
+#include "hb/engine/boundaries/interval_search.hpp"
 
 namespace hb {
 
@@ -53,6 +54,14 @@ void visit_as_number(Visit& visit, Number& value) {
   value = static_cast<Number>(number);
 }
 
+template <class Visit>
+void visit_complex(Visit& visit, std::complex<double>& value) {
+  double re = value.real(), im = value.imag();
+  visit(re);
+  visit(im);
+  value = {re, im};
+}
+
 // The size, then each element by `each`.
 template <class Visit, class Container, class Each>
 void visit_elements(Visit& visit, Container& container, Each&& each) {
@@ -81,17 +90,19 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
   Stability& stability = sample.stability;
   visit(sample.x);
   visit(sample.speed);
-  const auto visit_exponent = [&](Exponent& exponent) {
-    double re = exponent.value.real(), im = exponent.value.imag();
-    visit(re);
-    visit(im);
-    exponent.value = {re, im};
-    visit(exponent.error);
-    visit_as_number(visit, exponent.mode);
-    visit(exponent.frequency);
-  };
-  visit_elements(visit, stability.exponents, visit_exponent);
-  visit_elements(visit, stability.uncertain, visit_exponent);
+  for (std::vector<Exponent>* list : {&stability.exponents, &stability.uncertain}) {
+    visit_elements(visit, *list, [&](Exponent& exponent) {
+      visit_complex(visit, exponent.value);
+      visit(exponent.error);
+      visit_as_number(visit, exponent.mode);
+      visit(exponent.frequency);
+    });
+  }
+  visit_elements(visit, sample.mean, [&](MeanExponent& exponent) {
+    visit_complex(visit, exponent.value);
+    visit(exponent.coupling);
+  });
+  visit(sample.growth_bound);
   visit(stability.growth_rate);
   visit(stability.growth_error);
   visit(stability.growth_low);
@@ -109,8 +120,19 @@ void visit_boundary(Visit& visit, StabilityBoundary& boundary) {
   visit_as_number(visit, boundary.converged);
 }
 
-// compute(0) .. compute(count - 1) by `parts` (empty: one after the other), results that visit(visitor, result) writes
-// and reads as numbers where they have to leave the process.
+template <class Visit>
+void visit_interval(Visit& visit, SearchedInterval& interval) {
+  visit_elements(visit, interval.boundaries, [&](StabilityBoundary& boundary) { visit_boundary(visit, boundary); });
+  visit_elements(visit, interval.samples, [&](StabilitySample& sample) { visit_sample(visit, sample); });
+  visit_elements(visit, interval.not_excluded, [&](std::array<double, 2>& piece) {
+    visit(piece[0]);
+    visit(piece[1]);
+  });
+  visit_as_number(visit, interval.evaluations);
+}
+
+// part(0) .. part(count - 1) by `parts` (empty: one after the other) of results that visit(visitor, result) writes and
+// reads as numbers.
 template <class Result, class Visit>
 std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
                                    const std::function<Result(std::size_t)>& compute, const Visit& visit) {

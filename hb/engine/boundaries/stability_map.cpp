@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "hb/engine/boundaries/edge_search.hpp"
+#include "hb/engine/boundaries/interval_search.hpp"
 
 namespace hb {
 
@@ -66,10 +66,13 @@ struct Crossing {
   StabilityBoundary boundary;
 };
 
+constexpr std::size_t none = static_cast<std::size_t>(-1);
+
 struct Edge {
   Edge(std::size_t from, std::size_t to, bool horizontal) : a(from), b(to), along_x(horizontal) {}
   std::size_t a, b;
   bool along_x;
+  std::size_t before = none, after = none;  // nodes next to its ends on the same line
   std::array<std::size_t, 2> children{};
   std::size_t middle = 0;
   bool halved = false;
@@ -90,7 +93,10 @@ class Mesh {
         y_(std::move(y)),
         options_(options),
         grid_alone_(every_value && !options.boundaries) {
-    at_nodes_ = rough_exponents(options.search.stability);
+    along_edges_ = options.search;
+    constexpr double rough_tolerance = 1e-9;
+    along_edges_.stability.tolerance = std::max(options.search.stability.tolerance, rough_tolerance);
+    at_nodes_ = along_edges_.stability;
     at_nodes_.leading_only = grid_alone_;
     at_nodes_.verdict_only = grid_alone_ && options.verdict_only;
     leading_ = at_nodes_;
@@ -99,7 +105,6 @@ class Mesh {
 
   void build() {
     first_mesh();
-    make_edge_search();
     evaluate();
     if (grid_alone_) return;
     growth_range();
@@ -149,6 +154,11 @@ class Mesh {
     return edges_.size() - 1;
   }
 
+  void set_beside(std::size_t edge, std::size_t before, std::size_t after) {
+    edges_[edge].before = before;
+    edges_[edge].after = after;
+  }
+
   static std::vector<int> first_places(const Axis& axis) {
     std::vector<int> places;
     for (int i = 0; i < axis.last(); i += axis.base) places.push_back(i);
@@ -167,7 +177,9 @@ class Mesh {
       for (std::size_t i = 0; i < nx; ++i) {
         const std::size_t node = i + nx * j;
         bottom.push_back(i + 1 < nx ? add_edge(node, node + 1, true) : 0);
+        if (i + 1 < nx) set_beside(bottom.back(), i > 0 ? node - 1 : none, i + 2 < nx ? node + 2 : none);
         left.push_back(j + 1 < ny ? add_edge(node, node + nx, false) : 0);
+        if (j + 1 < ny) set_beside(left.back(), j > 0 ? node - nx : none, j + 2 < ny ? node + 2 * nx : none);
       }
     }
     for (std::size_t j = 0; j + 1 < ny; ++j) {
@@ -175,15 +187,6 @@ class Mesh {
         const std::size_t node = i + nx * j;
         cells_.push_back({{node, node + 1, node + nx + 1, node + nx},
                           {bottom[node], left[node + 1], bottom[node + nx], left[node]}});
-      }
-    }
-  }
-
-  void make_edge_search() {
-    for (const Node& node : nodes_) {
-      if (const std::optional<ScaledSystem> system = at_(x_.at(node.i), y_.at(node.j))) {
-        edge_search_.emplace(options_.search, static_cast<int>(system->num_modes()));
-        return;
       }
     }
   }
@@ -244,10 +247,16 @@ class Mesh {
       ++samples_;
       return edge.along_x ? at_(t, fixed) : at_(fixed, t);
     };
-    StabilitySample first = *a.sample, last = *b.sample;
-    first.x = coordinate(edge.a, edge.along_x);
-    last.x = coordinate(edge.b, edge.along_x);
-    return edge_search_->boundaries(along, first, last);
+    const auto sample_at = [&](std::size_t node) {
+      std::optional<StabilitySample> sample;
+      if (node != none) sample = nodes_[node].sample;
+      if (sample) sample->x = coordinate(node, edge.along_x);
+      return sample;
+    };
+    const auto before = sample_at(edge.before), first = sample_at(edge.a), last = sample_at(edge.b),
+               after = sample_at(edge.after);
+    return search_interval(along, *first, *last, before ? &*before : nullptr, after ? &*after : nullptr, along_edges_)
+        .boundaries;
   }
 
   void growth_range() {
@@ -355,6 +364,8 @@ class Mesh {
     for (const std::size_t c : edge.crossings) {
       edges_[children[crossings_[c].boundary.x < t ? 0 : 1]].crossings.push_back(c);
     }
+    set_beside(children[0], edge.before, edge.b);
+    set_beside(children[1], edge.a, edge.after);
     // An edge without crossings was searched as a whole.
     new_edges_[new_edges_.size() - 2].search = new_edges_[new_edges_.size() - 1].search = !edge.crossings.empty();
     edges_[e].children = children;
@@ -530,8 +541,8 @@ class Mesh {
   const Axis x_, y_;
   const MapOptions& options_;
   const bool grid_alone_;  // every point evaluated, nothing between them
+  SweepOptions along_edges_;
   StabilityOptions at_nodes_, leading_;  // leading_: where the leading exponents suffice
-  std::optional<EdgeSearch> edge_search_;  // empty while no system was seen
   mutable std::atomic<std::size_t> samples_ = 0;
   std::vector<Node> nodes_;
   std::vector<Edge> edges_;

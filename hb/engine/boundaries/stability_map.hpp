@@ -1,5 +1,5 @@
 // Stability of one system over two of its parameters x, y: growth rate and verdict on a grid, and the curves where the
-// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (look_between).
+// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (interval_search.hpp).
 #pragma once
 
 #include <cstddef>

@@ -1,0 +1,275 @@
+#include "hb/engine/boundaries/encounters.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hb {
+
+namespace {
+
+// Growth of the exponents that belong to each mean exponent, the larger one of both places. One that is locked to
+// another belongs to either: while unstable those without any count as its partners.
+std::vector<double> growth_by_mean(const Place& p, const Place& q) {
+  std::vector<double> growth(p.mean.size(), -HUGE_VAL);
+  for (const Place* place : {&p, &q})
+    for (const Strand& strand : place->strands.all)
+      if (!strand.mean.empty()) growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
+  for (std::size_t k = 0; k < growth.size(); ++k)
+    if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
+  return growth;
+}
+
+// Imaginary part modulo 1/2 of where two strands meet.
+double meeting_point(const Strands& s, std::size_t a, std::size_t b) {
+  const double m = s.all[b].s.imag() + 0.5 * folded(s.all[a].s - s.all[b].s).imag();
+  return m - 0.5 * std::round(2 * m);
+}
+
+// What the leading strand is locked to, or nearly so: with unlike damping two go on exciting each other some way apart.
+std::size_t companion(const Strands& strands) {
+  constexpr double farthest = 0.05;
+  if (strands.all[0].partner != no_strand) return strands.all[0].partner;
+  std::size_t nearest = no_strand;
+  double least = farthest;
+  for (std::size_t k = 1; k < strands.all.size(); ++k) {
+    if (const double distance = apart(strands, 0, k); distance < least) {
+      least = distance;
+      nearest = k;
+    }
+  }
+  return nearest;
+}
+
+bool locked(const Place& p, std::size_t k) { return p.strands.all[k].partner != no_strand; }
+
+// Without what it is locked to.
+double decay(const Place& p, std::size_t k) {
+  const std::vector<Strand>& all = p.strands.all;
+  const double s = all[k].s.real();
+  return std::max(0.0, locked(p, k) ? -0.5 * (s + all[all[k].partner].s.real()) : -s);
+}
+
+// Multiplier +1, -1 or complex, of a locked pair.
+BoundaryKind kind_of(const Strand& strand) {
+  constexpr double slack = 1e-7;
+  const double turn = std::abs(strand.s.imag());
+  return turn <= slack ? BoundaryKind::plus_one : turn >= 0.5 - slack ? BoundaryKind::minus_one : BoundaryKind::complex;
+}
+
+}  // namespace
+
+double apart(const Strands& strands, std::size_t a, std::size_t b) {
+  return std::abs(folded(strands.all[a].s - strands.all[b].s).imag());
+}
+
+std::vector<double> motions(const Place& p, const Place& q) {
+  const std::vector<std::size_t> onward = continued(p.strands, q.strands);
+  std::vector<double> motion(p.strands.all.size());
+  for (std::size_t k = 0; k < motion.size(); ++k) {
+    motion[k] = 2 * mean_motion(p.strands, q.strands, k);
+    if (onward[k] != no_strand) motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
+  }
+  return motion;
+}
+
+Place Encounters::place(const StabilitySample& sample) const {
+  Place made;
+  made.sample = sample;
+  made.mean = sample.mean;
+  if (made.mean.empty()) {
+    if (const std::optional<ScaledSystem> system = at_(sample.x)) made.mean = mean_exponents(*system);
+  }
+  made.strands = strands_of(sample, made.mean);
+  made.unstable = is_unstable(sample);
+  return made;
+}
+
+const ParametricCoupling* Encounters::coupling(Place& p) const {
+  if (!p.coupling) {
+    const std::optional<ScaledSystem> system = at_(p.x());
+    if (!system) return nullptr;
+    p.coupling = std::make_shared<ParametricCoupling>(*system, options_.max_order);
+  }
+  return p.coupling.get();
+}
+
+// Two exponents that meet grow if their coupling exceeds the root of the product of their decays.
+double Encounters::needed_coupling(double growth, double other) const {
+  return std::max(std::sqrt(std::max(-growth, 0.0) * std::max(-other, 0.0)), options_.least_growth);
+}
+
+bool Encounters::resolved(Place& p, Place& q, double most) const {
+  if (p.mean.size() != q.mean.size()) return true;
+  const std::size_t n = p.mean.size();
+  const std::vector<double> growth = growth_by_mean(p, q);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double at_p = p.mean[j].value.imag() - p.mean[i].value.imag();
+      const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
+      if (!(std::abs(at_p - at_q) > most)) continue;
+      // Two of which one grows leave a gap only if they decay together.
+      const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
+      if (p.unstable && (larger < 0 || larger + smaller > 0)) continue;
+      const double quenching = std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
+      const double needed = p.unstable ? quenching : needed_coupling(larger, smaller);
+      if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling), std::min(q.mean[i].coupling, q.mean[j].coupling)) <
+          needed)
+        continue;
+      const ParametricCoupling *of_p = coupling(p), *of_q = coupling(q);
+      if (of_p == nullptr || of_q == nullptr) return false;
+      const int first = std::max(1, static_cast<int>(std::ceil(std::min(at_p, at_q) - 0.5)));
+      const int last = std::min(options_.max_order, static_cast<int>(std::floor(std::max(at_p, at_q) + 0.5)));
+      for (int k = first; k <= last; ++k)
+        if (!(std::max((*of_p)(i, j, k), (*of_q)(i, j, k)) < needed)) return false;
+    }
+  }
+  return true;
+}
+
+// How far two strands of p that may excite each other move against each other on the way to q at most, twice as far
+// as their mean exponents; negative: they do not excite each other.
+double Encounters::exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const {
+  const Strand &s = p.strands.all[a], &t = p.strands.all[b];
+  const bool comparable = p.mean.size() == q.mean.size();
+  double motion = s.mean.empty() || t.mean.empty() ? HUGE_VAL : -1;
+  for (const std::size_t n : s.mean) {
+    for (const std::size_t r : t.mean) {
+      const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
+      const double moved =
+          !comparable ? HUGE_VAL : 2 * (std::abs(q.mean[n].value.imag() - in) + std::abs(q.mean[r].value.imag() - ir));
+      if (n == r || moved <= motion || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
+      const ParametricCoupling* strength = coupling(p);
+      if (strength == nullptr) return HUGE_VAL;
+      const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
+      const int k = static_cast<int>(std::round(to - from));
+      const bool excites = k == 0 ? !(strength->symmetric() && in * ir > 0)
+                                  : !((k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k)) < needed);
+      if (excites) motion = moved;
+    }
+  }
+  return motion;
+}
+
+std::vector<Meeting> Encounters::meetings(Place& p, const Place& q, double least) const {
+  std::vector<Meeting> found;
+  const Strands &sp = p.strands, &sq = q.strands;
+  const std::vector<double> motion = motions(p, q);
+  std::vector<double> mean_part;
+  for (std::size_t k = 0; k < motion.size(); ++k) mean_part.push_back(2 * mean_motion(sp, sq, k));
+  for (std::size_t a = 0; a < sp.all.size(); ++a) {
+    for (std::size_t b = a + 1; b < sp.all.size(); ++b) {
+      const double most = motion[a] + motion[b] + 1e-12, here = apart(sp, a, b);
+      if (here > most) continue;
+      // What they move is more than what locks them, and than the growth that this gives.
+      const double mean = 0.5 * (sp.all[a].s.real() + sp.all[b].s.real());
+      if (mean + 0.5 * (most + std::abs(sp.all[a].s.real() - sp.all[b].s.real())) < 0) continue;
+      const double point = meeting_point(sp, a, b);
+      if (point < -1e-12) continue;  // the conjugate pair's
+      double there = HUGE_VAL, there_all = HUGE_VAL;  // along the axis; in all
+      for (std::size_t c = 0; c < sq.all.size(); ++c)
+        for (std::size_t d = c + 1; d < sq.all.size(); ++d) {
+          const double away = meeting_point(sq, c, d) - point;
+          if (std::abs(away - 0.5 * std::round(2 * away)) > most || apart(sq, c, d) > there) continue;
+          there = apart(sq, c, d);
+          there_all = std::abs(folded(sq.all[c].s - sq.all[d].s));
+        }
+      if (!(here + there <= most)) continue;
+      // Two that stay together, so near that nothing grows.
+      constexpr double together = 0.2, far = 0.9;
+      if (std::max(std::abs(folded(sp.all[a].s - sp.all[b].s)), there_all) < -together * mean && most < far) continue;
+      const double needed = needed_coupling(sp.all[a].s.real(), sp.all[b].s.real());
+      const double exciting = exciting_motion(p, q, a, b, std::max(needed, least));
+      const double sum = here + there, moved = exciting + motion[a] + motion[b] - mean_part[a] - mean_part[b];
+      if (exciting < 0 || sum > moved + 1e-12) continue;
+      // Where they have hardly come nearer than they may have moved, nothing is known of the place.
+      const double part = sum > 0.15 * moved ? here / sum : 0.5;
+      found.push_back({a, b, p.x() + (q.x() - p.x()) * part});
+    }
+  }
+  return found;
+}
+
+// Upper estimate of the coupling of two strands of p; infinite if they cannot be named.
+double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b) const {
+  const Strand &s = p.strands.all[a], &t = p.strands.all[b];
+  const ParametricCoupling* strength = coupling(p);
+  if (strength == nullptr || s.mean.empty() || t.mean.empty()) return HUGE_VAL;
+  double largest = 0;
+  for (const std::size_t n : s.mean) {
+    for (const std::size_t r : t.mean) {
+      if (n == r) continue;
+      const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
+      const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
+      const int k = static_cast<int>(std::round(to - from));
+      if (k == 0)
+        largest = strength->symmetric() && in * ir > 0 ? largest : HUGE_VAL;
+      else
+        largest = std::max(largest, k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k));
+    }
+  }
+  return largest;
+}
+
+// The leading pair is the same at both places: of one kind, and no others that could take its place with half of
+// `growth` are about to lock or have just unlocked beside it.
+bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
+  const std::vector<Strand>& all = p.strands.all;
+  const BoundaryKind kind = kind_of(all[0]);
+  if (kind != kind_of(q.strands.all[0])) return false;
+  const std::vector<double> motion = motions(p, q);
+  const std::size_t b = companion(p.strands);
+  if (kind == BoundaryKind::complex &&
+      std::abs(std::abs(all[0].s.imag()) - std::abs(q.strands.all[0].s.imag())) > motion[0])
+    return false;
+  const auto belongs = [&](std::size_t c, std::size_t k) {
+    return c == k || std::abs(folded(all[c].s - std::conj(all[k].s))) <= 1e-7 + 2 * (all[c].error + all[k].error);
+  };
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (belongs(c, 0) || belongs(c, b) || locked(p, c) || apart(p.strands, 0, c) > motion[0] + motion[c]) continue;
+    for (std::size_t d = 0; d < all.size(); ++d) {
+      if (d == c || apart(p.strands, c, d) > motion[c] + motion[d]) continue;
+      const double g = 0.5 * growth;
+      if (exciting_motion(p, q, c, d, std::sqrt((g + decay(p, c)) * (g + decay(p, d)))) >= 0) return false;
+    }
+  }
+  return true;
+}
+
+// Q = kappa^2 - delta^2 of the leading pair, delta half of what the two would be apart, cannot fall to zero:
+// |dQ| <= 2 kappa |d delta|.
+bool Encounters::locked_throughout(Place& p, const Place& q) const {
+  const std::size_t b = p.strands.all[0].partner;
+  if (b == no_strand) return false;
+  const std::vector<double> motion = motions(p, q);
+  const double half = 0.5 * (p.strands.all[0].s.real() - p.strands.all[b].s.real());
+  const double mean = 0.5 * (p.strands.all[0].s.real() + p.strands.all[b].s.real());
+  // What is left of Q has to exceed what the two decay.
+  const double Q = half * half - std::min(mean, 0.0) * std::min(mean, 0.0);
+  const double moved = motion[0] + motion[b];
+  if (!(Q > moved * half)) return false;
+  return Q > moved * std::max(half, largest_coupling(p, 0, b));
+}
+
+bool Encounters::lock_holds(Place& p, Place& q) const {
+  if (companion(p.strands) == no_strand || companion(q.strands) == no_strand) return false;
+  const double growth = std::min(p.growth(), q.growth());
+  if (same_lock(p, q, growth) && same_lock(q, p, growth)) return true;
+  return locked_throughout(p, q) || locked_throughout(q, p);
+}
+
+bool Encounters::locked_alike(const Place& p, const Place& q) {
+  return !p.strands.all.empty() && !q.strands.all.empty() && locked(p, 0) && locked(q, 0) &&
+         kind_of(p.strands.all[0]) == kind_of(q.strands.all[0]);
+}
+
+bool Encounters::alone(Place& p, const Place& q, std::size_t k) const {
+  if (locked(p, k)) return false;
+  const std::vector<double> motion = motions(p, q);
+  for (std::size_t c = 0; c < p.strands.all.size(); ++c) {
+    if (c == k || apart(p.strands, k, c) > motion[k] + motion[c]) continue;
+    if (exciting_motion(p, q, k, c, options_.least_growth) >= 0) return false;
+  }
+  return true;
+}
+
+}  // namespace hb

@@ -1,0 +1,75 @@
+// Which exponents may meet on the way from one place to another, and which stay locked to each other. Nothing is
+// unfolded and nothing is remembered from farther away. See hb/engine/README.md, "Boundaries".
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "hb/engine/boundaries/boundary.hpp"
+#include "hb/engine/boundaries/stability_sample.hpp"
+#include "hb/engine/boundaries/strands.hpp"
+
+namespace hb {
+
+// A sample and its exponents.
+struct Place {
+  StabilitySample sample;
+  Strands strands;
+  std::vector<MeanExponent> mean;
+  std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
+  bool unstable = false;
+
+  double x() const { return sample.x; }
+  double growth() const { return sample.stability.growth_rate / sample.speed; }
+  double growth_error() const { return sample.stability.growth_error / sample.speed; }
+};
+
+// Two strands of the first of two places.
+struct Meeting {
+  std::size_t a = 0, b = 0;
+  double x = 0;  // where they meet, roughly
+};
+
+// Imaginary parts of two strands of one place apart, modulo 1: 0 .. 1/2.
+[[nodiscard]] double apart(const Strands& strands, std::size_t a, std::size_t b);
+
+// Twice what the mean exponents of each strand of p move on the way to q, and what the strand itself seems to have
+// moved.
+[[nodiscard]] std::vector<double> motions(const Place& p, const Place& q);
+
+// Refers to its arguments.
+class Encounters {
+ public:
+  Encounters(const SystemAt& at, const SweepOptions& options) : at_(at), options_(options) {}
+
+  Place place(const StabilitySample& sample) const;
+
+  // No two mean exponents that may excite each other (while unstable: quench) move by more than `most` against each
+  // other.
+  bool resolved(Place& p, Place& q, double most) const;
+
+  // Pairs of p's strands that may come together on the way to q and make each other grow by more than `least`.
+  std::vector<Meeting> meetings(Place& p, const Place& q, double least) const;
+
+  // The two exponents that give the growth at p are locked to each other and stay so to q, or those of q to p.
+  bool lock_holds(Place& p, Place& q) const;
+
+  // The exponents that give the growth are locked, to multipliers of one kind.
+  static bool locked_alike(const Place& p, const Place& q);
+
+  // No other strand of p that may excite strand k comes near it on the way to q.
+  bool alone(Place& p, const Place& q, std::size_t k) const;
+
+ private:
+  const ParametricCoupling* coupling(Place& p) const;
+  double needed_coupling(double growth, double other) const;
+  double exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const;
+  double largest_coupling(Place& p, std::size_t a, std::size_t b) const;
+  bool same_lock(Place& p, const Place& q, double growth) const;
+  bool locked_throughout(Place& p, const Place& q) const;
+
+  const SystemAt& at_;
+  const SweepOptions& options_;
+};
+
+}  // namespace hb

@@ -1,0 +1,123 @@
+#include "hb/engine/boundaries/growth_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace hb {
+
+namespace {
+
+using cplx = std::complex<double>;
+// The last term of an interpolation may be small by chance.
+constexpr double safety = 3;
+
+}  // namespace
+
+GrowthNode pair_node(double x, cplx a, cplx b, double error_a, double error_b) {
+  const cplx apart(a.real() - b.real(), a.imag() - b.imag() - std::round(a.imag() - b.imag()));
+  const double error = 0.5 * (error_a + error_b);
+  return {x,     0.5 * (a.real() + b.real()),      b.imag() + 0.5 * apart.imag(), 0.25 * apart * apart,
+          error, (std::abs(apart) + error) * error};
+}
+
+GrowthModel::GrowthModel(std::vector<GrowthNode> nodes) : nodes_(std::move(nodes)) {
+  for (GrowthNode& node : nodes_) {
+    real_ = real_ && std::abs(node.Q.imag()) <= 4 * node.Q_error + 1e-14 * std::abs(node.Q);
+    node.angle -= std::round(node.angle - nodes_.front().angle);
+  }
+}
+
+// Newton's divided differences; value and error.
+template <class Value, class Of>
+std::pair<Value, double> GrowthModel::interpolated(double x, const Of& of) const {
+  const std::size_t n = nodes_.size();
+  std::array<Value, 4> d{};
+  for (std::size_t k = 0; k < n; ++k) d[k] = of(nodes_[k]);
+  Value sum = d[0], last{};
+  double product = 1;
+  for (std::size_t order = 1; order < n; ++order) {
+    for (std::size_t k = n - 1; k >= order; --k) d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
+    product *= x - nodes_[order - 1].x;
+    last = d[order] * product;
+    sum += last;
+  }
+  return {sum, n < 3 ? HUGE_VAL : std::abs(last)};
+}
+
+bool GrowthModel::consistent() const {
+  constexpr double part = 0.1, angle = 0.01;
+  GrowthModel others({nodes_.begin(), nodes_.end() - 1});
+  const GrowthNode& last = nodes_.back();
+  double scale = 0, moved = 0;
+  for (const GrowthNode& node : nodes_) {
+    scale = std::max(scale, std::abs(node.Q));
+    moved = std::max(moved, std::abs(node.angle - last.angle));
+  }
+  const cplx Q = others.interpolated<cplx>(last.x, [](const GrowthNode& node) { return node.Q; }).first;
+  const double turns = others.interpolated<double>(last.x, [](const GrowthNode& node) { return node.angle; }).first;
+  return std::abs(Q - last.Q) <= part * scale && std::abs(turns - last.angle) <= angle + part * moved;
+}
+
+GrowthBounds GrowthModel::operator()(double x) const {
+  const auto [growth, growth_change] = interpolated<double>(x, [](const GrowthNode& node) { return node.growth; });
+  const auto [Q, Q_change] = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; });
+  double growth_error = safety * growth_change, E = safety * Q_change;
+  double node_growth_error = 0, node_Q_error = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    node_growth_error = std::max(node_growth_error, nodes_[k].growth_error);
+    node_Q_error = std::max(node_Q_error, nodes_[k].Q_error);
+  }
+  growth_error += node_growth_error;
+  E += node_Q_error;
+  double low, high;
+  if (real_) {
+    low = std::sqrt(std::max(Q.real() - E, 0.0));
+    high = std::sqrt(std::max(Q.real() + E, 0.0));
+  } else {
+    const double root = std::abs(std::sqrt(Q).real()), size = std::abs(Q);
+    const double change = size > E ? std::min(std::sqrt(E), E / (2 * std::sqrt(size - E))) : std::sqrt(E);
+    low = std::max(root - change, 0.0);
+    high = root + change;
+  }
+  return {growth - growth_error + low, growth + growth_error + high};
+}
+
+double GrowthModel::rise() const {
+  const double x = centre();
+  const double Q = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; }).first.real();
+  return Q - std::max(nodes_[0].Q.real(), nodes_[1].Q.real());
+}
+
+double GrowthModel::centre() const {
+  const auto value = [&](double x) {
+    return interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; }).first.real();
+  };
+  double low = nodes_[0].x, high = nodes_[1].x;
+  // The best of a few places, then golden sections about it.
+  constexpr int places = 16;
+  double best = 0.5 * (low + high), f_best = -HUGE_VAL;
+  for (int k = 0; k <= places; ++k) {
+    const double x = low + (high - low) * k / places;
+    if (const double f = value(x); f > f_best) {
+      f_best = f;
+      best = x;
+    }
+  }
+  const double step = (high - low) / places;
+  double a = std::max(low, best - step), b = std::min(high, best + step);
+  // A parabola through three values is exact near the vertex.
+  const double m = 0.5 * (a + b), fa = value(a), fm = value(m), fb = value(b);
+  const double curvature = (fa - 2 * fm + fb) / (0.25 * (b - a) * (b - a));
+  double x = curvature < 0 ? m - (fb - fa) / (b - a) / curvature : best;
+  for (int k = 0; k < 3 && curvature < 0; ++k) {
+    const double h = 1e-3 * (high - low);
+    const double slope = (value(x + h) - value(x - h)) / (2 * h),
+                 second = (value(x + h) - 2 * value(x) + value(x - h)) / (h * h);
+    if (!(second < 0)) break;
+    x -= slope / second;
+  }
+  return std::isfinite(x) && x > low && x < high ? x : best;
+}
+
+}  // namespace hb

@@ -1,0 +1,440 @@
+#include "hb/engine/boundaries/interval_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <queue>
+
+#include "hb/engine/boundaries/encounters.hpp"
+#include "hb/engine/boundaries/growth_model.hpp"
+#include "hb/engine/exponents/growth_bound.hpp"
+
+namespace hb {
+
+namespace {
+
+using cplx = std::complex<double>;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+// Two exponents move by this part of a turn against each other at most from place to place, where they may excite each
+// other.
+constexpr double most_motion = 0.25, most_motion_while_unstable = 0.15;
+// Models take places no farther away than that.
+constexpr double most_motion_of_models = 0.5;
+// Intervals are not divided below this, relative to x: narrower bands are not looked for.
+constexpr double least_width = 2e-9;
+constexpr int most_divisions = 48;
+constexpr int most_evaluations = 200, most_evaluations_per_boundary = 50;
+
+struct Cell {
+  double from, to;  // places
+  int divisions = 0;
+  bool operator<(const Cell& other) const {
+    const double width = to - from, other_width = other.to - other.from;
+    return width != other_width ? width < other_width : from > other.from;
+  }
+};
+
+class Search {
+ public:
+  Search(const SystemAt& at, const SweepOptions& options) : at_(at), options_(options), encounters_(at, options) {
+    located_ = options;
+    located_.stability.leading_only = true;
+  }
+
+  SearchedInterval run(const StabilitySample& a, const StabilitySample& b, const StabilitySample* before,
+                       const StabilitySample* after) {
+    for (const StabilitySample* sample : {before, &a, &b, after})
+      if (sample != nullptr) places_.emplace(sample->x, encounters_.place(*sample));
+    first_ = a.x;
+    last_ = b.x;
+    cells_.push({a.x, b.x, 0});
+    while (!cells_.empty()) {
+      const Cell cell = cells_.top();
+      cells_.pop();
+      if (places_.at(cell.from).unstable != places_.at(cell.to).unstable)
+        split_at_boundary(cell);
+      else
+        settle(cell);
+    }
+    return result();
+  }
+
+ private:
+  using Node = std::map<double, Place>::iterator;
+
+  // A growth that is not told from none between two places.
+  double least_growth(const Place& p, const Place& q) const {
+    double least = options_.least_growth;
+    for (const Place* place : {&p, &q})
+      if (place->growth_error() < 1) least = std::max(least, place->growth_error());
+    return least;
+  }
+
+  bool evaluate(double x) {
+    ++evaluations_;
+    const std::optional<StabilitySample> sample = stability_sample(at_, x, options_.stability);
+    if (!sample || !std::isfinite(sample->stability.growth_rate)) return false;
+    places_.emplace(x, encounters_.place(*sample));
+    return true;
+  }
+
+  void give_up(const Cell& cell) { not_excluded_.push_back({cell.from, cell.to}); }
+
+  // --- A change of verdict in the cell ---
+
+  void split_at_boundary(const Cell& cell) {
+    const Place &p = places_.at(cell.from), &q = places_.at(cell.to);
+    StabilityBoundary boundary = locate_boundary(at_, p.sample, q.sample, located_);
+    const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
+    const StabilitySample& inside = places_.at(boundary.unstable_above ? right : left).sample;
+    if (leading_resolved(inside.stability)) boundary.kind = boundary_kind(inside.stability, inside.speed);
+    boundaries_.push_back(boundary);
+    if (right < cell.to) cells_.push({right, cell.to, cell.divisions + 1});
+    if (left > cell.from) cells_.push({cell.from, left, cell.divisions + 1});
+  }
+
+  // The nearest place on one side of the boundary that shows the verdict of that side.
+  double beside(const StabilityBoundary& boundary, const Cell& cell, int side) {
+    const double end = side < 0 ? cell.from : cell.to, room = std::abs(end - boundary.x);
+    const bool unstable = boundary.unstable_above == (side > 0);
+    const double least = least_width * std::abs(boundary.x);
+    const double first = std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
+    double beside = end;
+    for (double step = first; step < 0.5 * room; step *= 16) {
+      const double x = boundary.x + side * step;
+      if (places_.contains(x) || !evaluate(x)) break;
+      if (places_.at(x).unstable == unstable) {
+        beside = x;
+        break;
+      }
+      places_.erase(x);
+    }
+    const double skipped = std::abs(beside - boundary.x);
+    if (skipped > std::max(least, 2 * first)) {
+      give_up({std::min(beside, boundary.x), std::max(beside, boundary.x)});
+    }
+    return beside;
+  }
+
+  // --- One verdict at both ends ---
+
+  void settle(const Cell& cell) {
+    const double width = cell.to - cell.from;
+    if (width <= least_width * std::max(std::abs(cell.from), std::abs(cell.to))) return;
+    Place &p = places_.at(cell.from), &q = places_.at(cell.to);
+    const double x = p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
+    if (std::isnan(x)) return;
+    const int affordable = most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size());
+    if (cell.divisions >= most_divisions || evaluations_ >= affordable || !(x > cell.from && x < cell.to) ||
+        !evaluate(x)) {
+      give_up(cell);
+      return;
+    }
+    cells_.push({x, cell.to, cell.divisions + 1});
+    cells_.push({cell.from, x, cell.divisions + 1});
+  }
+
+  // NaN: settled; otherwise where to look.
+  double doubtful_while_stable(Place& p, Place& q) {
+    const double middle = 0.5 * (p.x() + q.x());
+    if (bounded(p, q)) return nan;
+    if (p.strands.all.empty() || q.strands.all.empty()) return middle;
+    if (!encounters_.resolved(p, q, most_motion)) return middle;
+    const double least = least_growth(p, q);
+    double worst = least, where = nan;
+    const auto meeting = encounters_.meetings(p, q, least);
+    for (const Meeting& m : meeting) {
+      const std::optional<GrowthModel> model = pair_model(p, m.a, m.b, q);
+      if (!model) return clamped(m.x, p, q, 0.2);
+      worst = std::max(worst, 2 * model->error());
+      const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
+      if (centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width && model->rise() > 0.25 * far * far)
+        return centre;
+      if (const auto [x, high] = highest(*model, p, q); high > worst) {
+        worst = high;
+        where = central(*model, p, q, x);
+      }
+    }
+    if (!std::isnan(where)) return where;
+    if (level(p, q, least)) return nan;
+    // One that decays several times as fast as the leading one does not rise above zero by itself.
+    constexpr double several = 4;
+    const double slowest = std::min(p.growth(), q.growth());
+    for (std::size_t k = 0; k < p.strands.all.size() && p.strands.all[k].s.real() > several * slowest - least; ++k) {
+      double high = HUGE_VAL, x = middle;
+      for (const std::optional<GrowthModel>& model : {single_model(p, k, q), partner_model(p, k, q)}) {
+        if (!model) continue;
+        if (const auto [x_model, high_model] = highest(*model, p, q); high_model < high) {
+          high = high_model;
+          x = x_model;
+        }
+      }
+      if (high > worst) {
+        worst = high;
+        where = clamped(x, p, q);
+      }
+    }
+    return where;
+  }
+
+  double doubtful_while_unstable(Place& p, Place& q) {
+    const double middle = 0.5 * (p.x() + q.x());
+    if (p.strands.all.empty() || q.strands.all.empty()) return middle;
+    if (!encounters_.resolved(p, q, most_motion_while_unstable)) return middle;
+    if (encounters_.lock_holds(p, q) || level_lock(p, q)) return nan;
+    // Exponents that grow by themselves.
+    std::vector<GrowthModel> models;
+    for (Place* place : {&p, &q}) {
+      Place& other = place == &p ? q : p;
+      for (std::size_t k = 0; k < place->strands.all.size() && place->strands.all[k].s.real() > 0; ++k) {
+        if (!encounters_.alone(*place, other, k)) continue;
+        if (const std::optional<GrowthModel> model = single_model(*place, k, other)) models.push_back(*model);
+      }
+    }
+    if (models.empty()) return middle;
+    double worst = HUGE_VAL, where = middle;
+    for (const double x : probes(p, q)) {
+      double low = -HUGE_VAL;
+      for (const GrowthModel& model : models) low = std::max(low, model(x).low);
+      if (low < worst) {
+        worst = low;
+        where = x;
+      }
+    }
+    return worst > 0 ? nan : clamped(where, p, q);
+  }
+
+  // A closed-form bound on the growth proves stability at both ends and between them with more to spare than it
+  // changes.
+  bool bounded(const Place& p, const Place& q) const {
+    const double a = p.sample.growth_bound, b = q.sample.growth_bound;
+    if (!(std::max(a, b) + std::abs(a - b) < 0)) return false;
+    const std::optional<ScaledSystem> between = at_(0.5 * (p.x() + q.x()));
+    if (!between) return false;
+    const double m = growth_bound(*between);
+    return std::max({a, b, m}) + std::max(std::abs(a - m), std::abs(b - m)) < 0;
+  }
+
+  // Growth that hardly changes.
+  bool level(const Place& p, const Place& q, double least) const {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    const std::vector<const Place*> places = window(p, q);
+    if (places.size() < 3) return false;
+    for (const Place* place : places) {
+      if (place->unstable) return false;
+      low = std::min(low, place->growth());
+      high = std::max(high, place->growth());
+    }
+    return high + 2 * (high - low) <= least;
+  }
+
+  // Two exponents are locked alike at p and q and at a place on either side, with growth that hardly changes: beside a
+  // gap Q would fall in proportion to the distance from it.
+  bool level_lock(const Place& p, const Place& q) const {
+    constexpr double nearest = 0.25, farthest = 4, most_ratio = 1.15;
+    const double width = q.x() - p.x();
+    std::vector<const Place*> places = {&p, &q};
+    for (auto it = places_.find(p.x()); it != places_.begin();) {
+      --it;
+      if (p.x() - it->first < nearest * width) continue;
+      if (p.x() - it->first <= farthest * width) places.push_back(&it->second);
+      break;
+    }
+    for (auto it = std::next(places_.find(q.x())); it != places_.end(); ++it) {
+      if (it->first - q.x() < nearest * width) continue;
+      if (it->first - q.x() <= farthest * width) places.push_back(&it->second);
+      break;
+    }
+    if (places.size() < 4) return false;
+    double low = HUGE_VAL, high = 0;
+    for (const Place* place : places) {
+      if (!place->unstable || !encounters_.locked_alike(*place, p)) return false;
+      low = std::min(low, place->growth());
+      high = std::max(high, place->growth());
+    }
+    return high <= most_ratio * low;
+  }
+
+  // --- Models ---
+
+  // p, q and up to one more on either side or two on one.
+  std::vector<const Place*> window(const Place& p, const Place& q) const {
+    const double room = 1e-4 * std::abs(q.x() - p.x());
+    const auto low = places_.find(std::min(p.x(), q.x())), high = places_.find(std::max(p.x(), q.x()));
+    std::vector<const Place*> left, right;
+    for (auto it = low; it != places_.begin() && left.size() < 2;) {
+      --it;
+      if (low->first - it->first > room && usable(it->second, p)) left.push_back(&it->second);
+    }
+    for (auto it = std::next(high); it != places_.end() && right.size() < 2; ++it)
+      if (it->first - high->first > room && usable(it->second, p)) right.push_back(&it->second);
+    std::vector<const Place*> chosen = {&p, &q};
+    std::size_t l = 0, r = 0;
+    while (chosen.size() < 4 && (l < left.size() || r < right.size())) {
+      const bool take_left = l < left.size() && (r == right.size() || l < r ||
+                                                 (l == r && low->first - left[l]->x() <= right[r]->x() - high->first));
+      chosen.push_back(take_left ? left[l++] : right[r++]);
+    }
+    return chosen;
+  }
+  static bool usable(const Place& place, const Place& like) {
+    return !place.strands.all.empty() && !like.strands.all.empty();
+  }
+
+  // Where strands of p are at another place of its window, from place to place.
+  std::optional<std::vector<std::size_t>> followed(const Place& p, const Place& to,
+                                                   std::vector<std::size_t> strands) const {
+    auto it = places_.find(p.x());
+    const bool up = to.x() > p.x();
+    while (it->first != to.x()) {
+      const auto next = up ? std::next(it) : std::prev(it);
+      if (!usable(next->second, p)) return std::nullopt;
+      const std::vector<std::size_t> onward = continued(it->second.strands, next->second.strands);
+      for (std::size_t& k : strands) {
+        k = onward[k];
+        if (k == no_strand) return std::nullopt;
+      }
+      it = next;
+    }
+    return strands;
+  }
+
+  static std::optional<GrowthModel> consistent_model(std::vector<GrowthNode> nodes, const Place& p, const Place& q) {
+    if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+    GrowthModel model(std::move(nodes));
+    if (!model.consistent()) return std::nullopt;
+    return model;
+  }
+
+  std::optional<GrowthModel> single_model(const Place& p, std::size_t k, const Place& q) const {
+    std::vector<GrowthNode> nodes;
+    for (const Place* place : window(p, q)) {
+      const auto at = followed(p, *place, {k});
+      if (!at) continue;
+      if (place != &p && place != &q && mean_motion(p.strands, place->strands, k) > most_motion_of_models) continue;
+      const Strand& s = place->strands.all[(*at)[0]];
+      nodes.push_back({place->x(), s.s.real(), s.s.imag(), 0, s.error, 0});
+    }
+    return consistent_model(std::move(nodes), p, q);
+  }
+
+  std::optional<GrowthModel> pair_model(const Place& p, std::size_t a, std::size_t b, const Place& q) const {
+    std::vector<GrowthNode> nodes;
+    for (const Place* place : window(p, q)) {
+      const auto at = followed(p, *place, {a, b});
+      if (!at) continue;
+      const Strand &s = place->strands.all[(*at)[0]], &t = place->strands.all[(*at)[1]];
+      // Farther apart they are nearer on the other side.
+      constexpr double farthest = 0.4;
+      if (!(std::abs(folded(s.s - t.s).imag()) <= farthest)) continue;
+      if (place != &p && place != &q &&
+          mean_motion(p.strands, place->strands, a) + mean_motion(p.strands, place->strands, b) > most_motion_of_models)
+        continue;
+      nodes.push_back(pair_node(place->x(), s.s, t.s, s.error, t.error));
+    }
+    if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+    return consistent_model(std::move(nodes), p, q);
+  }
+
+  // With the strand that is nearest.
+  std::optional<GrowthModel> partner_model(const Place& p, std::size_t k, const Place& q) const {
+    std::size_t partner = no_strand;
+    double least = HUGE_VAL;
+    for (std::size_t other = 0; other < p.strands.all.size(); ++other) {
+      if (other == k) continue;
+      const double distance = apart(p.strands, k, other);
+      if (distance < least) {
+        least = distance;
+        partner = other;
+      }
+    }
+    if (partner == no_strand) return std::nullopt;
+    return pair_model(p, k, partner, q);
+  }
+
+  // Dense at both ends, where an interpolation's error vanishes with the distance.
+  static std::vector<double> probes(const Place& p, const Place& q) {
+    std::vector<double> x;
+    const double width = q.x() - p.x();
+    constexpr int middle = 12;
+    for (int k = 1; k < middle; ++k) x.push_back(p.x() + width * k / middle);
+    for (double t = 0.05; t > 1e-6; t *= 0.3) {
+      x.push_back(p.x() + t * width);
+      x.push_back(q.x() - t * width);
+    }
+    return x;
+  }
+
+  static std::pair<double, double> highest(const GrowthModel& model, const Place& p, const Place& q) {
+    double worst = -HUGE_VAL, where = 0.5 * (p.x() + q.x());
+    std::vector<double> all = probes(p, q);
+    all.push_back(model.centre());
+    for (const double x : all) {
+      const double high = model(x).high;
+      if (!(high <= worst)) {
+        worst = high;
+        where = x;
+      }
+    }
+    return {where, worst};
+  }
+
+  // The pair's centre if it is inside, or where its growth is least known.
+  static double central(const GrowthModel& model, const Place& p, const Place& q, double worst) {
+    const double width = q.x() - p.x(), centre = model.centre();
+    return centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width ? centre : clamped(worst, p, q);
+  }
+
+  static double clamped(double x, const Place& p, const Place& q, double part = 0.02) {
+    const double margin = part * (q.x() - p.x());
+    return std::clamp(x, p.x() + margin, q.x() - margin);
+  }
+
+  SearchedInterval result() {
+    SearchedInterval found;
+    found.evaluations = evaluations_;
+    std::sort(boundaries_.begin(), boundaries_.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    found.boundaries = boundaries_;
+    for (std::size_t k = 0; k + 1 < boundaries_.size(); ++k) {
+      const StabilitySample* chosen = nullptr;
+      for (auto it = places_.upper_bound(boundaries_[k].x); it != places_.end() && it->first < boundaries_[k + 1].x;
+           ++it)
+        if (it->first > first_ && it->first < last_ && it->second.unstable == boundaries_[k].unstable_above &&
+            (chosen == nullptr || (it->second.sample.stability.growth_rate > chosen->stability.growth_rate) ==
+                                      boundaries_[k].unstable_above))
+          chosen = &it->second.sample;
+      if (chosen != nullptr) found.samples.push_back(*chosen);
+    }
+    std::sort(not_excluded_.begin(), not_excluded_.end());
+    for (const std::array<double, 2>& piece : not_excluded_) {
+      if (!found.not_excluded.empty() && piece[0] <= found.not_excluded.back()[1])
+        found.not_excluded.back()[1] = std::max(found.not_excluded.back()[1], piece[1]);
+      else
+        found.not_excluded.push_back(piece);
+    }
+    return found;
+  }
+
+  const SystemAt& at_;
+  const SweepOptions& options_;
+  Encounters encounters_;
+  SweepOptions located_;
+  std::map<double, Place> places_;
+  std::priority_queue<Cell> cells_;  // the widest first
+  std::vector<StabilityBoundary> boundaries_;
+  std::vector<std::array<double, 2>> not_excluded_;
+  double first_ = 0, last_ = 0;
+  int evaluations_ = 0;
+};
+
+}  // namespace
+
+SearchedInterval search_interval(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
+                                 const StabilitySample* before, const StabilitySample* after,
+                                 const SweepOptions& options) {
+  return Search(at, options).run(a, b, before, after);
+}
+
+}  // namespace hb

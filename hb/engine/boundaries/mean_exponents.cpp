@@ -1,0 +1,199 @@
+#include "hb/engine/boundaries/mean_exponents.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace hb {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+using cplx = std::complex<double>;
+
+// Ways that turn back are not in the sums (chosen by experiment).
+constexpr double margin = 3;
+// A way through a resonance counts much, not infinitely.
+constexpr double least_detuning = 0.25;
+
+// Exponents mu of the mean with moduli of their right vectors (positions, columns of X) and left ones (what a force
+// does to them, rows of Y), scaled alike: E_k = Y |K_k| X.
+struct MeanModes {
+  VectorXcd mu;
+  MatrixXd X, Y;
+};
+
+double largest_off_diagonal(const MatrixXd& A) {
+  double largest = 0;
+  for (Index i = 0; i < A.rows(); ++i)
+    for (Index j = 0; j < A.cols(); ++j)
+      if (i != j) largest = std::max(largest, std::abs(A(i, j)));
+  return largest;
+}
+
+bool is_symmetric(const MatrixXd& A) { return (A - A.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * A.cwiseAbs().maxCoeff(); }
+
+void sort(MeanModes& modes) {
+  std::vector<Index> order(static_cast<std::size_t>(modes.mu.size()));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+    const cplx p = modes.mu(a), q = modes.mu(b);
+    return p.imag() != q.imag() ? p.imag() < q.imag() : p.real() != q.real() ? p.real() < q.real() : a < b;
+  });
+  const MeanModes given = modes;
+  for (std::size_t n = 0; n < order.size(); ++n) {
+    const auto to = static_cast<Index>(n);
+    modes.mu(to) = given.mu(order[n]);
+    modes.X.col(to) = given.X.col(order[n]);
+    modes.Y.row(to) = given.Y.row(order[n]);
+  }
+}
+
+// Real modes q of the mean stiffness, their own damping: s^2 + b s + w^2 = 0 each.
+MeanModes by_modes(const MatrixXd& Q, const VectorXd& w2, const VectorXd& b) {
+  const Index I = w2.size();
+  MeanModes modes{VectorXcd(2 * I), MatrixXd(I, 2 * I), MatrixXd(2 * I, I)};
+  for (Index i = 0; i < I; ++i) {
+    const cplx root = std::sqrt(cplx(b(i) * b(i) / 4 - w2(i), 0));
+    const double size = 1 / std::sqrt(std::max(2 * std::abs(root), 1e-3));
+    for (const Index side : {0, 1}) {
+      modes.mu(2 * i + side) = -b(i) / 2 + (side == 0 ? root : -root);
+      modes.X.col(2 * i + side) = size * Q.col(i).cwiseAbs();
+      modes.Y.row(2 * i + side) = size * Q.col(i).cwiseAbs().transpose();
+    }
+  }
+  return modes;
+}
+
+// Any stiffness and damping: vectors of [0 1; -K_0 -G].
+MeanModes by_companion(const MatrixXd& K0, const MatrixXd& G) {
+  const Index I = G.rows();
+  MatrixXd A = MatrixXd::Zero(2 * I, 2 * I);
+  A.topRightCorner(I, I).setIdentity();
+  A.bottomLeftCorner(I, I) = -K0;
+  A.bottomRightCorner(I, I) = -G;
+  const Eigen::EigenSolver<MatrixXd> spectrum(A);
+  const MatrixXcd V = spectrum.eigenvectors();
+  MeanModes modes{spectrum.eigenvalues(), V.topRows(I).cwiseAbs(),
+                  MatrixXcd(Eigen::PartialPivLU<MatrixXcd>(V).inverse().rightCols(I)).cwiseAbs()};
+  for (Index n = 0; n < 2 * I; ++n) {
+    const double ratio = std::sqrt(modes.Y.row(n).norm() / modes.X.col(n).norm());
+    modes.X.col(n) *= ratio;
+    modes.Y.row(n) /= ratio;
+  }
+  return modes;
+}
+
+MeanModes mean_modes(const ScaledSystem& system) {
+  const Index I = system.num_modes();
+  const MatrixXd K0 = system.mean_stiffness(), &G = system.G;
+  MeanModes modes;
+  if (largest_off_diagonal(K0) == 0 && system.diagonal_damping) {
+    modes = by_modes(MatrixXd::Identity(I, I), K0.diagonal(), G.diagonal());
+  } else if (is_symmetric(K0) && is_symmetric(G)) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> spectrum(K0);
+    const MatrixXd& Q = spectrum.eigenvectors();
+    modes = by_modes(Q, spectrum.eigenvalues(), (Q.transpose() * G * Q).diagonal());
+  } else {
+    modes = by_companion(K0, G);
+  }
+  sort(modes);
+  return modes;
+}
+
+MatrixXd harmonic(const ScaledSystem& system, const MeanModes& modes, Index k) {
+  const Index I = system.num_modes();
+  const Eigen::Map<const MatrixXcd> K(system.K.c.col(k).data(), I, I);
+  return modes.Y * K.cwiseAbs() * modes.X;
+}
+
+bool symmetric_everywhere(const ScaledSystem& system) {
+  const Index I = system.num_modes();
+  const double scale = system.K.c.cwiseAbs().maxCoeff();
+  for (Index k = 0; k <= system.K.num_harmonics(); ++k) {
+    const Eigen::Map<const MatrixXcd> K(system.K.c.col(k).data(), I, I);
+    if (!((K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale)) return false;
+  }
+  if (system.diagonal_damping) return true;
+  return is_symmetric(system.G) &&
+         Eigen::SelfAdjointEigenSolver<MatrixXd>(system.G, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >= 0;
+}
+
+}  // namespace
+
+std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
+  const MeanModes modes = mean_modes(system);
+  const Index n = modes.mu.size(), H = system.K.num_harmonics();
+  std::vector<MeanExponent> result(static_cast<std::size_t>(n));
+  for (Index i = 0; i < n; ++i) result[static_cast<std::size_t>(i)].value = modes.mu(i);
+  if (H == 0) return result;
+  MatrixXd sizes = MatrixXd::Zero(system.num_modes(), system.num_modes());
+  for (Index k = 1; k <= H; ++k)
+    sizes += Eigen::Map<const MatrixXcd>(system.K.c.col(k).data(), sizes.rows(), sizes.cols()).cwiseAbs();
+  // All ways of all orders: C + C C/delta + ... = C (1 - C/delta)^-1, which is positive where the sum converges.
+  const MatrixXd C = modes.Y * sizes * modes.X;
+  const MatrixXd ways = Eigen::PartialPivLU<MatrixXd>(MatrixXd::Identity(n, n) - C / least_detuning).inverse();
+  const bool converges = ways.allFinite() && ways.minCoeff() >= 0;
+  const MatrixXd all = converges ? MatrixXd(C * ways) : MatrixXd::Constant(n, n, HUGE_VAL);
+  for (Index i = 0; i < n; ++i) {
+    double& coupling = result[static_cast<std::size_t>(i)].coupling;
+    for (Index j = 0; j < n; ++j)
+      if (j != i) coupling = std::max(coupling, margin * std::sqrt(all(i, j) * all(j, i)));
+  }
+  return result;
+}
+
+ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order)
+    : symmetric_(symmetric_everywhere(system)), max_order_(max_order) {
+  const MeanModes modes = mean_modes(system);
+  mu_ = modes.mu;
+  for (Index k = 1; k <= system.K.num_harmonics(); ++k) E_.push_back(harmonic(system, modes, k));
+  for (Index n = 0; n < mu_.size(); ++n) {
+    std::size_t nearest = 0;
+    for (Index r = 0; r < mu_.size(); ++r)
+      if (std::abs(mu_(r) - std::conj(mu_(n))) < std::abs(mu_(static_cast<Index>(nearest)) - std::conj(mu_(n))))
+        nearest = static_cast<std::size_t>(r);
+    conjugate_.push_back(nearest);
+  }
+  from_.resize(static_cast<std::size_t>(mu_.size()));
+}
+
+const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
+  MatrixXd& a = from_[n];
+  const auto H = static_cast<Index>(E_.size());
+  const Index known = a.cols();
+  if (k <= known) return a;
+  const Index wanted = std::min<Index>(std::max<Index>(k, 2 * known), max_order_);
+  a.conservativeResize(mu_.size(), wanted);
+  MatrixXd relative(mu_.size(), wanted);  // a_m(l)/|mu_n + im - mu_l|
+  const cplx start = mu_(static_cast<Index>(n));
+  for (Index m = 1; m <= wanted; ++m) {
+    if (m > known) {
+      VectorXd sum = m <= H ? VectorXd(E_[static_cast<std::size_t>(m - 1)].col(static_cast<Index>(n)))
+                            : VectorXd(VectorXd::Zero(mu_.size()));
+      for (Index r = std::max<Index>(1, m - H); r < m; ++r)
+        sum.noalias() += E_[static_cast<std::size_t>(m - r - 1)] * relative.col(r - 1);
+      a.col(m - 1) = sum;
+    }
+    for (Index l = 0; l < mu_.size(); ++l)
+      relative(l, m - 1) =
+          a(l, m - 1) / std::max(least_detuning, std::abs(start + cplx(0, static_cast<double>(m)) - mu_(l)));
+  }
+  return a;
+}
+
+double ParametricCoupling::operator()(std::size_t n, std::size_t r, int k) const {
+  if (E_.empty() || k > max_order_) return 0;
+  const auto p = static_cast<Index>(n), q = static_cast<Index>(r);
+  if (symmetric_ && mu_(p).imag() * mu_(q).imag() > 0) return 0;
+  const double forth = from(n, k)(q, k - 1), back = from(conjugate_[r], k)(static_cast<Index>(conjugate_[n]), k - 1);
+  return margin * std::sqrt(forth * back);
+}
+
+}  // namespace hb

@@ -1,0 +1,46 @@
+// Where the exponents would be if the stiffness were its mean over the turn, and what its harmonics can do to them:
+//     z' = (diag(mu) + sum_k E_k e^{ik tau}) z,     mu the 2I exponents of x'' + G x' + K_0 x = 0.
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "hb/engine/system/scaled_system.hpp"
+
+namespace hb {
+
+struct MeanExponent {
+  std::complex<double> value;  // mu, per radian of crank angle; its imaginary part is not folded
+  // Upper estimate of the growth that any resonance with another one can reach, whatever its order; per radian.
+  double coupling = 0;
+};
+
+// 2I of them, imaginary part ascending, then real part: each is continuous along a parameter.
+[[nodiscard]] std::vector<MeanExponent> mean_exponents(const ScaledSystem& system);
+
+// How strongly the resonance of order k >= 1 between two mean exponents n and r, Im mu_r - Im mu_n near k, pulls the two
+// apart, per radian: the growth that it would reach without damping. An estimate from above: with moduli throughout,
+//     a_k(r) = E_k,rn + sum_{0<m<k} sum_l E_k-m,rl a_m(l)/|mu_n + im - mu_l|
+// sums all ways of harmonics that add up to k; forth and back give the root of the product, with a margin for ways that
+// turn back. Where stiffness and damping are symmetric two exponents on the same side of the real axis do not excite
+// each other: zero.
+class ParametricCoupling {
+ public:
+  ParametricCoupling(const ScaledSystem& system, int max_order);
+  double operator()(std::size_t n, std::size_t r, int k) const;
+  // Exponents that meet in the mean (k = 0) are harmless.
+  bool symmetric() const { return symmetric_; }
+
+ private:
+  const Eigen::MatrixXd& from(std::size_t n, int k) const;
+
+  Eigen::VectorXcd mu_;
+  std::vector<std::size_t> conjugate_;
+  std::vector<Eigen::MatrixXd> E_;  // k = 1, 2, ...
+  bool symmetric_ = false;
+  int max_order_;
+  mutable std::vector<Eigen::MatrixXd> from_;  // a_k(r) in (r, k - 1), as far as it was asked for
+};
+
+}  // namespace hb
