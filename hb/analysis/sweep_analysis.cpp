@@ -67,7 +67,15 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     }
   }
   if (only.stability) {  // of every rod: the mechanism is stable where all are
-    point.stability = stability_sample(scale_system(rod.system, speed), x, exponent_options(settings));
+    const StabilityOptions options = exponent_options(settings);
+    if (only.all_exponents()) {
+      point.stability = stability_sample(scale_system(rod.system, speed), x, options);
+    } else {
+      point.stability.emplace();
+      point.stability->x = x;
+      point.stability->speed = speed;
+      point.stability->stability = analyse_stability(rod.system, speed, options);
+    }
   }
   return point;
 }
@@ -427,8 +435,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
       num_boundaries += rod.boundaries.size();
       for (const StabilityBoundary& boundary : rod.boundaries) {
         if (boundary.converged) continue;
-        result.notes.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only",
-                                                rod.name, scene.axis().path, boundary.x, boundary.error));
+        result.notes.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only", rod.name,
+                                           scene.axis().path, boundary.x, boundary.error));
       }
     }
   }

@@ -51,11 +51,11 @@ const std::vector<Misuse> misuses = {
     // Scenes
     {"youngs_modulus_in_megapascal", {{"21e7", "210000"}}, "scene scene.toml", 0,
      {"WARNING", "found 210 MPa; 210 GPa if the number was in MPa"}},
-    {"youngs_modulus_in_psi", {{"21e7", "30e6"}, {"length = \"mm\"", "length = \"in\""}, {"mass = \"kg\"", "mass = \"lb\""}},
+    {"youngs_modulus_in_psi", {{"21e7", "30e6"}, {"length = \"mm\"", "length = \"in\"\nmass = \"lb\""}},
      "scene scene.toml", 0, {"WARNING", "206.8 GPa if the number was in psi"}},
     {"gravity_of_another_unit", {{"gravity = 9810", "gravity = 9.81"}}, "scene scene.toml", 0,
      {"WARNING", "9.81 m/s^2 if the number was in m/s^2"}},
-    {"second_moment_of_a_misprint", {{"J = 45", "J = 4500"}}, "scene scene.toml", 0,
+    {"second_moment_of_a_misprint", {{"area = 10, J = 45", "area = 10, J = 4500"}}, "scene scene.toml", 0,
      {"WARNING", "J/area^2 = 45", "a square 1/12"}},
     {"angles_taken_for_stiffnesses", {}, "steady hill.toml", 2, {"table.csv:1", "angles in the first column", "k11"}},
     {"text_without_quotes", {{"title = \"Six-link mechanism\"", "title = Six-link mechanism"}}, "scene scene.toml", 2,

@@ -8,7 +8,6 @@
 
 #include "tools/output/path_unit.hpp"
 #include "tools/output/theory_words.hpp"
-#include "tools/output/wording.hpp"
 #include "tools/output/verdict_words.hpp"
 
 namespace hb::tools {
@@ -138,7 +137,6 @@ std::string sweep_title_verdict(const SweepResult& result) {
 std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResult& result) {
   std::vector<std::string> warnings = scene.scene().warnings;
   for (std::string& sentence : theory_warnings(scene, result)) warnings.push_back(std::move(sentence));
-  for (std::string& sentence : limit_warnings(scene, result)) warnings.push_back(std::move(sentence));
   const std::vector<double>& values = scene.axis().values;
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     const std::vector<std::array<double, 2>>& places = result.rods[r].not_excluded;
@@ -153,6 +151,7 @@ std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResu
         result.rods[r].name, 100 * width / (values.back() - values.front()), scene.axis().path, (*widest)[0],
         (*widest)[1]));
   }
+  for (std::string& sentence : limit_warnings(scene, result)) warnings.push_back(std::move(sentence));
   return warnings;
 }
 
