@@ -18,6 +18,8 @@ struct MapDocument {
   bool boundaries = true;  // they were asked for
 };
 
+// The document as text, and as values.
+[[nodiscard]] std::string map_text(const MapDocument& document);
 [[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
 
 // x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1), then
