@@ -8,7 +8,10 @@
 #include <map>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+
+#include "lib/fourier/short_transform.hpp"
 
 namespace hb::fourier {
 
@@ -28,9 +31,13 @@ struct Jet {
 
 Jet jet(const FourierSeries& series, Eigen::Index component, double tau) {
   Jet sum{series.c(component, 0).real(), 0, 0};
+  // e^{i k tau} by multiplication, afresh every 16 harmonics: 16 roundings at most.
+  const std::complex<double> step = std::polar(1.0, tau);
+  std::complex<double> power = 1;
   for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) {
     const double n = static_cast<double>(k);
-    const std::complex<double> term = 2.0 * series.c(component, k) * std::polar(1.0, n * tau);
+    power = k % 16 == 0 ? std::polar(1.0, n * tau) : power * step;
+    const std::complex<double> term = 2.0 * series.c(component, k) * power;
     sum.f += term.real();
     sum.f1 -= n * term.imag();
     sum.f2 -= n * n * term.real();
@@ -61,30 +68,41 @@ Extremum refined(const FourierSeries& series, Eigen::Index component, double tau
   return best;
 }
 
-// f and f'' of one component on a fine grid, a row each.
-Eigen::MatrixXd fine_samples(const FourierSeries& series, Eigen::Index component) {
+// f and f'' of one component on a fine grid, a column each.
+Eigen::Map<const Eigen::MatrixXd> fine_samples(const FourierSeries& series, Eigen::Index component) {
   // 8 points per shortest wave: the parabola through a sample extremum then leads Newton to the right one.
   Eigen::Index N = 64;
   while (N < 8 * (series.num_harmonics() + 1)) N *= 2;
-  FourierSeries rows(2, series.num_harmonics());
-  rows.c.row(0) = series.c.row(component);
-  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) rows.c(1, k) = -static_cast<double>(k * k) * rows.c(0, k);
-  return synthesise(rows, N);
+  RealTransform& transform = thread_transform(N, 2);
+  auto spectrum = transform.spectrum();
+  spectrum.setZero();
+  for (Eigen::Index k = 0; k <= series.num_harmonics(); ++k) {
+    spectrum(k, 0) = series.c(component, k);
+    spectrum(k, 1) = -static_cast<double>(k * k) * series.c(component, k);
+  }
+  transform.backward();
+  return {transform.samples().data(), N, 2};
 }
 
-Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eigen::MatrixXd& samples, double sign) {
-  const Eigen::Index N = samples.cols();
+Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eigen::Map<const Eigen::MatrixXd>& samples,
+                 double sign) {
+  const Eigen::Index N = samples.rows();
   const double step = two_pi / static_cast<double>(N);
-  const auto curvature = [&](Eigen::Index j) { return std::abs(samples(1, (j + N) % N)); };
-  const double top = sign > 0 ? samples.row(0).maxCoeff() : -samples.row(0).minCoeff();
+  const double* f = samples.col(0).data();
+  const double* f2 = samples.col(1).data();
+  const double top = sign > 0 ? samples.col(0).maxCoeff() : -samples.col(0).minCoeff();
+  // Nothing lower than this can win, wherever it is: see below.
+  const double lowest = top - step * step / 4 * samples.col(1).cwiseAbs().maxCoeff();
   Extremum best{-sign * HUGE_VAL, 0};
   // Every local extremum of the samples that could still win: the true one lies half a step away at most and exceeds
   // its sample by at most (step^2/8) max|f''|. Between samples an eighth of the shortest wave apart |f''| is at most
   // 1/cos(pi/8) = 1.08 times the larger one for that wave; 2 is taken.
   for (Eigen::Index j = 0; j < N; ++j) {
-    const double here = sign * samples(0, j);
-    if (!(here >= sign * samples(0, (j + 1) % N) && here >= sign * samples(0, (j + N - 1) % N))) continue;
-    const double reach = step * step / 8 * 2 * std::max({curvature(j - 1), curvature(j), curvature(j + 1)});
+    const double here = sign * f[j];
+    if (!(here >= lowest)) continue;
+    const Eigen::Index before = j == 0 ? N - 1 : j - 1, after = j == N - 1 ? 0 : j + 1;
+    if (!(here >= sign * f[after] && here >= sign * f[before])) continue;
+    const double reach = step * step / 8 * 2 * std::max({std::abs(f2[before]), std::abs(f2[j]), std::abs(f2[after])});
     if (!(here + reach >= top)) continue;
     const Extremum candidate = refined(series, component, step * static_cast<double>(j), step, sign);
     if (sign * candidate.value > sign * best.value) best = candidate;
@@ -142,14 +160,18 @@ FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics) {
 
 Eigen::Index significant_harmonics(const FourierSeries& series, double relative) {
   if (series.c.size() == 0) return 0;
-  const double floor = relative * series.c.cwiseAbs().maxCoeff();
+  const double part = std::max(series.c.real().cwiseAbs().maxCoeff(), series.c.imag().cwiseAbs().maxCoeff());
+  // Squares of numbers of order one.
+  const double unit = part > 1e-290 ? 1 / part : 1;
+  const Eigen::VectorXd squares = (unit * series.c).cwiseAbs2().colwise().maxCoeff();
+  const double floor = relative * relative * squares.maxCoeff();
   Eigen::Index H = series.num_harmonics();
-  while (H > 0 && series.c.col(H).cwiseAbs().maxCoeff() <= floor) --H;
+  while (H > 0 && squares(H) <= floor) --H;
   return H;
 }
 
 Range range(const FourierSeries& series, Eigen::Index component) {
-  const Eigen::MatrixXd samples = fine_samples(series, component);
+  const Eigen::Map<const Eigen::MatrixXd> samples = fine_samples(series, component);
   return {best_of(series, component, samples, -1), best_of(series, component, samples, +1)};
 }
 
@@ -165,10 +187,9 @@ double wiener_norm(const FourierSeries& series, Eigen::Index component) {
 
 namespace {
 
-// Plans of one length, for one component at a time: made once per process, then only read.
-class Plans {
+class FftwPlans {
  public:
-  explicit Plans(int N) : samples_(fftw_alloc_real(at(N))), spectrum_(fftw_alloc_complex(at(N / 2 + 1))) {
+  explicit FftwPlans(int N) : samples_(fftw_alloc_real(at(N))), spectrum_(fftw_alloc_complex(at(N / 2 + 1))) {
     if (!samples_ || !spectrum_) throw std::bad_alloc();
     // Columns of odd length start anywhere.
     const unsigned flags = FFTW_ESTIMATE | (N % 2 == 1 ? FFTW_UNALIGNED : 0U);
@@ -176,12 +197,12 @@ class Plans {
     to_samples_ = fftw_plan_dft_c2r_1d(N, spectrum_.get(), samples_.get(), flags);
     if (!to_spectrum_ || !to_samples_) throw std::bad_alloc();
   }
-  ~Plans() {
+  ~FftwPlans() {
     fftw_destroy_plan(to_spectrum_);
     fftw_destroy_plan(to_samples_);
   }
-  Plans(const Plans&) = delete;
-  Plans& operator=(const Plans&) = delete;
+  FftwPlans(const FftwPlans&) = delete;
+  FftwPlans& operator=(const FftwPlans&) = delete;
 
   // Any arrays aligned as FFTW's own.
   void forward(double* samples, fftw_complex* spectrum) const { fftw_execute_dft_r2c(to_spectrum_, samples, spectrum); }
@@ -196,6 +217,36 @@ class Plans {
   std::unique_ptr<double, Free> samples_;
   std::unique_ptr<fftw_complex, Free> spectrum_;
   fftw_plan to_spectrum_ = nullptr, to_samples_ = nullptr;
+};
+
+// Transforms of one length, one component at a time: made once per process, then only read. Short lengths have their
+// own transform, which is ready at once; FFTW, which plans for up to milliseconds, serves the others.
+class Plans {
+ public:
+  explicit Plans(int N) : N_(N) {
+    if (ShortTransform::serves(at(N)))
+      short_.emplace(at(N));
+    else
+      fftw_.emplace(N);
+  }
+
+  // Any arrays aligned as FFTW's own; forward with the factor 1/N.
+  void forward(double* samples, fftw_complex* spectrum) const {
+    if (short_) return short_->forward(samples, reinterpret_cast<std::complex<double>*>(spectrum), 1 / double(N_));
+    fftw_->forward(samples, spectrum);
+    Eigen::Map<Eigen::VectorXcd>(reinterpret_cast<std::complex<double>*>(spectrum), N_ / 2 + 1) /= double(N_);
+  }
+  void backward(fftw_complex* spectrum, double* samples) const {
+    if (short_) return short_->backward(reinterpret_cast<const std::complex<double>*>(spectrum), samples);
+    fftw_->backward(spectrum, samples);
+  }
+
+ private:
+  static std::size_t at(int n) { return static_cast<std::size_t>(n); }
+
+  int N_;
+  std::optional<ShortTransform> short_;
+  std::optional<FftwPlans> fftw_;
 };
 
 const Plans& plans(Eigen::Index N) {
@@ -244,7 +295,6 @@ Eigen::Map<Eigen::MatrixXcd> RealTransform::spectrum() {
 void RealTransform::forward() {
   for (Eigen::Index i = 0; i < impl_->n; ++i)
     impl_->plan.forward(impl_->samples + i * impl_->N, impl_->spectrum + i * (impl_->N / 2 + 1));
-  spectrum() /= static_cast<double>(impl_->N);
 }
 
 void RealTransform::backward() {

@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <numbers>
+#include <vector>
 
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
@@ -30,11 +32,13 @@ struct Shape {
   std::array<Complex, 3> P{};
   double K = 0;
 
-  double operator()(double s) const {
+  // `wave`: e^{iKs}.
+  double at(double s, Complex wave) const {
     double a = 0;
     for (std::size_t j = A.size(); j-- > 0;) a = a * s + A[j];
-    return a + ((P[0] + s * (P[1] + s * P[2])) * std::polar(1.0, K * s)).imag();
+    return a + ((P[0] + s * (P[1] + s * P[2])) * wave).imag();
   }
+  double operator()(double s) const { return at(s, std::polar(1.0, K * s)); }
 };
 
 Shape derivative(const Shape& y) {
@@ -93,18 +97,31 @@ class RodShapes {
   Eigen::Index size() const { return I_ + num_static(); }
 
   // d^order/dx^order of every shape at x.
-  Eigen::RowVectorXd values(double x, int order) const {
-    const double s = x / l_, factor = std::pow(l_, -order);
-    Eigen::RowVectorXd row(size());
-    for (Eigen::Index i = 0; i < I_; ++i) {
-      const double K = static_cast<double>(i + 1) * pi;
-      const std::array<double, 4> cycle = {std::sin(K * s), std::cos(K * s), -std::sin(K * s), -std::cos(K * s)};
-      row(i) = factor * std::pow(K, order) * cycle[static_cast<std::size_t>(order % 4)];
+  Eigen::RowVectorXd values(double x, int order) const { return values(x, order, 1); }
+
+  // Of `count` orders from the first, a row each.
+  Eigen::MatrixXd values(double x, int first, int count) const {
+    const double s = x / l_;
+    std::vector<Complex> wave(static_cast<std::size_t>(I_) + 1, Complex(1));  // e^{i k pi s}
+    for (Eigen::Index k = 1; k <= I_; ++k)
+      wave[static_cast<std::size_t>(k)] = std::polar(1.0, static_cast<double>(k) * pi * s);
+    Eigen::MatrixXd rows(count, size());
+    for (int r = 0; r < count; ++r) {
+      const int order = first + r;
+      const double factor = std::pow(l_, -order);
+      for (Eigen::Index k = 1; k <= I_; ++k) {
+        const Complex z = wave[static_cast<std::size_t>(k)];
+        const std::array<double, 4> cycle = {z.imag(), z.real(), -z.imag(), -z.real()};
+        rows(r, k - 1) =
+            factor * std::pow(static_cast<double>(k) * pi, order) * cycle[static_cast<std::size_t>(order % 4)];
+      }
+      // Two without a wave, then those of each mode twice.
+      for (Eigen::Index j = 0; j < num_static(); ++j)
+        rows(r, I_ + j) = factor * static_[static_cast<std::size_t>(j)][static_cast<std::size_t>(order)].at(
+                                       s, wave[static_cast<std::size_t>(j < 2 ? 0 : (j - 2) % I_ + 1)]);
     }
-    for (Eigen::Index j = 0; j < num_static(); ++j)
-      row(I_ + j) = factor * static_[static_cast<std::size_t>(j)][static_cast<std::size_t>(order)](s);
-    row.tail(num_static()) -= row.head(I_) * tail_;
-    return row;
+    rows.rightCols(num_static()) -= rows.leftCols(I_) * tail_;
+    return rows;
   }
 
  private:
@@ -206,6 +223,36 @@ Eigen::MatrixXd shape_matrix(const RodShapes& shapes, const Eigen::Ref<const Eig
   return rows;
 }
 
+// What the search for peaks needs of the shapes alone.
+struct ShapeTable {
+  double length;
+  Eigen::Index num_modes;
+  double flexibility;  // in shear
+  RodShapes shapes;
+  Eigen::VectorXd x;  // a grid with at least 8 points per wave
+  Eigen::MatrixXd deflection, curvature;  // orders 0 and 2 there
+
+  ShapeTable(double l, Eigen::Index I, double shear)
+      : length(l),
+        num_modes(I),
+        flexibility(shear),
+        shapes(l, I, shear),
+        x(Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l)),
+        deflection(shape_matrix(shapes, x, 0)),
+        curvature(shape_matrix(shapes, x, 2)) {}
+};
+
+// Kept by each thread for the rods it met last.
+// Valid until the next call.
+const ShapeTable& shape_table(double length, Eigen::Index num_modes, double flexibility) {
+  constexpr std::size_t most = 8;
+  thread_local std::deque<ShapeTable> tables;
+  for (const ShapeTable& table : tables)
+    if (table.length == length && table.num_modes == num_modes && table.flexibility == flexibility) return table;
+  if (tables.size() == most) tables.pop_front();
+  return tables.emplace_back(length, num_modes, flexibility);
+}
+
 // sign * F and its derivatives over (s = x/l, tau), F = d^order w/dx^order.
 struct Surface {
   const RodShapes& shapes;
@@ -226,13 +273,15 @@ struct Surface {
     for (Eigen::Index k = 1; k <= T.num_harmonics(); ++k) {
       const double n = static_cast<double>(k);
       const Complex e = 2.0 * std::polar(1.0, n * tau);
-      time.col(0) += (e * T.c.col(k)).real();
-      time.col(1) -= n * (e * T.c.col(k)).imag();
-      time.col(2) -= n * n * (e * T.c.col(k)).real();
+      for (Eigen::Index j = 0; j < T.num_components(); ++j) {
+        const Complex z = e * T.c(j, k);
+        time(j, 0) += z.real();
+        time(j, 1) -= n * z.imag();
+        time(j, 2) -= n * n * z.real();
+      }
     }
-    const Eigen::RowVector3d F = sign * shapes.values(s * l, order) * time;
-    const Eigen::RowVector3d F_s = sign * l * shapes.values(s * l, order + 1) * time;
-    const Eigen::RowVector3d F_ss = sign * l * l * shapes.values(s * l, order + 2) * time;
+    const Eigen::Matrix3d values = sign * shapes.values(s * l, order, 3) * time;
+    const Eigen::RowVector3d F = values.row(0), F_s = l * values.row(1), F_ss = l * l * values.row(2);
     Jet jet{F(0), {F_s(0), F(1)}, {}};
     jet.hessian << F_ss(0), F_s(1), F_s(1), F(2);
     return jet;
@@ -270,14 +319,14 @@ RodPeak climbed(const Surface& surface, double s, double tau) {
 
 // Largest |F| over rod and turn: local maxima of a grid with at least 8 points per wave that come within a tenth of the
 // best (a wave's top lies at most 8 % above its samples), each climbed.
-RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int order) {
+RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::MatrixXd& time, int order) {
   constexpr std::size_t most_candidates = 32;
-  const Eigen::Index I = (shapes.size() - 2) / 3;
-  const Eigen::Index num_x = std::max<Eigen::Index>(48, 8 * I), N = power_of_two_from(8 * (T.num_harmonics() + 1));
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x + 1, 0, l);
-  const Eigen::MatrixXd F = shape_matrix(shapes, x, order) * fourier::synthesise(T, N);
-  const Eigen::MatrixXd size = F.cwiseAbs();
-  const double top = size.maxCoeff();
+  const Eigen::VectorXd& x = table.x;
+  const double l = table.length;
+  const Eigen::Index num_x = x.size() - 1, N = time.cols();
+  const Eigen::MatrixXd F = (order == 0 ? table.deflection : table.curvature) * time;
+  const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
+  const double top = F.cwiseAbs().maxCoeff();
   if (!(top > 0)) return {};
 
   struct Candidate {
@@ -286,7 +335,7 @@ RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int orde
   };
   std::vector<Candidate> candidates;
   for (Eigen::Index j = 0; j < N; ++j) {
-    const Eigen::Index before = (j + N - 1) % N, after = (j + 1) % N;
+    const Eigen::Index before = j == 0 ? N - 1 : j - 1, after = j == N - 1 ? 0 : j + 1;
     for (Eigen::Index i = 1; i < num_x; ++i) {
       const double here = size(i, j);
       if (here >= 0.9 * top && here >= size(i - 1, j) && here >= size(i + 1, j) && here >= size(i, before) &&
@@ -296,7 +345,7 @@ RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int orde
   }
   if (candidates.empty()) {  // constant in time
     Eigen::Index i, j;
-    size.maxCoeff(&i, &j);
+    F.cwiseAbs().maxCoeff(&i, &j);
     candidates.push_back({top, i, j});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
@@ -305,7 +354,7 @@ RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int orde
 
   RodPeak best;
   for (const Candidate& c : candidates) {
-    const Surface surface{shapes, T, l, order, F(c.i, c.j) > 0 ? 1.0 : -1.0};
+    const Surface surface{table.shapes, T, l, order, F(c.i, c.j) > 0 ? 1.0 : -1.0};
     const RodPeak candidate = climbed(surface, x(c.i) / l, 2 * pi * static_cast<double>(c.j) / static_cast<double>(N));
     if (candidate.max_abs > best.max_abs) best = candidate;
   }
@@ -315,15 +364,15 @@ RodPeak peak(const RodShapes& shapes, const FourierSeries& T, double l, int orde
 }  // namespace
 
 RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
-  const RodShapes shapes(link.length, q.num_components());
+  const Eigen::Index I = q.num_components();
   const FourierSeries T = time_functions(link, rod, speed, q);
+  const auto largest = [](const ShapeTable& table, const FourierSeries& time, int order) {
+    return peak(table, time, fourier::synthesise(time, power_of_two_from(8 * (time.num_harmonics() + 1))), order);
+  };
   RodShape result;
-  if (link.elastic->shear) {
-    const RodShapes sheared(link.length, q.num_components(), shear_flexibility(link));
-    result = {peak(sheared, T, link.length, 0), peak(shapes, moment_functions(link, speed, q, T), link.length, 2)};
-  } else {
-    result = {peak(shapes, T, link.length, 0), peak(shapes, T, link.length, 2)};
-  }
+  result.deflection = largest(shape_table(link.length, I, shear_flexibility(link)), T, 0);
+  result.bending_moment =
+      largest(shape_table(link.length, I, 0), link.elastic->shear ? moment_functions(link, speed, q, T) : T, 2);
   result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
   return result;
 }

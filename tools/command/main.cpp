@@ -2,6 +2,9 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
@@ -54,6 +57,12 @@ int flush_output(int status) {
 }
 
 void prepare_process() {
+#ifdef __GLIBC__
+  // Matrices of a speed or a place of a map are freed and allocated again thousands of times: their pages stay.
+  constexpr int kept = 256 << 20;
+  mallopt(M_MMAP_THRESHOLD, kept);
+  mallopt(M_TRIM_THRESHOLD, kept);
+#endif
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
   std::signal(SIGPIPE, SIG_IGN);  // files come first, see flush_output
   std::set_terminate(end_without_abort);

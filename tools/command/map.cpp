@@ -59,17 +59,16 @@ int run_map(const MapFlags& flags) {
   if (!run.run([&](SharedWork& work) { map.compute(work); })) return stopped_status();
 
   const MapDocument document = map.document();
-  const nlohmann::ordered_json json = out.json || folder ? map_json(document) : nlohmann::ordered_json();
   Delivery delivery;
-  delivery.printed = out.json ? json_text(json) : map_summary(document);
+  delivery.printed = out.json ? map_text(document) : map_summary(document);
   delivery.write_data = [&](OutputFolder& place) {
-    place.write("map.json", json_text(json));
+    place.write("map.json", map_text(document));
     return map_files(document, colour, place);
   };
   delivery.committed = [&] { run.delivered(); };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
-      return page_of(map, json, input, origin, std::move(pictures));
+      return page_of(map, map_json(document), input, origin, std::move(pictures));
     };
   // No tolerance of boundaries was asked for without the flag.
   const bool reached = flags.boundaries.tolerance.empty() || boundary_points_not_reached(map.result()) == 0;

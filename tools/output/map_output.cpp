@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -12,6 +14,7 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
+#include "tools/output/printable.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -23,28 +26,75 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool missing(const MapPoint& point) { return point.source == MapSource::missing; }
 
-// Rows along x, one per y.
-template <class Value>
-Json grid_json(const StabilityMap& map, const std::vector<MapPoint>& points, const Value& value) {
-  const std::size_t nx = map.x.size();
-  Json rows = Json::array();
-  for (std::size_t j = 0; j < map.y.size(); ++j) {
-    Json row = Json::array();
-    for (std::size_t i = 0; i < nx; ++i) {
-      const MapPoint& point = points[i + nx * j];
-      row.push_back(missing(point) ? Json() : Json(value(point)));
-    }
-    rows.push_back(std::move(row));
+// As a document has it; null where it is not finite.
+void append(std::string& text, double value) {
+  if (!std::isfinite(value)) {
+    text += "null";
+    return;
   }
-  return rows;
+  std::array<char, 64> digits;
+  text.append(digits.data(), nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), value));
 }
 
-void add_grids(Json& json, const StabilityMap& map, const std::vector<MapPoint>& points) {
-  json["growth_rate"] = grid_json(map, points, [](const MapPoint& p) { return p.growth_rate; });
-  json["verdict"] = grid_json(map, points, [](const MapPoint& p) { return to_string(p.verdict); });
-  json["kind"] = grid_json(map, points, [](const MapPoint& p) { return to_string(p.kind); });
-  json["growth_error"] = grid_json(
-      map, points, [](const MapPoint& p) { return std::isfinite(p.growth_error) ? Json(p.growth_error) : Json(); });
+void append(std::string& text, const char* word) {
+  text += '"';
+  text += word;
+  text += '"';
+}
+
+void append(std::string& text, int value) { text += value == 0 ? '0' : '1'; }
+
+// The members of an object in their order. Grids, which have millions of values, go into the text without becoming
+// values of a document before.
+class Members {
+ public:
+  void add(const std::string& key, Json value) { members_.push_back({key, std::move(value), {}}); }
+  void add(const std::string& key, const Members& object) {
+    members_.push_back({key, {}, [object](std::string& text) { object.write(text); }});
+  }
+  // Rows along x, one per y; `map` and `points` outlive the object.
+  template <class Value>
+  void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value) {
+    members_.push_back({key, {}, [nx = map.x.size(), &points, value](std::string& text) {
+                          text += '[';
+                          for (std::size_t p = 0; p < points.size(); ++p) {
+                            text += p % nx > 0 ? "," : p > 0 ? "],[" : "[";
+                            if (missing(points[p]))
+                              text += "null";
+                            else
+                              append(text, value(points[p]));
+                          }
+                          text += "]]";
+                        }});
+  }
+  void write(std::string& text) const {
+    char before = '{';
+    for (const Member& member : members_) {
+      text += before;
+      before = ',';
+      text += printable(Json(member.key).dump()) + ":";
+      if (member.write)
+        member.write(text);
+      else
+        text += printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace));
+    }
+    text += '}';
+  }
+
+ private:
+  struct Member {
+    std::string key;
+    Json value;
+    std::function<void(std::string&)> write;  // instead of the value
+  };
+  std::vector<Member> members_;
+};
+
+void add_grids(Members& json, const StabilityMap& map, const std::vector<MapPoint>& points) {
+  json.add_grid("growth_rate", map, points, [](const MapPoint& p) { return p.growth_rate; });
+  json.add_grid("verdict", map, points, [](const MapPoint& p) { return to_string(p.verdict); });
+  json.add_grid("kind", map, points, [](const MapPoint& p) { return to_string(p.kind); });
+  json.add_grid("growth_error", map, points, [](const MapPoint& p) { return p.growth_error; });
 }
 
 Json points_json(const BoundaryCurve& curve) {
@@ -136,52 +186,60 @@ double tenfold_time(const MapPoint& point) {
   return point.growth_rate > 0 ? std::numbers::ln10 / point.growth_rate : HUGE_VAL;
 }
 
-Json map_json(const MapDocument& document) {
+std::string map_text(const MapDocument& document) {
   const MapResult& r = document.result;
   const StabilityMap& first = r.maps.front();
   const Counts n = counts(r.worst);
-  Json json;
-  json["title"] = document.scene.title;
-  json["status"] = document.complete ? "reached" : "tolerance not reached";
-  if (const std::vector<std::string> notes = map_notes(document); !notes.empty()) json["notes"] = notes;
-  json["x"] = axis_json(r.x_axis, r.x());
-  json["y"] = axis_json(r.y_axis, r.y());
-  json["modes"] = document.num_modes;
-  if (document.boundaries) json["boundary_tolerance"] = document.tolerance;
+  Members json;
+  json.add("title", document.scene.title);
+  json.add("status", document.complete ? "reached" : "tolerance not reached");
+  if (const std::vector<std::string> notes = map_notes(document); !notes.empty()) json.add("notes", notes);
+  json.add("x", axis_json(r.x_axis, r.x()));
+  json.add("y", axis_json(r.y_axis, r.y()));
+  json.add("modes", document.num_modes);
+  if (document.boundaries) json.add("boundary_tolerance", document.tolerance);
   add_grids(json, first, r.worst);
-  json["interpolated"] =
-      grid_json(first, r.worst, [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
-  json["growth_per_turn"] = grid_json(first, r.worst, growth_per_turn);
-  if (document.boundaries) json["boundaries"] = curves_json(r, r.boundaries);
-  Json rods = Json::object();
+  json.add_grid("interpolated", first, r.worst, [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
+  json.add_grid("growth_per_turn", first, r.worst, growth_per_turn);
+  if (document.boundaries) json.add("boundaries", curves_json(r, r.boundaries));
+  Members rods;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
-    Json& rod = rods[r.rods[k]];
+    Members rod;
     add_grids(rod, r.maps[k], r.maps[k].points);
-    if (!document.boundaries) continue;
-    rod["boundaries"] = Json::array();
-    for (const BoundaryCurve& curve : r.maps[k].boundaries) rod["boundaries"].push_back(curve_json(curve));
-  }
-  json["rods"] = std::move(rods);
-  if (!r.damping.empty()) {
-    json["damping_range"] = Json::array();
-    for (const DampingCurves& d : r.damping) {
-      json["damping_range"].push_back({{"factor", d.factor}, {"boundaries", curves_json(r, d.boundaries)}});
+    if (document.boundaries) {
+      Json curves = Json::array();
+      for (const BoundaryCurve& curve : r.maps[k].boundaries) curves.push_back(curve_json(curve));
+      rod.add("boundaries", std::move(curves));
     }
+    rods.add(r.rods[k], rod);
   }
-  json["resonance_lines"] = Json::array();
-  for (const ResonanceLine& line : r.lines) {
-    json["resonance_lines"].push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
+  json.add("rods", rods);
+  if (!r.damping.empty()) {
+    Json range = Json::array();
+    for (const DampingCurves& d : r.damping)
+      range.push_back({{"factor", d.factor}, {"boundaries", curves_json(r, d.boundaries)}});
+    json.add("damping_range", std::move(range));
   }
-  if (document.boundaries) json["boundary_points_not_reached"] = boundary_points_not_reached(r);
-  json["counts"] = {{"stable", n.stable},       {"bounded", n.bounded}, {"unstable", n.unstable},
-                    {"undecided", n.undecided}, {"missing", n.missing}, {"interpolated", n.interpolated}};
-  json["missing"] = Json::array();
-  for (const MissingPoints& m : r.missing) {
-    json["missing"].push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
-  }
-  json["units"] = units_json(document.scene.units);
-  return json;
+  Json lines = Json::array();
+  for (const ResonanceLine& line : r.lines) lines.push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
+  json.add("resonance_lines", std::move(lines));
+  if (document.boundaries) json.add("boundary_points_not_reached", boundary_points_not_reached(r));
+  json.add("counts", {{"stable", n.stable},       {"bounded", n.bounded}, {"unstable", n.unstable},
+                      {"undecided", n.undecided}, {"missing", n.missing}, {"interpolated", n.interpolated}});
+  Json none = Json::array();
+  for (const MissingPoints& m : r.missing)
+    none.push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
+  json.add("missing", std::move(none));
+  json.add("units", units_json(document.scene.units));
+  std::string text;
+  // Two numbers of 18 digits and three short words a point, each rod's beside the worst.
+  text.reserve(r.worst.size() * 80 * (r.rods.size() + 1));
+  json.write(text);
+  text += '\n';
+  return text;
 }
+
+Json map_json(const MapDocument& document) { return Json::parse(map_text(document)); }
 
 CsvFile map_grid_csv(const MapDocument& document) {
   const MapResult& r = document.result;

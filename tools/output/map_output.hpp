@@ -21,6 +21,8 @@ struct MapDocument {
 
 // "UNSTABLE at 19 % of the points because of AB", "stable at all points".
 [[nodiscard]] std::string map_verdict(const MapDocument& document);
+// The document as text, and as values.
+[[nodiscard]] std::string map_text(const MapDocument& document);
 [[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
 
 // x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1), then

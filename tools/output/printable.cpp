@@ -41,7 +41,12 @@ CodePoint code_point_at(const std::string& text, std::size_t at) {
 std::string printable(const std::string& text) {
   std::string result;
   result.reserve(text.size());
+  const auto is_plain = [](char c) { return (c >= 0x20 && c < 0x7f) || c == '\n'; };
   for (std::size_t at = 0; at < text.size();) {
+    const std::size_t plain = at;
+    while (at < text.size() && is_plain(text[at])) ++at;
+    result.append(text, plain, at - plain);
+    if (at == text.size()) break;
     const CodePoint point = code_point_at(text, at);
     if (point.visible) {
       result.append(text, at, point.length);

@@ -1,5 +1,6 @@
 #include "tools/output/standard_output.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 
@@ -13,9 +14,18 @@ int first_error = 0;
 }  // namespace
 
 void print_out(const std::string& text) {
-  const std::string shown = printable(text);
+  // In pieces, cut before a character: answers have up to hundreds of megabytes.
+  constexpr std::size_t piece = std::size_t{1} << 20;
   errno = 0;
-  const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size() && std::fflush(stdout) == 0;
+  bool written = true;
+  for (std::size_t from = 0; from < text.size() && written;) {
+    std::size_t to = std::min(from + piece, text.size());
+    while (to < text.size() && (static_cast<unsigned char>(text[to]) & 0xc0) == 0x80) ++to;
+    const std::string shown = printable(text.substr(from, to - from));
+    written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
+    from = to;
+  }
+  written = std::fflush(stdout) == 0 && written;
   if (!written && first_error == 0) first_error = errno != 0 ? errno : EIO;
 }
 

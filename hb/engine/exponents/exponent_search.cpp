@@ -86,8 +86,9 @@ constexpr double strong_resonance = 3e-4;
 
 // Slaves the others to `together` and to the modes that pull at these, which are added to it until that converges;
 // empty where too many would have to be kept.
-std::optional<ReducedSystem> slave_to_resonant(const ScaledSystem& system, std::vector<Index>& together,
-                                               double tolerance) {
+std::optional<ReducedSystem> slave_to_resonant(SampledStiffness& stiffness, std::vector<Index>& together,
+                                               double tolerance, bool bounds_others) {
+  const ScaledSystem& system = stiffness.system();
   Index next = 0;
   const auto with_next = [&] {
     std::vector<Index> more = together;
@@ -97,7 +98,7 @@ std::optional<ReducedSystem> slave_to_resonant(const ScaledSystem& system, std::
   while (resonance_strength(system, together).maxCoeff(&next) > strong_resonance && !too_many(system, with_next()))
     together = with_next();
   while (!too_many(system, together)) {
-    ReducedSystem reduced = slave_to(system, together, sufficient(system, together, tolerance));
+    ReducedSystem reduced = slave_to(stiffness, together, sufficient(system, together, tolerance), bounds_others);
     if (reduced.converged) return reduced;
     resonance_strength(system, together).maxCoeff(&next);
     together = with_next();
@@ -178,9 +179,10 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
   std::vector<MatrixXd> starts(std::size_t(I), MatrixXd{});  // of the subspaces, per mode alone
   MatrixXd start_together(2 * I, 0);
+  SampledStiffness stiffness(system);
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
-    const ReducedSystem reduced = slave_to(system, one, sufficient(system, one, tolerance));
+    const ReducedSystem reduced = slave_to(stiffness, one, sufficient(system, one, tolerance), false);
     if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
     name_modes(alone[std::size_t(g)], system, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty())
@@ -190,7 +192,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
   }
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
-    if (const auto reduced = slave_to_resonant(system, together, tolerance)) {
+    if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, false)) {
       search.exponents = reduced_exponents(*reduced, tolerance);
       name_modes(search.exponents, system, together);
       start_together = reduced->start;
@@ -288,7 +290,8 @@ std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double 
     }
     together.push_back(slowest);
   }
-  if (const auto reduced = slave_to_resonant(system, together, tolerance)) {
+  SampledStiffness stiffness(system);
+  if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, true)) {
     ExponentSearch search;
     search.exponents = reduced_exponents(*reduced, tolerance, true);
     name_modes(search.exponents, system, together);

@@ -57,13 +57,20 @@ void drop_tail(FourierSeries& series, MatrixXd& error) {
   error += sum.reshaped(error.rows(), error.cols());
 }
 
+// |z| without the care that hypot takes of overflow: |z|^2 of scaled systems stays far from it.
+double modulus(cplx z) { return std::sqrt(std::norm(z)); }
+
 // One attempt with N samples of the turn.
 class Iteration {
   // Samples of k_ij over the turn.
-  auto K(Index i, Index j) const { return K_.col(i + I_ * j).array(); }
+  auto K(Index i, Index j) const { return samples_.K.col(i + I_ * j).array(); }
+  double largest_K(Index i, Index j) const { return samples_.largest(i + I_ * j); }
 
  public:
-  Iteration(const ScaledSystem& system, const Partition& p, Index num_samples)
+  Iteration(SampledStiffness& stiffness, const Partition& p, Index num_samples)
+      : Iteration(stiffness.system(), stiffness.at(num_samples), p, num_samples) {}
+
+  Iteration(const ScaledSystem& system, const SampledStiffness::Samples& samples, const Partition& p, Index num_samples)
       : S_(p.S),
         F_(p.F),
         m_(Index(p.S.size())),
@@ -74,7 +81,7 @@ class Iteration {
         rounding_(system.K_rounding),
         diagonal_damping_(system.diagonal_damping),
         I_(system.num_modes()),
-        K_(fourier::synthesise(system.K, num_samples).transpose()),
+        samples_(samples),
         alpha_(N_, m_ * m_),
         beta_(N_, m_ * m_),
         back_(N_, 4 * n_ * m_),
@@ -95,7 +102,7 @@ class Iteration {
     // kappa: what an error of A does to alpha.
     for (Index s = 0; s < m_; ++s) {
       double sum = 0;
-      for (Index j = 0; j < n_; ++j) sum += K(S_[s], F_[j]).abs().maxCoeff() + std::abs(G_(S_[s], F_[j])) * H_;
+      for (Index j = 0; j < n_; ++j) sum += largest_K(S_[s], F_[j]) + std::abs(G_(S_[s], F_[j])) * H_;
       kappa_ = std::max(kappa_, sum);
     }
     residual_ = MatrixXd::Zero(2, n_ * m_);
@@ -111,7 +118,8 @@ class Iteration {
           Eigen::Matrix2cd A;
           A << (ik + bj) * ik - wg + wj, -(ik + bj) * wg - wg * (ik - bg),  //
               ik + (ik - bg + bj), -wg + (ik - bg + bj) * (ik - bg) + wj;
-          inverse_[slot(j, l, k)] = -A.inverse();
+          const cplx factor = -1.0 / (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0));
+          inverse_[slot(j, l, k)] << factor * A(1, 1), -factor * A(0, 1), -factor * A(1, 0), factor * A(0, 0);
         }
     weigh_residuals();
   }
@@ -131,7 +139,7 @@ class Iteration {
         for (Index k = 0; k <= H_; ++k) {
           const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
           for (Index c = 0; c < 2; ++c) {
-            const double size = std::abs(M(0, c)) + weight_[std::size_t(l)] * std::abs(M(1, c));
+            const double size = modulus(M(0, c)) + weight_[std::size_t(l)] * modulus(M(1, c));
             gain(c, q) = std::max(gain(c, q), size);
             rate(c, q) = std::max(rate(c, q), size * (double(k) + weight_[std::size_t(l)]));
           }
@@ -143,9 +151,9 @@ class Iteration {
       double largest = 0;
       for (Index l = 0; l < m_; ++l) largest = std::max(largest, gain(0, j + n_ * l));
       for (Index i = 0; i < n_; ++i)
-        if (i != j) through(j, i) = -largest * K(F_[j], F_[i]).abs().maxCoeff();
+        if (i != j) through(j, i) = -largest * largest_K(F_[j], F_[i]);
       for (Index s = 0; s < m_; ++s) {
-        direct(j) = std::max(direct(j), K(S_[s], F_[j]).abs().maxCoeff());
+        direct(j) = std::max(direct(j), largest_K(S_[s], F_[j]));
         damped(j) = std::max(damped(j), std::abs(G_(S_[s], F_[j])));
       }
     }
@@ -234,7 +242,7 @@ class Iteration {
     return false;
   }
 
-  ReducedSystem result() const {
+  ReducedSystem result(bool bounds_others) const {
     ReducedSystem reduced;
     reduced.converged = true;
     reduced.num_modes = m_;
@@ -251,7 +259,7 @@ class Iteration {
       for (Index s = 0; s < m_; ++s) reduced.alpha_error(s, l) += given_rounding * rounding_(S_[s], S_[l]);
     drop_tail(reduced.alpha, reduced.alpha_error);
     drop_tail(reduced.beta, reduced.beta_error);
-    reduced.others_below = others_below();
+    if (bounds_others) reduced.others_below = others_below();
     reduced.start = start();
     return reduced;
   }
@@ -419,8 +427,8 @@ class Iteration {
           const cplx p = spectrum(k, q), r = spectrum(k, nm + q);
           const cplx r1 = spectrum(k, 2 * nm + q) + cplx(-n * p.imag(), n * p.real());
           const cplx r2 = spectrum(k, 3 * nm + q) + cplx(-n * r.imag(), n * r.real());
-          residual_(0, q) += (k > 0 ? 2 : 1) * std::abs(r1);
-          residual_(1, q) += (k > 0 ? 2 : 1) * std::abs(r2);
+          residual_(0, q) += (k > 0 ? 2 : 1) * modulus(r1);
+          residual_(1, q) += (k > 0 ? 2 : 1) * modulus(r2);
           const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
           data[q * 2 * (H_ + 1) + k] = M(0, 0) * r1 + M(0, 1) * r2;
           data[(q * 2 + 1) * (H_ + 1) + k] = weight_[std::size_t(l)] * (M(1, 0) * r1 + M(1, 1) * r2);
@@ -433,7 +441,7 @@ class Iteration {
   const MatrixXd &G_, &rounding_;
   bool diagonal_damping_;
   Index I_;
-  MatrixXd K_;  // N x I*I
+  const SampledStiffness::Samples& samples_;
   MatrixXd alpha_, beta_;  // N x m*m
   fourier::RealTransform back_, forward_;
   Eigen::Map<MatrixXd> A_, A1_, C_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
@@ -446,7 +454,22 @@ class Iteration {
 
 }  // namespace
 
+const SampledStiffness::Samples& SampledStiffness::at(Index num_samples) {
+  const auto [place, is_new] = samples_.try_emplace(num_samples);
+  if (is_new) {
+    place->second.K = fourier::synthesise(system_.K, num_samples).transpose();
+    place->second.largest = place->second.K.cwiseAbs().colwise().maxCoeff();
+  }
+  return place->second;
+}
+
 ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, double tolerance) {
+  SampledStiffness stiffness(system);
+  return slave_to(stiffness, slow, tolerance, true);
+}
+
+ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow, double tolerance, bool bounds_others) {
+  const ScaledSystem& system = stiffness.system();
   const Index I = system.num_modes();
   const Partition p = partition(I, slow);
   if (p.F.empty()) {
@@ -471,15 +494,15 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
   // Few samples for the iteration; twice as many judge what it gave.
   constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
-  auto iteration = std::make_unique<Iteration>(system, p, start);
+  auto iteration = std::make_unique<Iteration>(stiffness, p, start);
   for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
     if (2 * N > most_samples) break;
-    auto finer = std::make_unique<Iteration>(system, p, 2 * N);
+    auto finer = std::make_unique<Iteration>(stiffness, p, 2 * N);
     finer->start_from(*iteration);
     iteration = std::move(finer);
     if (!iteration->solved_by_start(tolerance)) continue;
     const int iterations = reduced.iterations;
-    reduced = iteration->result();
+    reduced = iteration->result(bounds_others);
     reduced.iterations = iterations;
     break;
   }
@@ -497,9 +520,9 @@ VectorXd resonance_strength(const ScaledSystem& system, std::span<const Index> s
       for (Index k = -P; k <= P; ++k) {
         const cplx z = lambda + cplx(0, double(k));
         const double coupling =
-            std::abs(system.K.c(s + I * j, std::abs(k))) * std::abs(system.K.c(j + I * s, std::abs(k))) +
+            modulus(system.K.c(s + I * j, std::abs(k))) * modulus(system.K.c(j + I * s, std::abs(k))) +
             std::abs(system.G(s, j) * system.G(j, s)) * (k == 0 ? std::norm(z) : 0);
-        const double denominator = std::abs(z * z + b(j) * z + w2(j)) * std::max(std::abs(2.0 * lambda + b(s)), 1e-3);
+        const double denominator = modulus(z * z + b(j) * z + w2(j)) * std::max(std::abs(2.0 * lambda + b(s)), 1e-3);
         strength(j) = std::max(strength(j), coupling / std::max(denominator, 1e-300));
       }
     }

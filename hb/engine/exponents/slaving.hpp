@@ -5,6 +5,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <map>
 #include <span>
 
 #include "hb/engine/system/scaled_system.hpp"
@@ -19,15 +21,36 @@ struct ReducedSystem {
   Eigen::MatrixXd alpha_error, beta_error;
   // Upper bound on Re s of all the other 2(I - m) exponents (they belong to what is left when A, C are split off), by
   // the logarithmic norm in adiabatic coordinates averaged over the turn; infinite if no bound was found.
-  double others_below = 0;
+  double others_below = HUGE_VAL;
   // States (x, x') at tau = 0 of the invariant subspace, 2I x 2m: column l for x_S = e_l, column m + l for x_S' = e_l.
   Eigen::MatrixXd start;
   int iterations = 0;
 };
 
+// The stiffness of one system over the turn, shared by its slavings.
+class SampledStiffness {
+ public:
+  explicit SampledStiffness(const ScaledSystem& system) : system_(system) {}
+
+  struct Samples {
+    Eigen::MatrixXd K;  // N x I*I
+    Eigen::VectorXd largest;  // max_tau |K_ij|, I*I
+  };
+  // At N equally spaced angles; the reference stays valid.
+  const Samples& at(Eigen::Index num_samples);
+  const ScaledSystem& system() const { return system_; }
+
+ private:
+  const ScaledSystem& system_;
+  std::map<Eigen::Index, Samples> samples_;
+};
+
 // Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
 // the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
-// changes by less than `tolerance` relative to its largest value, or to rounding.
+// changes by less than `tolerance` relative to its largest value, or to rounding. `bounds_others`: others_below is
+// looked for.
+[[nodiscard]] ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Eigen::Index> slow, double tolerance,
+                                     bool bounds_others);
 [[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow,
                                      double tolerance = 0);
 

@@ -47,7 +47,7 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
     const double gained = size_in_q(z, T) / size;
     if (!std::isfinite(gained)) return std::nan("");
     largest = std::max(largest, gained);
-    rhs = (z * (1 / z.cwiseAbs().maxCoeff())).cwiseProduct(A.magnitude().cast<std::complex<double>>());
+    rhs = (z * (1 / moduli(z).maxCoeff())).cwiseProduct(A.magnitude().cast<std::complex<double>>());
   }
   return largest;
 }
@@ -84,7 +84,7 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   // Contraction of one round, window -> tail -> window, at most.
   double step_out = 0;
   for (Index i = 0; i < I; ++i)
-    for (Index k = H + 1; k <= R; ++k) step_out = std::max(step_out, s.coupling(i) / std::abs(s.D(i, k)));
+    for (Index k = H + 1; k <= R; ++k) step_out = std::max(step_out, s.coupling(i) / modulus(s.D(i, k)));
   const double round = response * step_out * step_out;
   double previous = 0, before = 0;
   for (int step = 0; step < most_steps; ++step) {
@@ -121,13 +121,13 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
     take(true, step == 0);
   }
   Eigen::VectorXd sizes = Eigen::VectorXd::Zero(I);
-  for (Index k = H + 1; k <= R; ++k) sizes += 2 * tail.row(k).cwiseAbs().transpose();
+  for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
   result.outside = weigh(sizes, T);
   for (Index k = R + 1; k < r.rows(); ++k) result.outside += 2 * tail_row(A, r, k, T);
   // Rows beyond R feel the tail through K, and answer it.
   double reaching = 0, nearest = HUGE_VAL;
   for (Index i = 0; i < I; ++i) {
-    for (Index k = R + 1; k <= R + s.P; ++k) nearest = std::min(nearest, std::abs(s.D(i, k)));
+    for (Index k = R + 1; k <= R + s.P; ++k) nearest = std::min(nearest, modulus(s.D(i, k)));
     reaching = std::max(reaching, s.coupling(i));
   }
   if (result.outside > 0 && reaching > 0) result.rest += result.outside * reaching / nearest * (1 + round);
@@ -137,8 +137,8 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
 double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T) {
   Eigen::VectorXd sizes(r.cols());
   for (Index i = 0; i < r.cols(); ++i) {
-    const double size = std::abs(r(k, i));
-    sizes(i) = size > 0 ? size / std::abs(A.system().D(i, k)) : 0;
+    const double size = modulus(r(k, i));
+    sizes(i) = size > 0 ? size / modulus(A.system().D(i, k)) : 0;
   }
   return weigh(sizes, T);
 }
@@ -160,7 +160,7 @@ double tail_slack(const Operator& A, double response) {
   double contraction = 0;
   for (Index k = A.num_harmonics() + 1; k <= A.last_row(); ++k)
     for (Index i = 0; i < A.num_modes(); ++i) {
-      const double d = std::abs(A.system().D(i, k));
+      const double d = modulus(A.system().D(i, k));
       if (A.system().coupling(i) > 0) contraction = std::max(contraction, A.system().coupling(i) / d);
     }
   const double among = contraction < 1 - 1 / most_tail_slack ? 1 / (1 - contraction) : most_tail_slack;

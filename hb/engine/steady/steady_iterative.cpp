@@ -27,7 +27,7 @@ IterativeInverse::IterativeInverse(Operator& A) : A_(A), D_inverse_(A.D()) {
   for (Index i = 0; i < A.num_modes(); ++i)
     for (Index k = 0; k <= H; ++k) {
       const std::complex<double> d = A.D()(k, i);
-      const double size = std::abs(d);
+      const double size = modulus(d);
       // A vanishing diagonal belongs to the core; outside it this keeps the preconditioner finite.
       D_inverse_(k, i) = size > 1e-8 * A.magnitude()(k, i) ? 1.0 / d : 1.0 / std::max(A.magnitude()(k, i), 1e-300);
       if (!(size > 1e-8 * A.magnitude()(k, i))) contraction = HUGE_VAL;
@@ -46,7 +46,7 @@ void IterativeInverse::make_core() {
   std::vector<std::pair<double, Pair>> candidates;
   for (Index i = 0; i < I; ++i)
     for (Index k = 0; k <= H; ++k) {
-      const double size = std::abs(A_.D()(k, i)), magnitude = A_.magnitude()(k, i);
+      const double size = modulus(A_.D()(k, i)), magnitude = A_.magnitude()(k, i);
       const double ratio = std::max(s.own_coupling(i), 1e-8 * magnitude) / std::max(size, 1e-300);
       if (ratio > core_threshold) candidates.push_back({ratio, {i, k}});
     }

@@ -14,7 +14,8 @@ double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x)));
 
 Eigen::VectorXd wiener_norms(const Spectrum& x) {
   if (x.rows() == 0) return Eigen::VectorXd::Zero(x.cols());
-  return x.row(0).cwiseAbs().transpose() + 2 * x.bottomRows(x.rows() - 1).cwiseAbs().colwise().sum().transpose();
+  Eigen::VectorXd norms = 2 * moduli(x).colwise().sum().transpose();
+  return norms - moduli(x.row(0)).transpose();
 }
 
 WeightedSystem weighted(const ScaledSystem& system) {
@@ -38,7 +39,7 @@ WeightedSystem weighted(const ScaledSystem& system) {
   if (system.f_rounding.size() > 0) s.f_rounding = s.weight.cwiseProduct(system.f_rounding);
   if (system.load_scale != 0) s.f = (s.weight.asDiagonal() * system.f.c).transpose();
 
-  const Eigen::VectorXd norms = s.K.col(0).cwiseAbs() + 2 * s.K.rightCols(s.P).cwiseAbs().rowwise().sum();
+  const Eigen::VectorXd norms = moduli(s.K.col(0)) + 2 * moduli(s.K.rightCols(s.P)).rowwise().sum();
   Eigen::MatrixXd E = Eigen::Map<const Eigen::MatrixXd>(norms.data(), I, I);
   E.diagonal() -= s.mean.cwiseAbs();
   s.own_coupling = E.diagonal();
@@ -132,7 +133,7 @@ Spectrum Operator::residual(const Spectrum& x) {
 }
 
 double Operator::scaled_norm(const Spectrum& r) const {
-  const Eigen::MatrixXd size = r.topRows(H_ + 1).cwiseAbs().cwiseQuotient(magnitude_);
+  const Eigen::MatrixXd size = moduli(r.topRows(H_ + 1)).cwiseQuotient(magnitude_);
   return std::sqrt(2 * size.squaredNorm() - size.row(0).squaredNorm());
 }
 

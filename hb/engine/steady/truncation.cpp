@@ -28,8 +28,8 @@ Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index 
     Eigen::VectorXd response = Eigen::VectorXd::Zero(I);
     for (Index m = 1; m <= std::min(k, P_cut); ++m) response.noalias() += K.col(m).reshaped(I, I) * a.col(k - m);
     for (Index i = 0; i < I; ++i) {
-      const double d = std::max(std::abs(system.D(i, k)), 1e-12 * system.magnitude(i, k));
-      const double load = k <= F ? std::abs(system.f(k, i)) : 0;
+      const double d = std::max(modulus(system.D(i, k)), 1e-12 * system.magnitude(i, k));
+      const double load = k <= F ? modulus(system.f(k, i)) : 0;
       largest = std::max(largest, load / d);
       a(i, k) = std::min((load + response(i)) / d, largest);
     }

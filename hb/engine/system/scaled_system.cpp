@@ -37,6 +37,11 @@ double coupling(const Eigen::MatrixXd& A) {
 FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   const Eigen::Index I = left.rows();
   FourierSeries result = matrices;
+  if (is_diagonal(left) && is_diagonal(right)) {
+    for (Eigen::Index j = 0; j < I; ++j)
+      for (Eigen::Index i = 0; i < I; ++i) result.c.row(i + I * j) *= left(i, i) * right(j, j);
+    return result;
+  }
   for (Eigen::Index k = 0; k < matrices.c.cols(); ++k) {
     const Eigen::Map<const Eigen::MatrixXcd> coefficient(matrices.c.col(k).data(), I, I);
     const Eigen::MatrixXcd product = left * coefficient * right;

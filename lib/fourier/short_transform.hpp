@@ -1,0 +1,38 @@
+// Discrete Fourier transform of real samples, of lengths that are a power of two or three times one: at once ready for
+// use, where a general library would plan for longer than a short transform takes.
+//     c_k = sum_j f_j e^{-2 pi i jk/N},  k = 0..N/2          f_j = sum_k c_k e^{2 pi i jk/N},  c_{N-k} = conj c_k
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+namespace hb::fourier {
+
+class ShortTransform {
+ public:
+  // N = 2^k or 3 2^k, from 8 to 4096.
+  [[nodiscard]] static bool serves(std::size_t num_samples);
+  explicit ShortTransform(std::size_t num_samples);
+
+  // N samples -> N/2 + 1 coefficients times `factor`.
+  void forward(const double* samples, std::complex<double>* spectrum, double factor) const;
+  // And back, without a factor; the imaginary parts of c_0 and c_{N/2} count as zero.
+  void backward(const std::complex<double>* spectrum, double* samples) const;
+
+ private:
+  // One pass of the autosort transform of M = N/2 complex numbers: sub-transforms of length n, radix r, stride M/n.
+  struct Pass {
+    std::size_t n, radix, stride;
+    std::size_t twiddles;  // where in twiddles_: per power 1..r-1 cosines, then sines of 2 pi p/n, p < n/r
+  };
+  // In split form; the result lies in (re, im), the other pair is scratch.
+  void transform(double*& re, double*& im, double*& other_re, double*& other_im) const;
+
+  std::size_t N_, M_;
+  std::vector<Pass> passes_;
+  std::vector<double> twiddles_;
+  std::vector<double> cosines_, sines_;  // of 2 pi k/N, k <= M
+};
+
+}  // namespace hb::fourier
