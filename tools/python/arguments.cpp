@@ -13,12 +13,15 @@ namespace hb::python {
 namespace {
 
 bool is_text(py::handle object) { return py::isinstance<py::str>(object); }
+bool is_word(py::handle object, const char* word) {
+  return is_text(object) && PyUnicode_CompareWithASCIIString(object.ptr(), word) == 0;
+}
 
 template <class Enum>
 Enum choice(const std::string& field, py::handle object, const std::vector<std::pair<const char*, Enum>>& choices) {
   std::vector<std::string> names;
   for (const auto& [name, value] : choices) {
-    if (is_text(object) && object.cast<std::string>() == name) return value;
+    if (is_word(object, name)) return value;
     names.push_back(name);
   }
   throw RequestError(field, shown(object), fmt::format("{}", fmt::join(names, ", ")));
@@ -133,7 +136,8 @@ std::vector<std::string> texts(const std::string& field, py::handle object) {
   if (!py::isinstance<py::sequence>(object) || py::isinstance<py::bytes>(object))
     throw RequestError(field, shown(object), "text, or a list of texts");
   std::vector<std::string> result;
-  for (const py::handle item : py::reinterpret_borrow<py::sequence>(object)) result.push_back(text(field, item));
+  const auto list = py::reinterpret_borrow<py::sequence>(object);
+  for (std::size_t k = 0; k < list.size(); ++k) result.push_back(text(field, py::object(list[k])));
   return result;
 }
 
@@ -171,7 +175,7 @@ Request read_request(const py::dict& arguments) {
   if (const auto rpm = given(arguments, "rpm")) request.rpm = number("rpm", *rpm);
   if (const auto omega = given(arguments, "omega")) request.omega = number("omega", *omega);
   if (const auto modes = given(arguments, "modes")) {
-    if (is_text(*modes) && modes->cast<std::string>() == "auto") {
+    if (is_word(*modes, "auto")) {
       request.modes = AutoModes{};
     } else {
       if (PyBool_Check(modes->ptr()) || PyIndex_Check(modes->ptr()) == 0)
@@ -215,7 +219,7 @@ int read_threads(const py::dict& arguments) {
   constexpr int most = 1024;
   const auto threads = given(arguments, "threads");
   if (!threads) return 1;
-  if (is_text(*threads) && threads->cast<std::string>() == "all")
+  if (is_word(*threads, "all"))
     return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, most);
   if (PyBool_Check(threads->ptr()) || PyIndex_Check(threads->ptr()) == 0)
     throw RequestError("threads", shown(*threads), fmt::format("an integer 1 to {}, or \"all\"", most));

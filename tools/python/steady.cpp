@@ -91,8 +91,8 @@ py::object field_at(const RodView& rod, const py::object& places, const py::obje
   for (const FourierSeries& f : coefficients.f) harmonics = std::max(harmonics, f.num_harmonics());
   harmonics += q.num_harmonics();
   const Eigen::Map<const Eigen::VectorXd> x(list.data(), static_cast<Eigen::Index>(list.size()));
-  Eigen::MatrixXd values;
-  {
+  Eigen::MatrixXd values(x.size(), at.phase.size());
+  if (values.size() > 0) {
     const py::gil_scoped_release release;
     const RodField field =
         rod_field(link, coefficients, answer.result.speed, q, x, fourier::fast_length(2 * harmonics + 2));

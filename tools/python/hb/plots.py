@@ -215,7 +215,7 @@ def _campbell(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: di
         elif turns[1] > turns[0]:
             share = (top / (half / 2) - turns[0]) / (turns[1] - turns[0])
             if half // 2 <= 12:
-                ax.annotate(label, (order[0] + share * (order[1] - order[0]), top), xytext=(0, 2), textcoords="offset points", fontsize=8, color="#777777", ha="center")
+                ax.annotate(label, (order[0] + share * (order[1] - order[0]), top), xytext=(0, -3), textcoords="offset points", fontsize=8, color="#777777", ha="center", va="top")
     for i in range(min(modes, 3)):
         for j in range(i + 1, min(modes, 3)):
             for sign in (1, -1):
@@ -246,7 +246,7 @@ def _campbell(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: di
     ax.plot([p["x"] for p in peaks], [p["frequency"] / (2 * np.pi * per_second) for p in peaks], "o", color="#000000", markersize=3)
     ax.set(ylim=(0, top), ylabel="frequency [Hz]")
     dotted = ", dotted: $(ω_i ± ω_j)/2$" if modes > 1 else ""
-    _title(ax, _subject(rod), f"Campbell diagram; grey: nΩ, dashed: kΩ/2{dotted}; dots: resonance peaks{note}")
+    _title(ax, _subject(rod), f"Campbell diagram; grey: nΩ, dashed: kΩ/2{dotted}\ndots: resonance peaks{note}")
 
 
 def _subject(rod: "SweepRod") -> str:
@@ -271,6 +271,18 @@ def _growth(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: dict
     _legend(ax, loc="center left", bbox_to_anchor=(1, 0.5))
 
 
+def _stable_range(ax: "Axes", values: Any, rows: Any, at: dict[str, int]) -> None:
+    """What is seen where the motion is stable fills the picture: peaks of unstable motions would hide it."""
+    import numpy as np
+
+    if at["growth"]:
+        stable = rows[:, at["growth"] + 1] < 0  # the verdict as a number
+        values = values[stable] if stable.any() else values
+    values = values[np.isfinite(values) & (values > 0)]
+    if len(values):
+        ax.set_ylim(max(values.min(), 1e-12 * values.max()) / 2, 10 * values.max())
+
+
 def _peaks(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: dict[str, int], beyond: Any) -> None:
     _require(at, "first_peak", "steady")
     note = _shade(ax, rod)
@@ -279,6 +291,7 @@ def _peaks(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: dict[
         y = rows[:, first + i]
         _curve(ax, rows[:, 0], y, beyond, color=LINES[i % 7], label=f"$q_{{{i + 1}}}$")
     ax.set(yscale="log", ylabel="largest $|q_i|$" + _unit(columns[first:], "max"))
+    _stable_range(ax, rows[:, first : first + min(rod.modes, _SHOWN)], rows, at)
     meaning = "$q_i$: unknowns of the system" if rod.name == "system" else "$q_i$: amplitude of sin(iπx/l)"
     _title(ax, _subject(rod), f"{meaning}, largest over the turn{note}")
     _legend(ax, loc="center left", bbox_to_anchor=(1, 0.5))
@@ -289,6 +302,7 @@ def _largest(ax: "Axes", rod: "SweepRod", columns: list[str], rows: Any, at: dic
     note = _shade(ax, rod)
     _curve(ax, rows[:, 0], rows[:, at["deflection"] - 1], beyond, color=LINES[0])
     ax.set(yscale="log", ylabel=columns[at["deflection"] - 1])
+    _stable_range(ax, rows[:, at["deflection"] - 1 : at["deflection"]], rows, at)
     _title(ax, _subject(rod), "largest deflection over rod and turn" + note)
 
 

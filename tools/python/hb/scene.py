@@ -390,7 +390,7 @@ def load(file: Union[str, "os.PathLike[str]"]) -> Scene:
         path = os.fspath(file)
     except TypeError:
         raise refused("file", file, "a path") from None
-    if not isinstance(path, str):
+    if not isinstance(path, str) or "\0" in path:
         raise refused("file", path, "a path as text")
     return Scene._of(_core.Scene.load(path))
 

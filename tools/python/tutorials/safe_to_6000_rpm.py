@@ -39,10 +39,11 @@ for band in rod.band_details:
     print(f"  {band['from']:.1f} to {band['to']:.1f} rpm, growth up to {band['fastest_growth']:.3g} 1/s")
 strongest = sorted(sw.critical, key=lambda peak: -peak.prominence)[:5]
 for peak in strongest:
-    print(f"  resonance at {peak.rpm:.1f} rpm: max |q_{peak.q}| = {peak.max_abs:.4g} mm")
+    size = "without bound" if peak.unbounded else f"{peak.max_abs:.4g} mm"
+    print(f"  resonance at {peak.rpm:.1f} rpm: max |q_{peak.q}| {size}")
 
 # Would more damping help? Growth rate over speed and internal damping; None is interpolated into a verdict.
-mp = m.map(x="rpm=3000:6000:31", y="coupler.damping_internal=1e-6:5e-5:21", modes=3, threads=2)
+mp = m.map(x="rpm=3000:6000:25", y="coupler.damping_internal=1e-6:5e-5:15", modes=3, threads=2)
 unstable = (mp.verdict == "unstable").mean()
 print(f"{100 * unstable:.0f} % of the map is unstable, {len(mp.boundaries)} boundary curves")
 
