@@ -75,7 +75,9 @@ int run_sweep_command(const SweepFlags& flags) {
   if (branches && !document.is_null()) add_branches(document, sweep_scene, *branches);
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : sweep_table(sweep_scene, result);
-  if (branches && !out.json) delivery.printed += branches_table(sweep_scene, *branches);
+  if (branches && !out.json)
+    delivery.printed = "By the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
+                       branches_table(sweep_scene, *branches);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
     std::vector<Figure> figures = sweep_files(sweep_scene, result, place);

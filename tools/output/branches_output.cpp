@@ -149,11 +149,6 @@ std::string peaks_text(const NonlinearSweep& sweep, const RodPeaks& peaks, const
   return text + " " + units.length;
 }
 
-std::string located(double x, double error) {
-  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : 12;
-  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, 3, 12));
-}
-
 }  // namespace
 
 void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& sweep) {

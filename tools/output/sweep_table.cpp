@@ -33,13 +33,6 @@ std::string axis_column(const SweepScene& scene) {
   return axis_label(scene);
 }
 
-// No more digits than are known.
-std::string located(double x, double error) {
-  constexpr int most = 12, fewest = 3;
-  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
-  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
-}
-
 std::string kind_words(BoundaryKind kind, bool linkage) {
   switch (kind) {
     case BoundaryKind::plus_one: return linkage ? "repeating with every turn (+1)" : "repeating with every period (+1)";

@@ -23,6 +23,12 @@ std::string speed_text(double speed, const Scene& scene, int digits) {
   return fmt::format("omega = {:.{}g} rad/{}", speed, digits, scene.units.time);
 }
 
+std::string located(double x, double error) {
+  constexpr int most = 12, fewest = 3;
+  const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
+  return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
+}
+
 int trusted_digits(double value, double error) {
   constexpr int fewest = 3, most = 10;
   if (value == 0 || !(error < std::abs(value))) return fewest;
