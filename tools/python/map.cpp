@@ -36,7 +36,7 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, co
 
 void add_map(py::module_& module) {
   py::class_<Map, std::shared_ptr<Map>>(module, "Map")
-      .def("json", [](const Map& map) { return decoded(tools::json_text(tools::map_json(document_of(map)))); })
+      .def("json", [](const Map& map) { return decoded(tools::map_text(document_of(map))); })
       .def("words", [](const Map& map) { return decoded(tools::map_summary(document_of(map))); })
       .def("table", [](const Map& map) { return table_of(tools::map_grid_csv(document_of(map))); })
       .def_property_readonly("evidence", [](const Map& map) { return decoded(map.evidence); });

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hb/engine/boundaries/finite_growth.hpp"
+
 namespace hb {
 
 namespace {
@@ -95,14 +97,16 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
     }
     if (!(x > low && x < high)) x = middle;
     if (!(x > low && x < high)) break;
-    const std::optional<StabilitySample> sample = stability_sample(at, x, sharp);
-    if (!sample || !std::isfinite(sample->stability.growth_rate)) break;
-    const double f = value(*sample);
+    const std::optional<ScaledSystem> system = at(x);
+    if (!system) break;
+    const StabilitySample sample{x, system->speed, with_finite_growth(*system, sharp)};
+    if (!std::isfinite(sample.stability.growth_rate)) break;
+    const double f = value(sample);
     const bool above = (f > 0) == unstable_above;  // x lies on b's side
     (above ? high : low) = x;
     (above ? f_high : f_low) = f;
-    if (f > 0) notice_kind(*sample);
-    growth_error = sample->stability.growth_error;
+    if (f > 0) notice_kind(sample);
+    growth_error = sample.stability.growth_error;
     if (std::abs(f) > 4 * growth_error) {
       (above ? certain_high : certain_low) = x;
       (above ? g_high : g_low) = f;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
 
 namespace hb {
@@ -140,7 +141,10 @@ class Mesh {
   // All exponents at a node; the leading ones suffice elsewhere.
   std::optional<StabilitySample> sample(double x, double y, const StabilityOptions& stability) const {
     ++samples_;
-    return stability_sample([&](double t) { return at_(t, y); }, x, stability);
+    if (!grid_alone_) return stability_sample([&](double t) { return at_(t, y); }, x, stability);
+    const std::optional<ScaledSystem> system = at_(x, y);
+    if (!system) return std::nullopt;
+    return StabilitySample{x, system->speed, with_finite_growth(*system, stability)};
   }
 
   std::size_t add_node(int i, int j) {
@@ -559,8 +563,11 @@ class Mesh {
 StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                            const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
-  Mesh mesh(system, make_axis(std::move(x), every_value, "x"), make_axis(std::move(y), every_value, "y"), every_value,
-            options);
+  Axis along_x = make_axis(std::move(x), every_value, "x"), along_y = make_axis(std::move(y), every_value, "y");
+  // Nothing between the places that were given where every one is evaluated and no curve is asked for.
+  if (every_value && !options.boundaries)
+    for (Axis* axis : {&along_x, &along_y}) axis->base = axis->units;
+  Mesh mesh(system, std::move(along_x), std::move(along_y), every_value, options);
   mesh.build();
   return mesh.result();
 }

@@ -1,20 +1,12 @@
 #include "hb/engine/boundaries/stability_sample.hpp"
 
-#include <cmath>
-
+#include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
 
 namespace hb {
 
 StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options) {
-  StabilitySample sample{x, system.speed, analyse_stability(system, options), mean_exponents(system),
-                         growth_bound(system)};
-  if (options.leading_only && !std::isfinite(sample.stability.growth_rate + sample.stability.growth_error)) {
-    StabilityOptions all = options;
-    all.leading_only = false;
-    sample.stability = analyse_stability(system, all);
-  }
-  return sample;
+  return {x, system.speed, with_finite_growth(system, options), mean_exponents(system), growth_bound(system)};
 }
 
 std::optional<StabilitySample> stability_sample(const SystemAt& at, double x, const StabilityOptions& options) {
