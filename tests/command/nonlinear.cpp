@@ -84,6 +84,7 @@ TEST_F(Nonlinear, SweepSaysTheJumpsAndTheVerdictAtEachSpeed) {
   EXPECT_TRUE(found["rods"]["AB"].contains("theory_error"));
 }
 
+// References into the document were kept while it grew: without stability the folds went to freed memory.
 TEST_F(Nonlinear, FoldsAreTheSameWhereverTheBranchBegins) {
   const std::string what = " --modes 1 --only steady";
   const Json one = document("sweep " + scene("six_link") + " --rpm 1460:1500:40" + what),
