@@ -123,10 +123,11 @@ Json jump_json(const SweepScene& scene, const NonlinearSweep& sweep, const Jump&
 void add_followed(Json& json, const SweepScene& scene, const NonlinearSweep& sweep) {
   const bool stability = scene.settings().only.stability;
   if (json.contains("verdict")) {
-    json["linear_verdict"] = std::move(json["verdict"]);
+    Json linear = std::move(json["verdict"]);
     json.erase("verdict");
+    json["linear_verdict"] = std::move(linear);
   }
-  Json& system = json["system"] = Json::object();
+  Json system = Json::object();
   for (const auto& place : sweep.followed) {
     const NonlinearPoint* point = place ? &sweep.branches[place->branch].points[place->point] : nullptr;
     system["branch"].push_back(place ? Json(place->branch) : Json());
@@ -138,7 +139,11 @@ void add_followed(Json& json, const SweepScene& scene, const NonlinearSweep& swe
     system["growth_error"].push_back(known ? number(point->stability->growth_error) : Json());
     system["verdict"].push_back(known ? Json(to_string(point->stability->verdict)) : Json());
   }
-  if (stability) json["verdict"] = system["verdict"];
+  if (stability) {
+    Json verdict = system["verdict"];
+    json["verdict"] = std::move(verdict);
+  }
+  json["system"] = std::move(system);
 }
 
 std::string peaks_text(const NonlinearSweep& sweep, const RodPeaks& peaks, const OutputUnits& units) {
@@ -158,19 +163,21 @@ void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& swe
     json["status"] = "tolerance not reached";
     for (const std::string& sentence : sweep.shortfalls) json["notes"].push_back(sentence);
   }
-  Json& branches = json["branches"] = Json::array();
+  Json branches = Json::array();
   for (const NonlinearBranch& branch : sweep.branches) branches.push_back(branch_json(scene, sweep, branch));
-  Json folds = Json::array(), details = Json::array();
+  json["branches"] = std::move(branches);
+  // Filled before they are added: a document's members move when it grows.
+  Json folds = Json::array(), details = Json::array(), bifurcations = Json::array(), jumps = Json::array();
   for (const NonlinearEvent& fold : sweep.folds) {
     folds.push_back(place_of(scene, fold.x, fold.speed));
     details.push_back(event_json(scene, fold));
   }
+  for (const NonlinearEvent& event : sweep.bifurcations) bifurcations.push_back(event_json(scene, event));
+  for (const Jump& jump : sweep.jumps) jumps.push_back(jump_json(scene, sweep, jump));
   json["folds"] = std::move(folds);
   json["fold_details"] = std::move(details);
-  Json& bifurcations = json["bifurcations"] = Json::array();
-  for (const NonlinearEvent& event : sweep.bifurcations) bifurcations.push_back(event_json(scene, event));
-  Json& jumps = json["jumps"] = Json::array();
-  for (const Jump& jump : sweep.jumps) jumps.push_back(jump_json(scene, sweep, jump));
+  json["bifurcations"] = std::move(bifurcations);
+  json["jumps"] = std::move(jumps);
   json["stopped"] = sweep.stopped;
   add_followed(json, scene, sweep);
 }

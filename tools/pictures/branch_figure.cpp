@@ -22,7 +22,7 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
   for (const NonlinearBranch& branch : sweep.branches)
     for (const NonlinearPoint& point : branch.points) top = std::max(top, point.max_abs[r].front());
   text += "set title '{/:Bold " + literal(scene_name(scene.scene()) + ", " + sweep.rods[r]) +
-          "}'.\"\\n\".'motion without linearisation: solid stable, dashed unstable; grey: linear theory'\n";
+          "}'.\"\\n\".'motion without linearisation: solid stable, dashed unstable; dots folds, circles bifurcations; grey linear'\n";
   text += fmt::format(
       "set xrange [{}:{}]\nset xlabel {}\nset ylabel 'largest |q_1| [{}]'\nset yrange [0:{}]\n"
       "set key outside right top Left reverse samplen 2\nplot ",
@@ -43,14 +43,14 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
         turns == 1 ? fmt::format("branch {}", b + 1) : fmt::format("branch {}, {} turns", b + 1, turns),
         b + 1 < sweep.branches.size() ? ", " : "");
   }
-  const auto marks = [&](const std::vector<NonlinearEvent>& events, const char* colour) {
+  const auto marks = [&](const std::vector<NonlinearEvent>& events, int pointtype) {
     std::string labels;
     for (const NonlinearEvent& event : events)
-      labels += fmt::format("set label '' at {}, {} point pointtype 7 pointsize 0.8 linecolor rgb '{}' front\n", event.x,
-                            event.max_abs[r].front(), colour);
+      labels += fmt::format("set label '' at {}, {} point pointtype {} pointsize 0.8 linecolor rgb '#000000' front\n",
+                            event.x, event.max_abs[r].front(), pointtype);
     return labels;
   };
-  text.insert(text.rfind("plot "), marks(sweep.folds, "#000000") + marks(sweep.bifurcations, "#d55e00"));
+  text.insert(text.rfind("plot "), marks(sweep.folds, 7) + marks(sweep.bifurcations, 6));
   text +=
       "\nunset label\nset xrange [*:*]\nset yrange [*:*]\nunset title\nunset xlabel\nunset ylabel\nset key default\n";
   return figure;

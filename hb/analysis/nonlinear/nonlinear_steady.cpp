@@ -35,8 +35,9 @@ constexpr double way_tolerance = 1e-5;
 constexpr double way_exponents = 1e-4;
 // A resonance curve with its folds takes some hundred.
 constexpr int most_points = 600;
-// Exponents depend on accelerations: what the smallest tolerance of the motion allows, of the larger of growth and speed.
-constexpr double least_tolerance = 1e-9, exponent_tolerance = 1e-7;
+constexpr double least_tolerance = 1e-9;
+// Exponents depend on accelerations: their tolerance, of the larger of growth and speed, over that of the motion.
+constexpr double exponent_share = 100;
 // Two motions are the same if their largest |q_i| agree to this.
 constexpr double same_motion = 1e-4;
 
@@ -495,7 +496,7 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
   add_rods(model, search.exact(), search, result);
   if (settings.only.stability) {
     Stopwatch stability_watch;
-    const StabilityOptions exponents{.tolerance = std::max(exponent_tolerance, settings.tolerance)};
+    const StabilityOptions exponents{.tolerance = exponent_share * result.tolerance};
     result.stability = motion_stability(search.system(), result.motion, exponents);
     if (!result.stability->converged)
       if (const std::optional<PeriodicMotion> finer = search.with_more_harmonics())
