@@ -21,7 +21,7 @@ constexpr double negligible = 1e-6;
 constexpr double rough = 1e-5;
 // Response to the left-out load over that far from resonance, beyond which one correction does not show the change (by
 // random linkages).
-constexpr double most_amplified = 50;
+constexpr double most_amplified = 25;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
   std::vector<FourierSeries> q;
