@@ -19,6 +19,9 @@ using Eigen::MatrixXd;
 constexpr double negligible = 1e-6;
 // Asked of the correction.
 constexpr double rough = 1e-5;
+// Response to the left-out load over that far from resonance, beyond which one correction does not show the change (by
+// random linkages).
+constexpr double most_amplified = 25;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
   std::vector<FourierSeries> q;
@@ -60,11 +63,18 @@ MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd&
 }
 
 // What the system's q answer to the load on them given by samples; empty at resonance.
-std::optional<FourierSeries> response(const HillSystem& system, double speed, const MatrixXd& load) {
-  const HillSystem loaded{system.mass, system.damping, {stiffness_at(system, speed), {}, {}},
+std::optional<FourierSeries> response(const HillSystem& system, double speed, const MatrixXd& load,
+                                      double& amplification) {
+  const HillSystem loaded{system.mass,
+                          system.damping,
+                          {stiffness_at(system, speed), {}, {}},
                           {on_unknowns(fourier::analyse(load), system.num_modes()), {}, {}}};
   if (!loaded.load[0].c.allFinite()) return std::nullopt;
-  if (const auto q = rough_steady_state(loaded, speed, rough)) return ritz_coordinates(*q, load.rows());
+  if (const auto state = rough_steady_state(loaded, speed, rough)) {
+    amplification = std::max(amplification, state->amplification);
+    return ritz_coordinates(state->q, load.rows());
+  }
+  amplification = HUGE_VAL;
   const SteadyState state = solve_steady_state(loaded, speed, {.tolerance = rough});
   if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
   return ritz_coordinates(state.q, load.rows());
@@ -116,6 +126,66 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
   errors.torque = ratio(largest(change.row(last)), largest(size.row(last)));
 }
 
+// The exact model at q, and what the linear rods answer to what their model leaves out there (T1).
+struct Corrections {
+  std::vector<FourierSeries> dq;
+  double amplification = 0;  // largest
+  std::optional<ExactBreakdown> breakdown;
+  std::optional<std::size_t> singular;  // this rod has no periodic solution
+};
+
+Corrections corrections(const ExactModel& model, double speed, std::span<const LinearRod> rods,
+                        const CrankAngles& angles, const std::vector<FourierSeries>& q) {
+  Corrections found;
+  const RitzSamples motion = ritz_samples(q, speed, angles.size());
+  const ExactResidual exact = model.residual(speed, angles, motion);
+  found.breakdown = exact.breakdown;
+  for (std::size_t r = 0; r < rods.size() && !found.breakdown && !found.singular; ++r) {
+    const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
+    const HillSystem& system = *rods[r].system;
+    const MatrixXd own = motion.q.middleRows(first, I), own1 = motion.q1.middleRows(first, I),
+                   own2 = motion.q2.middleRows(first, I);
+    const Body& link = *body_at(model.linkage(), model.rods()[r].link);
+    const MatrixXd linear = link.elastic->shear
+                                ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1, own2)
+                                : linear_residual(system, speed, own, own1, own2);
+    std::optional<FourierSeries> dq =
+        response(system, speed, linear - exact.r.middleRows(first, I), found.amplification);
+    if (!dq) found.singular = r;
+    if (dq) found.dq.push_back(std::move(*dq));
+  }
+  return found;
+}
+
+// Next to a resonance with little damping the correction itself moves the resonance by more than its width: (T1) at
+// q + dq until dq settles, which is the change itself. Where it does not settle the first correction stays.
+void repeat(const ExactModel& model, double speed, std::span<const LinearRod> rods, const CrankAngles& angles,
+            const std::vector<FourierSeries>& q, std::vector<FourierSeries>& dq) {
+  constexpr int most = 8;
+  constexpr double settled = 0.02;
+  const Index highest = (angles.size() - 1) / 2;
+  std::vector<FourierSeries> now = dq;
+  for (int step = 0; step < most; ++step) {
+    std::vector<FourierSeries> moved;
+    for (std::size_t r = 0; r < q.size(); ++r) {
+      const Index H = std::min(highest, std::max(q[r].num_harmonics(), now[r].num_harmonics()));
+      moved.emplace_back(fourier::resized(q[r], H).c + fourier::resized(now[r], H).c);
+    }
+    Corrections next = corrections(model, speed, rods, angles, moved);
+    if (next.breakdown || next.singular) return;
+    double change = 0;
+    for (std::size_t r = 0; r < q.size(); ++r) {
+      const Index H = std::max(now[r].num_harmonics(), next.dq[r].num_harmonics());
+      const FourierSeries difference(fourier::resized(next.dq[r], H).c - fourier::resized(now[r], H).c);
+      change = std::max(change, ratio(largest_value(difference), largest_value(next.dq[r])));
+    }
+    now = std::move(next.dq);
+    if (!(change <= settled)) continue;
+    dq = std::move(now);
+    return;
+  }
+}
+
 }  // namespace
 
 // Points enough for 1e-3 of the error.
@@ -137,34 +207,30 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     }
   const std::vector<FourierSeries> q = cut_responses(rods);
   const CrankAngles angles(model.linkage(), num_samples(q));
-  const RitzSamples motion = ritz_samples(q, speed, angles.size());
-  const ExactResidual exact = model.residual(speed, angles, motion);
-  if (exact.breakdown) {
-    errors.reason = describe(*exact.breakdown, model.linkage());
-    errors.steepest = exact.breakdown->slope;
+  Corrections first = corrections(model, speed, rods, angles, q);
+  if (first.breakdown) {
+    errors.reason = describe(*first.breakdown, model.linkage());
+    errors.steepest = first.breakdown->slope;
     return errors;
   }
+  if (first.singular) {
+    errors.reason = body_name(model.linkage(), model.rods()[*first.singular].link) + " has no periodic solution";
+    return errors;
+  }
+  std::vector<FourierSeries>& dq = first.dq;
+  double largest_error = 0;
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    largest_error = std::max(largest_error, ratio(largest_value(dq[r]), largest_value(*rods[r].q)));
+  if (first.amplification > most_amplified && largest_error <= theory_error_limit)
+    repeat(model, speed, rods, angles, q, dq);
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
-    const HillSystem& system = *rods[r].system;
-    const MatrixXd own = motion.q.middleRows(first, I), own1 = motion.q1.middleRows(first, I),
-                   own2 = motion.q2.middleRows(first, I);
-    const Body& link = *body_at(model.linkage(), model.rods()[r].link);
-    const MatrixXd linear = link.elastic->shear
-                                ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1, own2)
-                                : linear_residual(system, speed, own, own1, own2);
-    std::optional<FourierSeries> dq = response(system, speed, linear - exact.r.middleRows(first, I));
-    if (!dq) {
-      errors.reason = body_name(model.linkage(), model.rods()[r].link) + " has no periodic solution";
-      return errors;
-    }
     TheoryErrors::Rod& rod = errors.rods[r];
-    rod.q = ratio(largest_value(*dq), largest_value(*rods[r].q));
+    rod.q = ratio(largest_value(dq[r]), largest_value(*rods[r].q));
     // Four angles a wave of the smallest harmonics, many of those that count.
-    const Index N = fourier::fast_length(4 * std::max(q[r].num_harmonics(), dq->num_harmonics()) + 2);
+    const Index N = fourier::fast_length(4 * std::max(q[r].num_harmonics(), dq[r].num_harmonics()) + 2);
     rod.deflection =
-        ratio(largest_deflection(fourier::synthesise(*dq, N)), largest_deflection(fourier::synthesise(q[r], N)));
-    rod.correction = std::move(*dq);
+        ratio(largest_deflection(fourier::synthesise(dq[r], N)), largest_deflection(fourier::synthesise(q[r], N)));
+    rod.correction = std::move(dq[r]);
   }
   if (forces != nullptr) compare_forces(model, speed, rods, *forces, errors);
   return errors;

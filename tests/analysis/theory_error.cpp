@@ -5,8 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/analysis/nonlinear/exact_system.hpp"
+#include "hb/engine/nonlinear/periodic_motion.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/rod/rod.hpp"
+#include "tests/support/random_linkage.hpp"
 #include "tests/support/six_link.hpp"
 #include "tests/support/slider_crank.hpp"
 
@@ -75,6 +78,47 @@ TEST(TheoryError, OfTheSliderCrankIsTheReferences) {
     ASSERT_TRUE(errors.rods[0].q);
     EXPECT_NEAR(*errors.rods[0].q, expected, 5e-4 * expected + 4e-5);
   }
+}
+
+double largest(const FourierSeries& series, Index first, Index count) {
+  double value = 0;
+  for (Index i = first; i < first + count; ++i) value = std::max(value, fourier::max_abs(series, i).value);
+  return value;
+}
+
+// Stiffened, so that the changes are small; of each kind of linkage whose change lies below 2 %, every rod.
+TEST(TheoryError, IsWithinATenthOfTheTrueChangeOnRandomLinkages) {
+  constexpr Index I = 2;
+  int judged = 0;
+  for (RandomLinkage random : random_linkages(9, 31)) {
+    SCOPED_TRACE(random.kind);
+    for (Dyad& dyad : random.linkage.dyads) {
+      if (dyad.coupler.elastic) dyad.coupler.elastic->youngs_modulus *= 30;
+      if (auto* rocker = std::get_if<Rocker>(&dyad.closing); rocker && rocker->body.elastic)
+        rocker->body.elastic->youngs_modulus *= 30;
+    }
+    const Linear answer = linear(random.linkage, random.speed, I);
+    const TheoryErrors errors = theory_errors(answer.model, random.speed, answer.rods());
+    if (!errors.rods[0].q) continue;
+    Index H = 0;
+    for (const FourierSeries& q : answer.q) H = std::max(H, q.num_harmonics());
+    FourierSeries start(answer.model.num_modes(), H);
+    for (std::size_t r = 0; r < answer.q.size(); ++r)
+      start.c.middleRows(answer.model.first_mode(r), I) = fourier::resized(answer.q[r], H).c;
+    const NonlinearSystem system = exact_system(std::make_shared<const ExactModel>(random.linkage, answer.model.rods()));
+    const PeriodicMotion motion = solve_periodic_motion(system, random.speed, start);
+    if (motion.status != MotionStatus::converged) continue;
+    const Index longest = std::max(H, motion.q.num_harmonics());
+    const FourierSeries change(fourier::resized(motion.q, longest).c - fourier::resized(start, longest).c);
+    for (std::size_t r = 0; r < answer.q.size(); ++r) {
+      const Index first = answer.model.first_mode(r);
+      const double truth = largest(change, first, I) / largest(start, first, I);
+      if (!(truth < 0.02 && truth > 1e-6)) continue;
+      EXPECT_NEAR(*errors.rods[r].q, truth, 0.1 * truth) << "rod " << r;
+      ++judged;
+    }
+  }
+  EXPECT_GE(judged, 6);
 }
 
 // Beyond 1604 rpm the linear answer of AB grows past its own length.

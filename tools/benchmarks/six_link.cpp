@@ -1,5 +1,5 @@
-// Both rods of the six-link mechanism at one speed, five Ritz terms each: steady state, stability, and a dense Hill
-// solve of the same system. Counters beside the time: the true error of the answer, the error bound it came with, and
+// Both rods of the six-link mechanism at one speed, five Ritz terms each: steady state, stability, a dense Hill solve of
+// the same system, and the theory error. Counters beside the time: the true error of the answer, the error bound it came with, and
 // the highest harmonic used.
 #include <benchmark/benchmark.h>
 
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dense_hill.hpp"
+#include "hb/analysis/theory_error.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/rod/rod.hpp"
@@ -118,6 +119,36 @@ void stability(benchmark::State& state) {
   state.counters["bound"] = bound;
 }
 
+// Counters: that of AB, and its relative error against as many points along the rods as the exact model takes.
+void theory_error(benchmark::State& state) {
+  const Scene scene = read_scene(HB_SOURCE_DIR "/results/six_link/scene.toml");
+  const auto& linkage = std::get<Linkage>(scene.model);
+  const LinkageCoefficients coefficients = linkage_coefficients(linkage);
+  const auto modes = static_cast<Eigen::Index>(state.range(0));
+  const double speed = speed_from_rpm(static_cast<double>(state.range(1)), scene.units);
+  std::vector<HillSystem> systems;
+  std::vector<FourierSeries> q;
+  std::vector<ExactModel::Rod> links;
+  for (std::size_t r = 0; r < coefficients.links.size(); ++r) {
+    systems.push_back(ritz_system(*body_at(linkage, coefficients.links[r]), coefficients.rods[r], modes));
+    q.push_back(solve_steady_state(systems[r], speed).q);
+    links.push_back({coefficients.links[r], modes});
+  }
+  std::vector<LinearRod> rods;
+  for (std::size_t r = 0; r < q.size(); ++r) rods.push_back({&systems[r], &q[r]});
+  const ExactModel model = theory_model(linkage, std::vector<Eigen::Index>(q.size(), modes)), fine(linkage, links);
+  for (auto _ : state) benchmark::DoNotOptimize(theory_errors(model, speed, rods));
+  const double value = *theory_errors(model, speed, rods).rods[0].q;
+  state.counters["theory"] = value;
+  state.counters["error"] = std::abs(value / *theory_errors(fine, speed, rods).rods[0].q - 1);
+}
+
+void theory_cases(benchmark::internal::Benchmark* rows) {
+  rows->ArgNames({"modes", "rpm"})->Unit(benchmark::kMicrosecond);
+  for (const int modes : {1, 2, 5})
+    for (const int rpm : {300, 900, 1500}) rows->Args({modes, rpm});
+}
+
 void cases(benchmark::internal::Benchmark* rows) {
   rows->ArgNames({"J", "rpm"})->Unit(benchmark::kMicrosecond);
   for (const int rpm : {300, 1500, 3000}) rows->Args({45, rpm});
@@ -127,6 +158,7 @@ void cases(benchmark::internal::Benchmark* rows) {
 BENCHMARK(steady_state)->Apply(cases);
 BENCHMARK(stability)->Apply(cases);
 BENCHMARK(dense_hill)->Apply(cases);
+BENCHMARK(theory_error)->Apply(theory_cases);
 
 }  // namespace
 
