@@ -182,7 +182,9 @@ class Search {
   double doubtful_while_unstable(Place& p, Place& q) {
     const double middle = 0.5 * (p.x() + q.x());
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
-    if (!encounters_.resolved(p, q, most_motion_while_unstable)) return middle;
+    // While a pair is locked so much more deeply than it moves it stays so.
+    const double most = std::max(most_motion_while_unstable, std::min(p.growth(), q.growth()));
+    if (!encounters_.resolved(p, q, most)) return middle;
     if (encounters_.lock_holds(p, q) || level_lock(p, q)) return nan;
     // Exponents that grow by themselves.
     std::vector<GrowthModel> models;
@@ -217,15 +219,17 @@ class Search {
     return std::max({a, b, m}) + std::max(std::abs(a - m), std::abs(b - m)) < 0;
   }
 
-  // Growth that hardly changes.
+  // The largest growth that any exponent has by itself hardly changes.
   bool level(const Place& p, const Place& q, double least) const {
     double low = HUGE_VAL, high = -HUGE_VAL;
     const std::vector<const Place*> places = window(p, q);
     if (places.size() < 3) return false;
     for (const Place* place : places) {
-      if (place->unstable) return false;
-      low = std::min(low, place->growth());
-      high = std::max(high, place->growth());
+      double growth = -HUGE_VAL;
+      for (std::size_t k = 0; k < place->strands.all.size(); ++k)
+        growth = std::max(growth, growth_by_itself(place->strands, k));
+      low = std::min(low, growth);
+      high = std::max(high, growth);
     }
     return high + 2 * (high - low) <= least;
   }
