@@ -220,7 +220,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
       search.exponents.append(alone[std::size_t(g)]);
       search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
     }
-  search.complete = spans(system, std::move(states));
+  search.complete = I == 1 || spans(system, std::move(states));  // one mode has the whole plane
   return search;
 }
 
