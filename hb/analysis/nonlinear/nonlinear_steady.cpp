@@ -209,10 +209,14 @@ class Search {
       no_way(branch);
       return;
     }
-    const auto place = static_cast<std::size_t>(passage - branch.points.data());
-    for (const Bifurcation& found : branch.bifurcations)
-      result_.folds += found.kind == BifurcationKind::fold && found.after < place;
+    count_folds(branch, static_cast<std::size_t>(passage - branch.points.data()));
     settle(*passage);
+  }
+
+  // Those before a point.
+  void count_folds(const Branch& branch, std::size_t point) {
+    for (const Bifurcation& found : branch.bifurcations)
+      result_.folds += found.kind == BifurcationKind::fold && found.after < point;
   }
 
   const BranchPoint* passage_of(const Branch& branch) const {
@@ -249,11 +253,16 @@ class Search {
         const Branch next = follow_branch(system_, start, further);
         note_last(next);
         if (!wanted) {
-          if (start.motion.turns < options_.turns && doubled(next, options)) return true;
+          if (start.motion.turns < options_.turns && doubled(next, options)) {
+            count_folds(branch, found.after);
+            return true;
+          }
           continue;
         }
         const BranchPoint* passage = passage_of(next);
         if (!passage) continue;
+        count_folds(branch, found.after);
+        count_folds(next, static_cast<std::size_t>(passage - next.points.data()));
         settle(*passage);
         return true;
       }
