@@ -30,9 +30,8 @@ class Stopwatch {
 
 // Below this theory error at every lower speed the linear answer starts Newton's method on the branch from low speed.
 constexpr double weakly_bent = 0.01;
-// Of the motions on the way: enough to stay on the branch.
-constexpr double way_tolerance = 1e-5;
-constexpr double way_exponents = 1e-4;
+// Of the motions on the way: enough to stay on the branch; where doublings are sought, enough to locate and leave them.
+constexpr double way_tolerance = 1e-5, doubling_tolerance = 1e-8;
 // A resonance curve with its folds takes some hundred.
 constexpr int most_points = 600;
 constexpr double least_tolerance = 1e-9;
@@ -186,8 +185,8 @@ class Search {
   ContinuationOptions continuation(double from) const {
     ContinuationOptions options;
     options.motion = motion_options_;
-    options.motion.tolerance = std::max(motion_options_.tolerance, way_tolerance);
-    options.exponents.tolerance = way_exponents;
+    options.motion.tolerance = options_.turns > 1 ? doubling_tolerance : std::max(motion_options_.tolerance, way_tolerance);
+    options.exponents.tolerance = exponent_share * options.motion.tolerance;
     options.low = 0.5 * from;
     options.high = speed_;
     options.stops = {speed_};
@@ -210,10 +209,14 @@ class Search {
       no_way(branch);
       return;
     }
-    const auto place = static_cast<std::size_t>(passage - branch.points.data());
-    for (const Bifurcation& found : branch.bifurcations)
-      result_.folds += found.kind == BifurcationKind::fold && found.after < place;
+    count_folds(branch, static_cast<std::size_t>(passage - branch.points.data()));
     settle(*passage);
+  }
+
+  // Those before a point.
+  void count_folds(const Branch& branch, std::size_t point) {
+    for (const Bifurcation& found : branch.bifurcations)
+      result_.folds += found.kind == BifurcationKind::fold && found.after < point;
   }
 
   const BranchPoint* passage_of(const Branch& branch) const {
@@ -250,11 +253,16 @@ class Search {
         const Branch next = follow_branch(system_, start, further);
         note_last(next);
         if (!wanted) {
-          if (start.motion.turns < options_.turns && doubled(next, options)) return true;
+          if (start.motion.turns < options_.turns && doubled(next, options)) {
+            count_folds(branch, found.after);
+            return true;
+          }
           continue;
         }
         const BranchPoint* passage = passage_of(next);
         if (!passage) continue;
+        count_folds(branch, found.after);
+        count_folds(next, static_cast<std::size_t>(passage - next.points.data()));
         settle(*passage);
         return true;
       }
