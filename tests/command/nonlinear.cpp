@@ -187,7 +187,7 @@ TEST_F(Nonlinear, TimeLimitEndsWithWhatIsThere) {
   const Json found = document("sweep " + scene("six_link") + " --rpm 900:2400:50 --modes 3 --time-limit 2", 3);
   EXPECT_EQ(found["stopped"], true);
   EXPECT_EQ(found["status"], "tolerance not reached");
-  EXPECT_NE(found["notes"].dump().find("the time limit"), std::string::npos) << found["notes"];
+  EXPECT_NE(found["notes"].dump().find("--time-limit 2"), std::string::npos) << found["notes"];
   const Json steady = document("steady " + scene("six_link") + " --rpm 1500 --modes 4 --time-limit 0.001", 3);
   EXPECT_EQ(steady["found"], false);
 }

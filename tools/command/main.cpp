@@ -7,6 +7,7 @@
 #endif
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -79,13 +80,14 @@ std::string unknown_command(const CLI::App& app, const std::string& found) {
 }
 
 // "--rmp 300": names each flag that is none, with the nearest one.
-std::string unknown_flags(const CLI::App& command) {
+std::string unknown_flags(const CLI::App& command, const std::vector<std::string>& words) {
   std::vector<std::string> names, sentences;
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  for (const std::string& found : command.remaining()) {
-    if (!found.starts_with('-')) continue;
+  for (const std::string& found : words) {
+    if (!found.starts_with("--")) continue;
     const std::string flag = found.substr(0, found.find('='));
+    if (std::ranges::find(names, flag) != names.end()) continue;
     const std::string near = hb::nearest_name(flag, names);
     sentences.push_back(fmt::format("found the unknown flag {}{}", flag, near.empty() ? "" : " (" + near + " meant?)"));
   }
@@ -119,9 +121,12 @@ int run(int argc, char** argv) {
     if (argc > 1 && app.get_subcommands().empty()) {
       return say(exit_wrong_input, unknown_command(app, argv[1]));
     }
+    constexpr int extras = static_cast<int>(CLI::ExitCodes::ExtrasError);
     const auto chosen = app.get_subcommands();
     const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
-    std::string what = error.get_name() == "ExtrasError" && !chosen.empty() ? unknown_flags(*chosen.front()) : "";
+    std::string what = error.get_exit_code() == extras && !chosen.empty()
+                           ? unknown_flags(*chosen.front(), {argv + 1, argv + argc})
+                           : "";
     if (what.empty()) what = error.what();
     fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
     return exit_wrong_input;

@@ -32,13 +32,13 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
   json["steady_method"] = method_text(state.method);
 }
 
-void add_resonance(Json& json, const HillSystem& system, const RodResult& rod, double speed, const Units& units) {
-  if (const std::optional<NearestResonance> nearest = nearest_resonance(system, speed))
+void add_resonance(Json& json, const RodModel& model, const RodResult& rod, double speed, const Units& units) {
+  if (const std::optional<NearestResonance> nearest = nearest_resonance(model.system, speed))
     json["nearest_resonance"] = {{"order", nearest->order},
                                  {"rpm", rpm_from_speed(nearest->speed, units)},
                                  {"omega", nearest->speed},
                                  {"frequency", nearest->frequency}};
-  const std::optional<double> slow = quasi_static_response(system, rod.num_modes, speed);
+  const std::optional<double> slow = quasi_static_response(model.system, model.num_modes, speed);
   double largest = 0;
   for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
   if (slow && !rod.max_abs.empty()) json["amplification"] = largest / *slow;
@@ -132,7 +132,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     Json& entry = rods[rod.name];
     entry["modes"] = rod.num_modes;
     if (result.computed.steady) add_steady(entry, rod, units);
-    if (result.computed.steady) add_resonance(entry, model.rods[r].system, rod, result.speed, units);
+    if (result.computed.steady) add_resonance(entry, model.rods[r], rod, result.speed, units);
     if (model.linkage()) add_theory(entry, result.theory, r);
     if (rod.modes_error) {
       entry["modes_error"] = *rod.modes_error;
