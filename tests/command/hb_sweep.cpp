@@ -60,6 +60,29 @@ TEST_F(Sweep, WhatWasNotAskedForIsNeitherComputedNorClaimed) {
   }
 }
 
+// The band of the second mode's principal line was listed or not depending on where the range began.
+TEST_F(Sweep, BandsDoNotDependOnTheRangeAndAllElseIsExcluded) {
+  write("two.toml", R"(
+[hill]
+mass = [[1.0, 0.0], [0.0, 1.0]]
+damping = [[0.0006907509677922141, 0.0], [0.0, 0.0007469844861333518]]
+stiffness = [{ harmonic = 0, cos = [[1.8579582395656333, 0.0], [0.0, 5.429150249451666]] },
+             { harmonic = 1, cos = [[-0.0639570349496675, -0.4279480856181529], [-0.4279480856181529, 0.9857699107816944]],
+               sin = [[0.014458361655203575, 0.0], [0.0, -0.007156608197201]] }]
+[analysis]
+omega = 1.0
+)");
+  for (const char* range : {".35:8:.1", "1:3:.2"}) {
+    const Json found = document((folder_ / "two.toml").string() + " --omega " + range);
+    bool listed = false;
+    for (const Json& band : found["unstable_bands"]["system"])
+      listed = listed ||
+               (std::abs(band[0].get<double>() - 2.30398) < 1e-4 && std::abs(band[1].get<double>() - 2.33373) < 1e-4);
+    EXPECT_TRUE(listed) << range << " " << found["unstable_bands"];
+    EXPECT_EQ(found["not_excluded"]["system"], Json::array()) << range;
+  }
+}
+
 TEST_F(Sweep, JsonHasTheKeysOfTheContractOverTheGridAskedFor) {
   const Json found = document(scene("six_link") + " --rpm 300:1500:150");
   const std::size_t points = 9;
@@ -230,9 +253,9 @@ TEST_F(Sweep, RefusesUnknownPathsWithTheNearestAndImpossibleValues) {
 TEST_F(Sweep, WritesTablesAndPictures) {
   const CommandResult result = hb("sweep " + scene("slider_crank") + " --rpm 2000:6000:500 --modes 2 --out out");
   ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* name :
-       {"sweep.json", "sweep_rod.csv", "critical.csv", "unstable_bands.csv", "sweep_joint_forces.csv",
-        "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png", "growth_rod.png", "sweep.gp"}) {
+  for (const char* name : {"sweep.json", "sweep_rod.csv", "critical.csv", "unstable_bands.csv", "not_excluded.csv",
+                           "sweep_joint_forces.csv", "campbell_rod.svg", "campbell_rod.png", "peaks_rod.png",
+                           "growth_rod.png", "sweep.gp"}) {
     EXPECT_TRUE(fs::is_regular_file(folder_ / "out" / name)) << name;
   }
   EXPECT_EQ(num_entries(folder_), 1u);
