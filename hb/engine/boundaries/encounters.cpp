@@ -225,16 +225,11 @@ bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
   const auto belongs = [&](std::size_t c, std::size_t k) {
     return c == k || std::abs(folded(all[c].s - std::conj(all[k].s))) <= 1e-7 + 2 * (all[c].error + all[k].error);
   };
-  // Damping tells pairs from each other: the mean of the two does not change where they lock.
-  const std::vector<Strand>& there = q.strands.all;
-  const double decay_at_q = std::max(0.0, -0.5 * (there[0].s.real() + there[companion(q.strands)].s.real()));
   const double g = 0.5 * growth;
-  const auto unlike = [](double one, double other) { return std::abs(one - other) > 0.5 * std::max(one, other); };
   for (std::size_t c = 0; c < all.size(); ++c) {
     if (belongs(c, 0) || belongs(c, b) || locked(p, c) || apart(p.strands, 0, c) > motion[0] + motion[c]) continue;
     for (std::size_t d = 0; d < all.size(); ++d) {
       if (d == c || apart(p.strands, c, d) > motion[c] + motion[d]) continue;
-      if (unlike(0.5 * (decay(p, c) + decay(p, d)), decay_at_q)) continue;
       if (exciting_motion(p, q, c, d, std::sqrt((g + decay(p, c)) * (g + decay(p, d)))) >= 0) return false;
     }
   }
