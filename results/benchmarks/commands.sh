@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Processor seconds and peak memory of whole commands: commands.sh HB [HB_BEFORE [RUNS]] writes commands.csv, with the
-# ratio of the two where an earlier program is given. Both run in turn, so that a busy machine slows both; processor
+# Processor seconds and peak memory of whole commands: commands.sh HB [HB_BEFORE [RUNS [WORD]]] writes commands.csv (of
+# the commands that contain WORD), with the ratio of the two where an earlier program is given. Both run in turn, so that a busy machine slows both; processor
 # time, not the clock's. The claimed error stands beside the time; Mathieu's boundary is compared with another method in
 # tests/engine/sweep.cpp.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-hb=$1 before=${2:-} runs=${3:-5}
+hb=$1 before=${2:-} runs=${3:-5} word=${4:-}
 six=results/six_link/scene.toml mathieu=results/mathieu/scene.toml
 coefficient=hill.stiffness.1.cos.0.0
 commands=(
@@ -25,11 +25,11 @@ commands=(
 )
 # User and system seconds, and kilobytes.
 measure() {
-  local file
-  file=$(mktemp)
-  /usr/bin/time -o "$file" -f "%U %S %M" "$@" >/dev/null 2>&1 || true
-  awk 'END { print $1 + $2, $3 }' "$file"
-  rm -f "$file"
+  local times memory
+  times=$(mktemp) memory=$(mktemp)
+  { TIMEFORMAT='%3U %3S'; time /usr/bin/time -o "$memory" -f "%M" "$@" >/dev/null 2>&1 || true; } 2>"$times"
+  awk 'NR == FNR { s = $1 + $2; next } END { print s, $1 }' "$times" "$memory"
+  rm -f "$times" "$memory"
 }
 median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 # The largest error claimed of the steady states and, relative to Omega, of the growth rates.
@@ -48,6 +48,7 @@ print("%s,%s" % ("%.1e" % max(q) if q else "", "%.1e" % max(s) if s else ""))'
   echo "# $(grep -m1 'model name' /proc/cpuinfo | cut -d: -f2 | xargs), one thread, median of $runs"
   echo "command,seconds,seconds before,ratio,peak MB,peak MB before,claimed error of q,claimed error of growth [1/time]"
   for line in "${commands[@]}"; do
+    [[ $line == *"$word"* ]] || continue
     set -f
     set -- $line
     set +f
