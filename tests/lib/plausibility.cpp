@@ -54,7 +54,7 @@ TEST(Plausibility, YoungsModulusInTheWrongUnitNamesTheUnit) {
 crank = { pivot = [0, 0], length = 40 }
 [[dyad]]
 on = "crank"
-coupler = { name = "rod", length = 150, mass = 0.1, elastic = { E = 210000, area = 100, J = 600 } }
+coupler = { name = "rod", length = 150, mass = 0.1, elastic = { E = 210000, area = 100, J = 500 } }
 slider = { name = "piston", mass = 0.4, guide = [0, 0] }
 branch = 1
 )";
