@@ -40,6 +40,14 @@ double largest(const Json& coefficients) {
 
 double reference_tolerance(double value) { return 1e-9 * std::abs(value); }
 
+TEST_F(Steady, RefusesTheNonlinearTheoryOfARodWithShear) {
+  EXPECT_EQ(hb("steady " + scene("thick_rod") + " --json").status, 0);
+  const CommandResult result = hb("steady " + scene("thick_rod") + " --theory nonlinear --json");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_NE(result.err.find("--theory: found nonlinear, and shear of rod"), std::string::npos) << result.err;
+}
+
 TEST_F(Steady, VerdictAloneIsProvedWithoutExponentsAndItsIntervalHoldsTheGrowthRate) {
   const std::string six_link = "steady " + scene("six_link") + " --rpm 300 --rods AB --only ";
   const Json verdict = document(six_link + "verdict")["rods"]["AB"],

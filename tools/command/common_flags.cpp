@@ -259,7 +259,8 @@ std::string in_flags(const RequestError& error) {
   static const std::map<std::string, std::string> flag_of = {
       {"rods", "--rods"},         {"modes", "--modes"},       {"tolerance", "--tol"}, {"rpm", "--rpm"},
       {"omega", "--omega"},       {"only", "--only"},         {"vary", "--vary"},     {"keep", "--keep"},
-      {"minimise", "--minimise"}, {"maximise", "--maximise"}, {"height", "--height"}};
+      {"minimise", "--minimise"}, {"maximise", "--maximise"}, {"height", "--height"},
+      {"theory", "--theory"}};
   const auto flag = flag_of.find(error.field);
   std::string text = flag == flag_of.end() ? error.field : flag->second;
   if (!text.empty()) text += ": ";

@@ -102,7 +102,8 @@ OptionalVector shape_gradient(Neighbourhood& near, const Metric& metric, const M
     return stress ? stress_factor(other.model, other.model.rods[r], other.heights, metric) : 1.0;
   };
   const RodFunctional J = functional(model);
-  const std::optional<FourierSeries> lambda = solve_adjoint(rod.system, speed, on_unknowns(J.g, rod.system.num_modes()), H);
+  const std::optional<FourierSeries> lambda =
+      solve_adjoint(rod.system, speed, on_unknowns(J.g, rod.system.num_modes()), H);
   if (!lambda) return std::nullopt;
   const double sign = J.offset + mean_product(J.g, q) < 0 ? -1 : 1;
   return near.gradient([&](const Neighbour& other, const VectorXd&) {
