@@ -91,7 +91,7 @@ class HillSystem:
         stability_method: Optional[str] = None,
     ) -> Stability:
         """Floquet exponents at omega (rad per unit time) with their errors, growth rate and verdict."""
-        return self._core.stability({"omega": omega, "rpm": rpm, "tol": tol, "stability_method": stability_method})
+        return self._core.stability(omega, rpm, tol, stability_method)
 
     def to_scene(self, title: str = "") -> "Scene":
         """The same as a [hill] scene, for sweeps, maps and the command. Only of harmonics, not of samples."""
