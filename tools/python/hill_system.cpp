@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <optional>
+
 #include "hb/analysis/scene_family.hpp"
 #include "lib/fourier/periodic_samples.hpp"
 #include "lib/scene/scene_parts.hpp"
@@ -144,7 +146,10 @@ StabilityView analysed(const HillCore& core, const py::object& omega, const py::
   const double speed = speed_of(request, core.scene).omega;
   auto found = std::make_unique<Stability>();
   {
-    const py::gil_scoped_release release;
+    // Of one or two unknowns in microseconds: giving the lock away would take a good part of that.
+    constexpr Eigen::Index small = 2;
+    std::optional<py::gil_scoped_release> release;
+    if (core.system.num_modes() > small) release.emplace();
     *found = analyse_stability(core.system, speed, options);
   }
   const Stability* stability = found.get();
