@@ -194,15 +194,18 @@ Request read_request(const py::dict& arguments) {
   if (const auto bound = given(arguments, "bound"))
     request.bound =
         choice<SteadyBound>("bound", *bound, {{"estimated", SteadyBound::estimated}, {"proved", SteadyBound::proved}});
-  if (const auto method = given(arguments, "stability_method"))
-    request.stability_method = choice<StabilityMethod>("stability_method", *method,
-                                                       {{"automatic", StabilityMethod::automatic},
-                                                        {"hill", StabilityMethod::hill},
-                                                        {"slaving", StabilityMethod::slaving},
-                                                        {"propagation", StabilityMethod::propagation},
-                                                        {"determinant", StabilityMethod::determinant},
-                                                        {"bound", StabilityMethod::bound}});
+  if (const auto method = given(arguments, "stability_method")) request.stability_method = stability_method(*method);
   return request;
+}
+
+StabilityMethod stability_method(py::handle object) {
+  return choice<StabilityMethod>("stability_method", object,
+                                 {{"automatic", StabilityMethod::automatic},
+                                  {"hill", StabilityMethod::hill},
+                                  {"slaving", StabilityMethod::slaving},
+                                  {"propagation", StabilityMethod::propagation},
+                                  {"determinant", StabilityMethod::determinant},
+                                  {"bound", StabilityMethod::bound}});
 }
 
 std::optional<int> read_turns(const py::dict& arguments) {
@@ -219,8 +222,7 @@ int read_threads(const py::dict& arguments) {
   constexpr int most = 1024;
   const auto threads = given(arguments, "threads");
   if (!threads) return 1;
-  if (is_word(*threads, "all"))
-    return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, most);
+  if (is_word(*threads, "all")) return std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, most);
   if (PyBool_Check(threads->ptr()) || PyIndex_Check(threads->ptr()) == 0)
     throw RequestError("threads", shown(*threads), fmt::format("an integer 1 to {}, or \"all\"", most));
   return integer("threads", *threads, 1, most);

@@ -29,6 +29,7 @@ namespace hb::python {
 
 // rpm, omega, modes, tol, rods, only, steady_method, stability_method and bound of a call.
 [[nodiscard]] Request read_request(const py::dict& arguments);
+[[nodiscard]] StabilityMethod stability_method(py::handle object);
 // Turns of a motion without linearisation; nothing with theory="linear", which knows no period.
 [[nodiscard]] std::optional<int> read_turns(const py::dict& arguments);
 [[nodiscard]] int read_threads(const py::dict& arguments);

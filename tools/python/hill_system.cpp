@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <optional>
+
 #include "hb/analysis/scene_family.hpp"
 #include "lib/fourier/periodic_samples.hpp"
 #include "lib/scene/scene_parts.hpp"
@@ -128,22 +130,30 @@ std::shared_ptr<Answer> solved(const HillCore& core, const py::dict& arguments) 
   return answer;
 }
 
-StabilityView analysed(const HillCore& core, const py::dict& arguments) {
-  const Request request = read_request(arguments);
-  const double speed = speed_of(request, core.scene).omega;
+// The arguments by themselves: a call in a loop of thousands costs little more than the exponents.
+StabilityView analysed(const HillCore& core, const py::object& omega, const py::object& rpm,
+                       const py::object& tolerance, const py::object& method) {
+  Request request;
+  if (!omega.is_none()) request.omega = number("omega", omega);
+  if (!rpm.is_none()) request.rpm = number("rpm", rpm);
   StabilityOptions options;
-  options.method = request.stability_method;
-  // As hb steady takes it: the asked tolerance loosens, it does not tighten.
-  if (request.tolerance)
+  if (!method.is_none()) options.method = stability_method(method);
+  if (!tolerance.is_none()) {
+    request.tolerance = number("tol", tolerance);
+    // As hb steady takes it: the asked tolerance loosens, it does not tighten.
     options.tolerance = std::max(options.tolerance, 10 * settings_of(request, core.scene).tolerance);
+  }
+  const double speed = speed_of(request, core.scene).omega;
   auto found = std::make_unique<Stability>();
   {
-    const py::gil_scoped_release release;
+    // Of one or two unknowns in microseconds: giving the lock away would take a good part of that.
+    constexpr Eigen::Index small = 2;
+    std::optional<py::gil_scoped_release> release;
+    if (core.system.num_modes() > small) release.emplace();
     *found = analyse_stability(core.system, speed, options);
   }
   const Stability* stability = found.get();
-  py::capsule owner(found.release(), [](void* held) { delete static_cast<Stability*>(held); });
-  return {std::move(owner), stability};
+  return {py::none(), stability, std::move(found)};
 }
 
 }  // namespace
@@ -165,7 +175,7 @@ void add_hill_system(py::module_& module) {
              return view(self.cast<const HillCore&>().system.load.at(power).c, self);
            })
       .def("steady", &solved, py::arg("arguments"))
-      .def("stability", &analysed, py::arg("arguments"));
+      .def("stability", &analysed);
 }
 
 }  // namespace hb::python

@@ -1,15 +1,18 @@
 // Floquet exponents as Python sees them.
 #pragma once
 
+#include <memory>
+
 #include "hb/engine/exponents/stability.hpp"
 #include "tools/python/bindings.hpp"
 
 namespace hb::python {
 
-// Part of a result that `owner` keeps alive.
+// Part of a result that `owner` keeps alive, or one of its own.
 struct StabilityView {
   py::object owner;
   const Stability* stability;
+  std::unique_ptr<const Stability> own = {};
 };
 
 }  // namespace hb::python

@@ -1,4 +1,5 @@
-"""What calling from Python costs: import, one speed, and exponents in a loop of 10 000 speeds, beside C++.
+"""What calling from Python costs: import, one speed, and exponents in a loop of 10 000 speeds, beside C++. CPU time of one thread,
+which other programs disturb little.
 
     python3 call_times.py CALL_TIMES_PROGRAM SCENE
 """
@@ -16,23 +17,23 @@ ROUNDS = 30
 def shortest(rounds, calls, call):
     best = float("inf")
     for _ in range(rounds):
-        start = time.perf_counter()
+        start = time.process_time()
         for k in range(calls):
             call(k)
-        best = min(best, (time.perf_counter() - start) / calls)
+        best = min(best, (time.process_time() - start) / calls)
     return best
 
 
 program, file = sys.argv[1:]
 imports = {}
 for name, code in {"hb": "import hb", "numpy": "import numpy", "hb and numpy": "import hb, numpy"}.items():
-    timed = f"import time; t = time.perf_counter(); {code}; print(time.perf_counter() - t)"
+    timed = f"import time; t = time.process_time(); {code}; print(time.process_time() - t)"
     imports[name] = min(float(subprocess.run([sys.executable, "-c", timed], stdout=subprocess.PIPE, check=True).stdout) for _ in range(10))
 
 m = hb.load(file)
 x = hb.HillSystem(mass=1, damping=0.1, stiffness={0: 1.2, 1: 0.4})
 cpp = json.loads(subprocess.run([program, file, str(ROUNDS)], stdout=subprocess.PIPE, check=True).stdout)
-steady = shortest(ROUNDS, 20, lambda k: m.steady(rpm=300, modes=1, only="steady"))
+steady = shortest(ROUNDS, 20, lambda k: m.steady(omega=1.0, only="steady"))
 stability = shortest(ROUNDS // 10, 10000, lambda k: x.stability(omega=0.5 + 3.0 * k / 10000))
 
 for name, seconds in imports.items():

@@ -41,7 +41,11 @@ class HillSystem:
         c_terms, c_samples = _terms("stiffness", stiffness, (size, size))
         h_terms, h_samples = _terms("load", load, (size,))
         self._parts: tuple[Any, ...] = (mass, damping, c_terms, c_samples, h_terms, h_samples)
+        self._make()
+
+    def _make(self) -> None:
         self._core = _core.HillSystem(*self._parts)
+        self._stability = self._core.stability  # looked up once: called in loops
 
     @property
     def size(self) -> int:
@@ -91,7 +95,7 @@ class HillSystem:
         stability_method: Optional[str] = None,
     ) -> Stability:
         """Floquet exponents at omega (rad per unit time) with their errors, growth rate and verdict."""
-        return self._core.stability({"omega": omega, "rpm": rpm, "tol": tol, "stability_method": stability_method})
+        return self._stability(omega, rpm, tol, stability_method)
 
     def to_scene(self, title: str = "") -> "Scene":
         """The same as a [hill] scene, for sweeps, maps and the command. Only of harmonics, not of samples."""
@@ -127,7 +131,7 @@ class HillSystem:
 def _from_parts(parts: tuple[Any, ...]) -> HillSystem:
     system = HillSystem.__new__(HillSystem)
     system._parts = parts
-    system._core = _core.HillSystem(*parts)
+    system._make()
     return system
 
 

@@ -43,7 +43,7 @@ for peak in strongest:
     print(f"  resonance at {peak.rpm:.1f} rpm: max |q_{peak.q}| {size}")
 
 # Would more damping help? Growth rate over speed and internal damping; None is interpolated into a verdict.
-mp = m.map(x="rpm=3000:6000:25", y="coupler.damping_internal=1e-6:5e-5:15", modes=3, threads=2)
+mp = m.map(x="rpm=3000:6000:21", y="coupler.damping_internal=1e-6:5e-5:11", modes=3, threads=2)
 unstable = (mp.verdict == "unstable").mean()
 print(f"{100 * unstable:.0f} % of the map is unstable, {len(mp.boundaries)} boundary curves")
 
