@@ -112,7 +112,7 @@ int run(int argc, char** argv) {
     }
     const auto chosen = app.get_subcommands();
     const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
-    std::string what = error.get_name() == "ExtrasError" && !chosen.empty() ? unknown_flags(*chosen.front()) : "";
+    std::string what = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError) && !chosen.empty() ? unknown_flags(*chosen.front()) : "";
     if (what.empty()) what = error.what();
     fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
     return exit_wrong_input;
