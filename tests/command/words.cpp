@@ -166,7 +166,7 @@ TEST_F(Words, TheTimeLimitIsForTheWholeCommandAndGivesWhatIsThere) {
 
 // With --out what is finished is kept for --resume, and the answer so far is in its folder.
 TEST_F(Words, AfterTheTimeLimitResumeGoesOn) {
-  const std::string arguments = "sweep " + scene("six_link") + " --rpm 500:900:1 --only steady --modes 3 --no-plots --out ";
+  const std::string arguments = "sweep " + scene("six_link") + " --rpm 500:900:0.1 --only steady --modes 3 --no-plots --out ";
   ASSERT_EQ(hb(arguments + "whole").status, 0);
   const CommandResult cut = hb(arguments + "parts --time-limit 0.3");
   ASSERT_EQ(cut.status, 3) << cut.err;

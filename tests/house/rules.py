@@ -79,7 +79,7 @@ def formulas():
         name = page.relative_to(root).as_posix()
         numbered[name] = {}
         for number, line in lines(page):
-            found = re.search(r"\s\(([A-Z]\d+[a-z]?)\)\s*$", line)
+            found = re.search(r"\s{2,}\(([A-Z]\d+[a-z]?)\)\s*$", line)
             if found and found[1] in numbered[name]:
                 yield f"{name}:{number}: ({found[1]}) stands at line {numbered[name][found[1]]} too"
             if found:

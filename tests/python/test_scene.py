@@ -51,7 +51,9 @@ def test_a_scene_tells_what_it_is(six_link):
 
 def test_relative_files_are_taken_from_the_folder():
     text = (SCENES / "slider_crank.toml").read_text()
-    assert hb.loads(text, folder=SCENES).steady().to_dict() == hb.load(SCENES / "slider_crank.toml").steady().to_dict()
+    by_text, by_file = (scene.steady().to_dict() for scene in (hb.loads(text, folder=SCENES), hb.load(SCENES / "slider_crank.toml")))
+    by_text.pop("warnings"), by_file.pop("warnings")  # they name the file
+    assert by_text == by_file
     with pytest.raises(hb.SceneError):
         hb.loads(text, folder="/")
 

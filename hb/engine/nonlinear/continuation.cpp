@@ -114,7 +114,6 @@ class Follower {
     const double most_parameter = options_.most_parameter_step > 0 ? options_.most_parameter_step : range / 40;
     step = std::min({step, options_.most_step, most_parameter / std::max(std::abs(direction.p), 1e-300)});
     bool fresh_start = false;
-    std::optional<EvaluationFailure> met;  // where the equations ended on the way
     for (;;) {
       Trace trace = tracer_.trace(predicted(last, step), direction, !fresh_start, options_.stability);
       if (trace.status == CorrectionStatus::stopped) {
@@ -137,13 +136,17 @@ class Follower {
           return trace;
         }
       }
-      if (trace.failure) met = trace.failure;
+      if (trace.failure) {
+        met_ = trace.failure;
+        met_arc_ = last.arc + step;
+      }
       // Factors are those of the point that was not taken.
       fresh_start = true;
       step /= trace.status == CorrectionStatus::converged ? 2 : 4;
       if (step < options_.least_step) {
-        branch_.failure = met;
-        end_ = met ? BranchEnd::no_residual : BranchEnd::no_convergence;
+        const bool beside = met_ && met_arc_ - last.arc <= 1e3 * options_.least_step;
+        if (beside) branch_.failure = met_;
+        end_ = beside ? BranchEnd::no_residual : BranchEnd::no_convergence;
         return std::nullopt;
       }
     }
@@ -267,6 +270,8 @@ class Follower {
   Branch branch_;
   std::optional<BranchPoint> before_last_;
   BranchEnd end_ = BranchEnd::no_convergence;
+  std::optional<EvaluationFailure> met_;  // where the equations ended last, and how far along the arc
+  double met_arc_ = 0;
 };
 
 }  // namespace
