@@ -179,6 +179,9 @@ std::vector<double> speeds_of(const CheckRequest& request, const Scene& scene) {
 Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
   Check result;
   result.settings = settings_of(request, scene);
+  if (result.settings.only.growth || result.settings.only.verdict)
+    throw RequestError("only", result.settings.only.growth ? "\"growth\"" : "\"verdict\"",
+                       "steady, stability, reactions, shape: the paths are compared in what both compute");
   const std::vector<double> speeds = speeds_of(request, scene);
   if (!(request.case_limit > 0)) throw RequestError("case_limit", fmt::format("{}", request.case_limit), "seconds > 0");
   result.model = std::make_shared<const SceneModel>(make_model(scene, result.settings));

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/rod_steady.hpp"
+#include "hb/analysis/stopwatch.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
 
@@ -19,14 +19,6 @@ namespace {
 constexpr Eigen::Index first_auto_modes = 3;
 constexpr Eigen::Index max_auto_modes = max_modes;
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 bool wants_modes_error(const Only& only) { return only.steady || only.shape; }
 

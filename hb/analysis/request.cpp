@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
 
 #include "hb/analysis/accuracy.hpp"
 
@@ -35,6 +37,24 @@ RequestError::RequestError(std::string field_name, std::string what_found, std::
 Speed Speed::from_rpm(double rpm, const Units& units) { return {speed_from_rpm(rpm, units), rpm, true}; }
 
 Speed Speed::from_omega(double omega, const Units& units) { return {omega, rpm_from_speed(omega, units), false}; }
+
+Only only_of(const std::vector<std::string>& names) {
+  Only only{false, false, false, false};
+  const std::pair<const char*, bool*> quantities[] = {{"steady", &only.steady},       {"stability", &only.stability},
+                                                      {"growth", &only.growth},       {"verdict", &only.verdict},
+                                                      {"reactions", &only.reactions}, {"shape", &only.shape}};
+  for (const std::string& name : names) {
+    const auto* found = std::ranges::find(quantities, name, &std::pair<const char*, bool*>::first);
+    if (found == std::end(quantities))
+      throw RequestError("only", "\"" + name + "\"",
+                         "steady, stability, growth, verdict, reactions, shape, or a list of them");
+    *found->second = true;
+  }
+  only.growth = only.growth && !only.stability;
+  only.verdict = only.verdict && !only.growth && !only.stability;
+  only.stability = only.stability || only.growth || only.verdict;
+  return only;
+}
 
 Settings settings_of(const Request& request, const Scene& scene) {
   Settings settings;

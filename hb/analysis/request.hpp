@@ -50,6 +50,10 @@ struct Only {
   [[nodiscard]] bool all_exponents() const { return stability && !verdict && !growth; }
 };
 
+// Of "steady", "stability", "growth", "verdict", "reactions", "shape"; of growth, verdict and stability the one that
+// contains the others counts. Throws RequestError, field "only".
+[[nodiscard]] Only only_of(const std::vector<std::string>& names);
+
 // What is left open is taken from the scene's [analysis].
 struct Request {
   std::optional<double> rpm, omega;  // one of them; omega in rad per the scene's unit of time

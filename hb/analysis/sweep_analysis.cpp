@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/rod_steady.hpp"
+#include "hb/analysis/stopwatch.hpp"
 #include "hb/analysis/sweep_parts.hpp"
 
 namespace hb {
@@ -19,14 +19,6 @@ namespace {
 constexpr double most_detuning = 0.3;
 // A maximum lower than this above its valleys, relative, is not told from rounding.
 constexpr double least_prominence = 1e-8;
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 bool wants_steady(const Only& only) { return only.steady || only.shape || only.reactions; }
 

@@ -166,11 +166,11 @@ TEST_F(Words, TheTimeLimitIsForTheWholeCommandAndGivesWhatIsThere) {
 
 // With --out what is finished is kept for --resume, and the answer so far is in its folder.
 TEST_F(Words, AfterTheTimeLimitResumeGoesOn) {
-  const std::string arguments = "sweep " + scene("six_link") + " --rpm 500:900:0.1 --only steady --modes 3 --no-plots --out ";
+  const std::string arguments = "sweep " + scene("six_link") + " --rpm 500:900:0.05 --only steady --modes 3 --no-plots --out ";
   ASSERT_EQ(hb(arguments + "whole").status, 0);
-  const CommandResult cut = hb(arguments + "parts --time-limit 0.3");
+  const CommandResult cut = hb(arguments + "parts --time-limit 1");
   ASSERT_EQ(cut.status, 3) << cut.err;
-  if (!fs::exists(folder_ / "parts.part")) GTEST_SKIP() << "nothing was finished in time";
+  ASSERT_TRUE(fs::exists(folder_ / "parts.part")) << cut.err;
   EXPECT_EQ(hb(arguments + "parts --resume").status, 0);
   EXPECT_EQ(read(folder_ / "whole/sweep_AB.csv"), read(folder_ / "parts/sweep_AB.csv"));
 }

@@ -90,7 +90,9 @@ def test_colours_are_the_commands(map):
     pyplot = pytest.importorskip("matplotlib.pyplot")
     ax = map.plot()
     drawn = {line.get_color(): line.get_label() for line in ax.get_lines()}
-    assert drawn.get("#000000") == "boundary −1: half the speed"
+    assert drawn.get("#000000") == "boundary −1: period doubling"
+    commands = (SCENES.parents[1] / "tools/pictures/map_plot.cpp").read_text()
+    assert f'"#000000", "{drawn["#000000"]}"' in commands
     bands = hb.load(SCENES / "mathieu.toml").sweep(omega=(1.9, 2.5, 0.1)).plot("growth")
     assert any(patch.get_facecolor()[:3] == pytest.approx((0xD5 / 255, 0x5E / 255, 0)) for patch in bands.patches)
     pyplot.close("all")

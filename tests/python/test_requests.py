@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import hb
+from conftest import SCENES, command
 
 
 @pytest.mark.parametrize(
@@ -48,6 +49,35 @@ def test_steady_refuses_by_name(six_link, arguments, field):
     assert error.found and error.allowed
     assert str(error).startswith(field + ": ")
     assert "--" not in str(error)
+
+
+@pytest.mark.parametrize("only", ["growth", "verdict"])
+def test_less_is_the_commands_less(six_link, only):
+    path = SCENES / "six_link.toml"
+    assert six_link.steady(rpm=300, modes=3, only=only).to_dict() == command(
+        "steady", path, "--rpm", "300", "--modes", "3", "--only", only)
+    sweep = six_link.sweep(rpm=(2000, 2400, 100), modes=2, only=only)
+    assert sweep.to_dict() == command("sweep", path, "--rpm", "2000:2400:100", "--modes", "2", "--only", only)
+    assert sweep["AB"].unstable_bands is None and sweep["AB"].not_excluded is None
+    with pytest.raises(hb.RequestError) as raised:
+        six_link.check(rpm=300, modes=1, only=only)
+    assert raised.value.field == "only"
+
+
+def test_what_is_not_looked_for_is_none_and_not_empty(six_link):
+    path = SCENES / "six_link.toml"
+    ranges = ["--rpm", "1400:1500:50", "--modes", "2"]
+    points = six_link.sweep(rpm=(1400, 1500, 50), modes=2, search=False)
+    assert points.to_dict() == command("sweep", path, *ranges, "--no-search")
+    assert points["AB"].unstable_bands is None
+    assert six_link.sweep(rpm=(1400, 1500, 50), modes=2)["AB"].not_excluded == []
+    grid = dict(x="rpm=1000:1600:4", y="AB.J=40:60:3", modes=1)
+    flags = ["--x", "rpm=1000:1600:4", "--y", "AB.J=40:60:3", "--modes", "1"]
+    assert six_link.map(**grid, boundaries=False).to_dict() == command("map", path, *flags, "--no-boundaries")
+    assert six_link.map(**grid, boundary_tol=1e-5).to_dict() == command("map", path, *flags, "--boundary-tol", "1e-5")
+    for wrong in ({"boundaries": 1}, {"boundary_tol": 0.5}, {"only": "steady"}):
+        with pytest.raises(hb.RequestError):
+            six_link.map(**grid, **wrong)
 
 
 def test_unknown_arguments_are_type_errors(six_link):

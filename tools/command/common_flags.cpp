@@ -73,32 +73,14 @@ std::variant<int, AutoModes> modes_flag(const std::string& text) {
 }
 
 Only only_flag(const std::string& text, bool growth_alone) {
-  Only only{false, false, false, false};
-  for (const std::string& part : list_flag("--only", text)) {
-    if (part == "steady") {
-      only.steady = true;
-    } else if (part == "stability") {
-      only.stability = true;
-    } else if (part == "reactions") {
-      only.reactions = true;
-    } else if (part == "shape") {
-      only.shape = true;
-    } else if (part == "verdict" && growth_alone) {
-      only.verdict = true;
-    } else if (part == "growth" && growth_alone) {
-      only.growth = true;
-    } else {
-      refuse("--only", part,
-             fmt::format("steady, stability, {}reactions, shape, several joined by commas{}",
-                         growth_alone ? "growth, verdict, " : "",
-                         meant(part, {"steady", "stability", "growth", "verdict", "reactions", "shape"})));
-    }
-  }
-  // What is asked for beside it contains the smaller answer.
-  only.growth = only.growth && !only.stability;
-  only.verdict = only.verdict && !only.growth && !only.stability;
-  only.stability = only.stability || only.growth || only.verdict;
-  return only;
+  std::vector<std::string> allowed = {"steady", "stability", "reactions", "shape"};
+  if (growth_alone) allowed.insert(allowed.begin() + 2, {"growth", "verdict"});
+  const std::vector<std::string> names = list_flag("--only", text);
+  for (const std::string& name : names)
+    if (std::ranges::find(allowed, name) == allowed.end())
+      refuse("--only", name,
+             fmt::format("{}, several joined by commas{}", fmt::join(allowed, ", "), meant(name, allowed)));
+  return only_of(names);
 }
 
 // "A:B:STEP", "A:B:xN" or "N", positive; `single`: only the last.

@@ -27,26 +27,9 @@ Enum choice(const std::string& field, py::handle object, const std::vector<std::
   throw RequestError(field, shown(object), fmt::format("{}", fmt::join(names, ", ")));
 }
 
-Only read_only(py::handle object) {
-  Only only{false, false, false, false};
-  for (const std::string& part : texts("only", object)) {
-    if (part == "steady") {
-      only.steady = true;
-    } else if (part == "stability") {
-      only.stability = true;
-    } else if (part == "reactions") {
-      only.reactions = true;
-    } else if (part == "shape") {
-      only.shape = true;
-    } else if (part == "verdict") {
-      only.verdict = true;
-    } else {
-      throw RequestError("only", "\"" + part + "\"", "steady, stability, verdict, reactions, shape, or a list of them");
-    }
-  }
-  only.verdict = only.verdict && !only.stability;
-  only.stability = only.stability || only.verdict;
-  return only;
+bool flag(const std::string& field, py::handle object) {
+  if (!PyBool_Check(object.ptr())) throw RequestError(field, shown(object), "True or False");
+  return object.ptr() == Py_True;
 }
 
 // A C-ordered array of doubles; RequestError for what is none.
@@ -185,7 +168,11 @@ Request read_request(const py::dict& arguments) {
   }
   if (const auto tolerance = given(arguments, "tol")) request.tolerance = number("tol", *tolerance);
   if (const auto rods = given(arguments, "rods")) request.rods = texts("rods", *rods);
-  if (const auto only = given(arguments, "only")) request.only = read_only(*only);
+  if (const auto only = given(arguments, "only")) request.only = only_of(texts("only", *only));
+  if (const auto search = given(arguments, "search")) request.search = flag("search", *search);
+  if (const auto boundaries = given(arguments, "boundaries")) request.boundaries = flag("boundaries", *boundaries);
+  if (const auto tolerance = given(arguments, "boundary_tol"))
+    request.boundary_tolerance = number("boundary_tol", *tolerance);
   if (const auto method = given(arguments, "steady_method"))
     request.steady_method = choice<SteadyMethod>("steady_method", *method,
                                                  {{"automatic", SteadyMethod::automatic},

@@ -27,7 +27,8 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, co
   if (points > max_points)
     throw RequestError("x, y", fmt::format("{} x {} points", request.x.values.size(), request.y.values.size()),
                        fmt::format("at most {} in all", max_points));
-  if (request.only.verdict) throw RequestError("only", "\"verdict\"", "stability");
+  if (!request.only.stability)
+    throw RequestError("only", shown(*given(arguments, "only")), "stability, growth, verdict");
   PythonWork work(read_threads(arguments), progress);
   return work.run([&] { return std::make_shared<Map>(map(core.source, request, work)); });
 }

@@ -19,7 +19,7 @@ struct SweepCore {
 };
 
 [[nodiscard]] inline tools::MapDocument document_of(const Map& map) {
-  return {map, map.scene, map.num_modes, map.boundary_tolerance};
+  return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries};
 }
 
 struct TuneCore {

@@ -42,7 +42,6 @@ std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& argument
   SweepRequest request;
   static_cast<Request&>(request) = read_request(rest);
   request.x = axis_of(core, arguments, request);
-  if (request.only.verdict) throw RequestError("only", "\"verdict\"", "steady, stability, reactions, shape");
   const std::optional<int> turns = read_turns(arguments);
   PythonWork work(read_threads(arguments), progress);
   return work.run([&] {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
+#include "hb/analysis/stopwatch.hpp"
 #include "hb/engine/nonlinear/motion_shooting.hpp"
 
 namespace hb {
@@ -13,14 +14,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Samples at N angles of a series with any number of harmonics.
 MatrixXd samples(const FourierSeries& series, Index N) {

@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <numbers>
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
+#include "hb/analysis/stopwatch.hpp"
 #include "hb/analysis/theory_error.hpp"
 #include "hb/engine/nonlinear/continuation.hpp"
 #include "hb/engine/nonlinear/motion_stability.hpp"
@@ -19,14 +19,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 // Below this theory error at every lower speed the linear answer starts Newton's method on the branch from low speed.
 constexpr double weakly_bent = 0.01;

@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
+#include "hb/analysis/stopwatch.hpp"
 
 namespace hb {
 namespace {
@@ -22,14 +22,6 @@ constexpr double same_place = 1e-4;
 constexpr std::size_t most_branches = 16;
 // Of the motion; and of exponents, which depend on accelerations, relative to the larger of growth and speed.
 constexpr double least_tolerance = 1e-8, exponent_tolerance = 1e-6;
-
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 std::shared_ptr<const ExactModel> exact_model(const Linkage& linkage, const std::vector<RodModel>& rods) {
   std::vector<ExactModel::Rod> modes;

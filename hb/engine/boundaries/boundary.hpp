@@ -15,7 +15,7 @@ struct SweepOptions {
 // The exponent that gives the growth rate is known well enough to tell how it leaves.
 [[nodiscard]] bool leading_resolved(const Stability& stability);
 
-// How the leading exponent leaves: multiplier +1, -1 (half the crank's speed), or a complex pair.
+// How the leading exponent leaves: multiplier +1, -1 (period doubling), or a complex pair.
 enum class BoundaryKind { plus_one, minus_one, complex };
 [[nodiscard]] BoundaryKind boundary_kind(const Stability& stability, double speed);
 [[nodiscard]] const char* to_string(BoundaryKind kind);  // "+1", "-1", "complex"

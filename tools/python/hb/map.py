@@ -23,7 +23,7 @@ class Boundary:
 
     @property
     def kind(self) -> str:
-        """How the leading exponent leaves: "+1", "-1" (half the crank's speed) or "complex"."""
+        """How the leading exponent leaves: "+1", "-1" (period doubling) or "complex"."""
         return str(self._entry["kind"])
 
     @property
@@ -79,8 +79,8 @@ class _Grid:
 
     @property
     def boundaries(self) -> list[Boundary]:
-        """Curves on which the verdict changes, refined to the tolerance."""
-        return [Boundary(entry) for entry in self._entry["boundaries"]]
+        """Curves on which the verdict changes, refined to the tolerance; none where they were not asked for."""
+        return [Boundary(entry) for entry in self._entry.get("boundaries", [])]
 
 
 class RodMap(_Grid):
@@ -91,7 +91,7 @@ class RodMap(_Grid):
         self._entry = entry
 
     def __repr__(self) -> str:
-        return f"<hb.RodMap {self.name}: {len(self._entry['boundaries'])} boundaries>"
+        return f"<hb.RodMap {self.name}: {len(self.boundaries)} boundaries>"
 
 
 class Map(_Grid, Result):

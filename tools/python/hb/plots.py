@@ -22,7 +22,7 @@ UNSTABLE = "#d55e00"  # shaded bands
 ELASTIC, RIGID_LINK = "#b03060", "#333333"
 BOUNDED, UNDECIDED, MISSING = "#beaed4", "#c6c6c6", "#8a8a8a"
 BOUNDARIES = {  # kind: colour, words
-    "-1": ("#000000", "boundary −1: half the speed"),
+    "-1": ("#000000", "boundary −1: period doubling"),
     "+1": ("#00735a", "boundary +1: once per turn"),
     "complex": ("#7b3294", "boundary, complex pair"),
 }
@@ -140,7 +140,7 @@ def _points(rod: "SweepRod") -> tuple[list[str], Any, dict[str, int]]:
 
 
 def _shade(ax: "Axes", rod: "SweepRod") -> str:
-    for low, high in rod.unstable_bands:
+    for low, high in rod.unstable_bands or []:
         ax.axvspan(low, high, color=UNSTABLE, alpha=0.18, linewidth=0)
     return "; shaded: unstable" if rod.unstable_bands else ""
 

@@ -135,7 +135,7 @@ class Scene:
         """The periodic steady state at one speed, its stability, joint forces and torque: hb.Steady.
 
         modes: Ritz terms per elastic link, 1 to 60, or "auto". tol: relative error wanted. rods: names of links to look
-        at. only: of "steady", "stability", "verdict", "reactions", "shape". theory: "linear" or "nonlinear" (the motion
+        at. only: of "steady", "stability", "growth", "verdict", "reactions", "shape". theory: "linear" or "nonlinear" (the motion
         without linearisation, all rods together), with period: motions of so many turns. bound: "estimated" or "proved".
         """
         from .steady import Steady
@@ -167,6 +167,7 @@ class Scene:
         only: Names = None,
         theory: str = "linear",
         period: Optional[int] = None,
+        search: bool = True,
         steady_method: Optional[str] = None,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
@@ -176,7 +177,8 @@ class Scene:
 
         rpm (or omega): a range (from, to, step), "FROM:TO:STEP", "FROM:TO:xN" (N points), or an array of values. x: a
         number of the scene instead, "AB.J=30:60:1" or ("AB.J", range), at one rpm or omega. theory: "nonlinear" adds the
-        branches of the motion without linearisation, of up to `period` turns. threads: 1 or more, or
+        branches of the motion without linearisation, of up to `period` turns. search: False leaves out what lies
+        between the points (bands, resonance peaks), as only="growth" or "verdict" does for bands. threads: 1 or more, or
         "all"; the answer has the same bits. progress: True, or a function of (what, done, total).
         """
         from .sweep import Sweep
@@ -191,6 +193,7 @@ class Scene:
             "only": only,
             "theory": theory,
             "period": period,
+            "search": search,
             "steady_method": steady_method,
             "stability_method": stability_method,
             "threads": threads,
@@ -207,6 +210,9 @@ class Scene:
         modes: Modes = None,
         tol: Optional[float] = None,
         rods: Names = None,
+        only: Names = None,
+        boundaries: bool = True,
+        boundary_tol: Optional[float] = None,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
         progress: Progress = False,
@@ -214,7 +220,8 @@ class Scene:
         """Stability over two numbers, one of which may be the speed: hb.Map.
 
         x, y: "PATH=FROM:TO:COUNT" as in "rpm=200:6000:117" or "*.J=20:200:61", or (path, range) with a range
-        (from, to, count) or an array of values. Other arguments as in sweep().
+        (from, to, count) or an array of values. boundaries: False computes the grid alone. boundary_tol: relative error
+        wanted of boundary points, 1e-14 to 0.01. only: "stability", "growth" or "verdict". Other arguments as in sweep().
         """
         from .map import Map
 
@@ -226,6 +233,9 @@ class Scene:
             "modes": modes,
             "tol": tol,
             "rods": rods,
+            "only": only,
+            "boundaries": boundaries,
+            "boundary_tol": boundary_tol,
             "stability_method": stability_method,
             "threads": threads,
         }

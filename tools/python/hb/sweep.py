@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from copy import deepcopy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -95,15 +96,24 @@ class SweepRod:
         """Floquet exponents, complex, (points, as many as were resolved anywhere); NaN beyond those of a point."""
         return padded(self._list("exponents"), complex_pairs=True)
 
-    @property
-    def unstable_bands(self) -> list[list[float]]:
-        """[from, to] of each unstable band."""
-        return [list(band) for band in self._sweep._document.get("unstable_bands", {}).get(self.name, [])]
+    def _searched(self, key: str) -> Optional[list[Any]]:
+        found: Optional[list[Any]] = self._sweep._document.get(key, {}).get(self.name)
+        return deepcopy(found)
 
     @property
-    def band_details(self) -> list[dict[str, Any]]:
+    def unstable_bands(self) -> Optional[list[list[float]]]:
+        """[from, to] of each unstable band; None where they were not looked for."""
+        return self._searched("unstable_bands")
+
+    @property
+    def not_excluded(self) -> Optional[list[list[float]]]:
+        """[from, to] of each place where further bands or gaps are not excluded; None where they were not looked for."""
+        return self._searched("not_excluded")
+
+    @property
+    def band_details(self) -> Optional[list[dict[str, Any]]]:
         """The bands with kind and error of their ends and the fastest growth inside."""
-        return [dict(band) for band in self._sweep._document.get("band_details", {}).get(self.name, [])]
+        return self._searched("band_details")
 
     def to_dict(self) -> dict[str, Any]:
         """Its entry under "rods" of the document."""
@@ -123,7 +133,8 @@ class SweepRod:
         return plots.sweep_rod(self, kind, ax)
 
     def __repr__(self) -> str:
-        return f"<hb.SweepRod {self.name}: {self.modes} modes, {len(self.unstable_bands)} unstable bands>"
+        bands = "no search for" if self.unstable_bands is None else len(self.unstable_bands)
+        return f"<hb.SweepRod {self.name}: {self.modes} modes, {bands} unstable bands>"
 
 
 class Sweep(Result):
@@ -178,7 +189,7 @@ class Sweep(Result):
         return floats(self._document.get("critical_x", []))
 
     @property
-    def unstable_bands(self) -> dict[str, list[list[float]]]:
+    def unstable_bands(self) -> dict[str, Optional[list[list[float]]]]:
         """[from, to] of each unstable band, by rod."""
         return {name: rod.unstable_bands for name, rod in self._rods.items()}
 

@@ -34,7 +34,7 @@ m = hb.Scene.from_dict(slim)
 # Unstable bands are located between the speeds too; every verdict rests on an error bar.
 sw = m.sweep(rpm=(500, 6000, 125), modes=3, only=["steady", "stability"], threads=2)
 rod = sw["coupler"]
-print(f"{len(rod.unstable_bands)} unstable bands up to 6000 rpm")
+print(f"{len(rod.unstable_bands or [])} unstable bands up to 6000 rpm")
 for band in rod.band_details:
     print(f"  {band['from']:.1f} to {band['to']:.1f} rpm, growth up to {band['fastest_growth']:.3g} 1/s")
 strongest = sorted(sw.critical, key=lambda peak: -peak.prominence)[:5]
