@@ -29,9 +29,8 @@ void require(bool condition, const std::string& message) {
 
 void require_series(const FourierSeries& series, Eigen::Index num_components, const std::string& name) {
   if (series.c.size() == 0) return;
-  require(series.num_components() == num_components,
-          name + " has " + std::to_string(series.num_components()) + " components, " + std::to_string(num_components) +
-              " wanted");
+  require(series.num_components() == num_components, name + " has " + std::to_string(series.num_components()) +
+                                                         " components, " + std::to_string(num_components) + " wanted");
   require(series.c.allFinite(), name + " has entries that are not finite");
 }
 

@@ -11,7 +11,7 @@
 namespace hb {
 
 struct HillSystem {
-  Eigen::MatrixXd mass;     // I x I, invertible
+  Eigen::MatrixXd mass;  // I x I, invertible
   Eigen::MatrixXd damping;  // I x I
   // C_p, p = 0, 1, 2: I*I components, column-major (component i + I*k is c_ik); an empty series (no columns) is zero.
   std::array<FourierSeries, 3> stiffness;

@@ -11,8 +11,8 @@
 namespace hb {
 
 struct TimeDomainSystem {
-  double speed = 0;         // Omega, rad per unit time
-  Eigen::MatrixXd mass;     // M, I x I, invertible
+  double speed = 0;  // Omega, rad per unit time
+  Eigen::MatrixXd mass;  // M, I x I, invertible
   Eigen::MatrixXd damping;  // B, I x I
   // Writes C (I x I) and h (I) at crank angle tau. Keeps scratch: one call at a time.
   std::function<void(double tau, Eigen::Ref<Eigen::MatrixXd> C, Eigen::Ref<Eigen::VectorXd> h)> evaluate;

@@ -25,10 +25,10 @@ double error_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& reference) {
   const Eigen::Index n = std::min(q.cols(), reference.cols());
   double difference = 0;
   for (Eigen::Index j = 0; j < n; ++j)
-    difference = std::max(
-        difference, (q.col(j * (q.cols() / n)).head(reference.rows()) - reference.col(j * (reference.cols() / n)))
-                        .cwiseAbs()
-                        .maxCoeff());
+    difference = std::max(difference,
+                          (q.col(j * (q.cols() / n)).head(reference.rows()) - reference.col(j * (reference.cols() / n)))
+                              .cwiseAbs()
+                              .maxCoeff());
   const double error = difference / reference.cwiseAbs().maxCoeff();
   return std::isfinite(error) ? error : INFINITY;
 }

@@ -41,8 +41,8 @@ double distance(std::complex<double> a, std::complex<double> b, double Omega) {
 // Growth rates, then every exponent that one path lists against the nearest of the other; the worst by excess over its
 // allowance. Either list may leave out exponents: harmonic balance those that it did not resolve, shooting those below
 // `complete_above`. One that is missing there has no partner.
-Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting,
-                             Eigen::Index num_exponents, double Omega) {
+Comparison compare_exponents(const Stability& stability, const ShootingResult& shooting, Eigen::Index num_exponents,
+                             double Omega) {
   Comparison worst{"exponents", std::abs(stability.growth_rate - shooting.growth_rate),
                    stability.growth_error + shooting.growth_error + 1e-12 * (Omega + std::abs(shooting.growth_rate))};
   const auto compare = [&](const std::vector<Exponent>& mine, const std::vector<Exponent>& others, double above) {
@@ -237,7 +237,6 @@ std::optional<WorstComparison> worst_comparison(const std::vector<SpeedCheck>& c
   }
   return worst;
 }
-
 
 SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& settings, const CheckOptions& options) {
   SpeedCheck check;

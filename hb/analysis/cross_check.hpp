@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/time/shooting.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/engine/time/shooting.hpp"
 
 namespace hb {
 
@@ -56,8 +56,8 @@ struct SpeedCheck {
   double speed = 0;  // rad per unit time
   std::vector<RodCheck> rods;
   std::optional<JointCheck> joints;
-  // What neither path sees: both compute the linear theory. Of all elastic links, asked for or not, by name; empty for a
-  // [hill] scene.
+  // What neither path sees: both compute the linear theory. Of all elastic links, asked for or not, by name; empty for
+  // a [hill] scene.
   std::optional<TheoryErrors> theory;
   std::vector<std::string> theory_rods;
   double seconds_harmonic_balance = 0, seconds_shooting = 0, seconds_marching = 0;

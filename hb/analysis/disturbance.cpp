@@ -7,8 +7,8 @@
 
 namespace hb {
 
-// x_k e^(i nu_k t) and its conjugate make one line |nu_k|; so do two k of one size of nu_k, as where lambda is locked to
-// the speed or to half of it.
+// x_k e^(i nu_k t) and its conjugate make one line |nu_k|; so do two k of one size of nu_k, as where lambda is locked
+// to the speed or to half of it.
 std::vector<DisturbanceLine> disturbance_lines(const HillSystem& system, double speed, const Exponent& exponent,
                                                double least) {
   const std::optional<FloquetVectors> vectors = floquet_vectors(system, speed, exponent);

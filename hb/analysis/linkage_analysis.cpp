@@ -126,8 +126,7 @@ FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, 
                                   const RodResult& result) {
   SteadyOptions options = response_options(settings);
   options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
-  const SteadyState state =
-      solve_rod(system_with(model, rod, result.num_modes), result.num_modes, speed, options);
+  const SteadyState state = solve_rod(system_with(model, rod, result.num_modes), result.num_modes, speed, options);
   return state.status == SteadyStatus::singular ? result.steady->q : state.q;
 }
 
@@ -237,7 +236,8 @@ void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
     rods.push_back({as_made ? &model.rods[r].system : &systems[r], &result.rods[r].steady->q});
   }
   const JointForces* forces = result.forces ? &*result.forces : nullptr;
-  const bool as_made = model.exact && std::ranges::equal(modes, model.exact->rods(), {}, {}, &ExactModel::Rod::num_modes);
+  const bool as_made =
+      model.exact && std::ranges::equal(modes, model.exact->rods(), {}, {}, &ExactModel::Rod::num_modes);
   result.theory = as_made ? theory_errors(*model.exact, speed, rods, forces)
                           : theory_errors(theory_model(*model.linkage(), modes), speed, rods, forces);
   result.stages.push_back({"theory error", watch.seconds(), result.theory->reason});
@@ -402,8 +402,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       entry.num_exponents = 2 * system.num_modes();
       entry.stability = analyse_stability(system, speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});
-      if (!only.all_exponents())
-        stages.push_back({"further exponents of " + rod.name, 0, "not asked for", true});
+      if (!only.all_exponents()) stages.push_back({"further exponents of " + rod.name, 0, "not asked for", true});
     }
     for (std::string& sentence : shortfalls_of(entry, settings)) result.shortfalls.push_back(std::move(sentence));
     for (std::string& sentence : notes_of(entry)) result.notes.push_back(std::move(sentence));

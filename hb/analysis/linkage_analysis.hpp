@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/force_error.hpp"
+#include "hb/analysis/request.hpp"
+#include "hb/analysis/rod_stress.hpp"
+#include "hb/analysis/theory_error.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/linkage/joint_forces.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
-#include "hb/analysis/force_error.hpp"
-#include "hb/analysis/request.hpp"
-#include "hb/analysis/rod_stress.hpp"
-#include "hb/analysis/theory_error.hpp"
 
 namespace hb {
 

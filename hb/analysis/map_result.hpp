@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/boundaries/stability_map.hpp"
 #include "hb/analysis/request.hpp"
 #include "hb/analysis/resonance_lines.hpp"
 #include "hb/analysis/scene_plane.hpp"
+#include "hb/engine/boundaries/stability_map.hpp"
 
 namespace hb {
 

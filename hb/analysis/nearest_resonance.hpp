@@ -1,5 +1,5 @@
-// Where a forced vibration is in its resonance curve: the speed of the nearest simple resonance, and how much larger the
-// response is than that of the load applied slowly.
+// Where a forced vibration is in its resonance curve: the speed of the nearest simple resonance, and how much larger
+// the response is than that of the load applied slowly.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace hb {
 
-// r = omega_1/Omega with omega_1 the lowest natural frequency of the system averaged over the turn at the speed Omega, by
-// the diagonal of its stiffness in scaled coordinates; 0 where that is not positive.
+// r = omega_1/Omega with omega_1 the lowest natural frequency of the system averaged over the turn at the speed Omega,
+// by the diagonal of its stiffness in scaled coordinates; 0 where that is not positive.
 [[nodiscard]] double frequency_ratio(const HillSystem& system, double speed);
 
 struct NearestResonance {
@@ -22,9 +22,10 @@ struct NearestResonance {
 // stiffness, more than 60 unknowns).
 [[nodiscard]] std::optional<NearestResonance> nearest_resonance(const HillSystem& system, double speed);
 
-// max over i and tau of |q_i|, i = 1..num_modes, of the solution of C(tau; Omega) u = h(tau; Omega) at each crank angle by
-// itself; u is q, or with shear its two parts (lib/rod/shear.hpp). Empty without a load, where C is singular or indefinite
-// at some angle, and for more than 60 unknowns.
-[[nodiscard]] std::optional<double> quasi_static_response(const HillSystem& system, Eigen::Index num_modes, double speed);
+// max over i and tau of |q_i|, i = 1..num_modes, of the solution of C(tau; Omega) u = h(tau; Omega) at each crank angle
+// by itself; u is q, or with shear its two parts (lib/rod/shear.hpp). Empty without a load, where C is singular or
+// indefinite at some angle, and for more than 60 unknowns.
+[[nodiscard]] std::optional<double> quasi_static_response(const HillSystem& system, Eigen::Index num_modes,
+                                                          double speed);
 
 }  // namespace hb

@@ -9,8 +9,8 @@ namespace hb {
 // Of the rod's own buckling load, of l, and of strain: above these an answer is beyond small deflections.
 constexpr double buckling_share_limit = 0.5, deflection_share_limit = 1.0 / 20, strain_limit = 0.005;
 
-// Forces mass length/time^2, stresses mass/(length time^2). Axial forces are those of the rigid mechanism, as the theory
-// takes them, largest over rod and turn.
+// Forces mass length/time^2, stresses mass/(length time^2). Axial forces are those of the rigid mechanism, as the
+// theory takes them, largest over rod and turn.
 struct RodStress {
   double tension = 0, compression = 0;  // largest axial forces, both >= 0
   double buckling_load = 0;  // pi^2 EJ/l^2, of the rod pinned at both ends

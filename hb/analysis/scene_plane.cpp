@@ -329,8 +329,7 @@ struct ScenePlane::Implementation {
 };
 
 ScenePlane::ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOptions options)
-    : self_(new Implementation{
-          std::move(family), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
+    : self_(new Implementation{std::move(family), {std::move(x), std::move(y)}, std::move(options), {}, {}, {}, {}}) {
   static std::atomic<std::size_t> next_id = 1;
   Implementation& s = *self_;
   s.id = next_id++;
@@ -365,7 +364,9 @@ ScenePlane::ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOption
   if (const auto* linkage = std::get_if<Linkage>(&s.corner->model)) {
     std::vector<std::string> all;
     for (const int link : elastic_links(*linkage)) all.push_back(body_name(*linkage, link));
-    if (all.empty()) throw RequestError("", "no elastic links", "a scene with some", "the scene has no elastic links: nothing can become unstable");
+    if (all.empty())
+      throw RequestError("", "no elastic links", "a scene with some",
+                         "the scene has no elastic links: nothing can become unstable");
     for (const std::string& name : s.options.rods) {
       if (std::find(all.begin(), all.end(), name) == all.end()) {
         throw RequestError("rods", fmt::format("\"{}\"", name), fmt::format("{}", fmt::join(all, ", ")));

@@ -27,7 +27,7 @@ struct PlaneAxis {
 
 struct PlaneOptions {
   Eigen::Index num_modes = 5;
-  double speed = 0;               // rad per unit time, where no axis is the speed
+  double speed = 0;  // rad per unit time, where no axis is the speed
   std::vector<std::string> rods;  // names asked for; empty: all
   const Work* work = nullptr;  // has to be given; outlives the plane
 };
@@ -39,8 +39,8 @@ struct PlaneOptions {
 
 class ScenePlane {
  public:
-  // Throws SceneError where the scene is wrong at a corner of the plane, RequestError for a name in options.rods that is
-  // not an elastic link.
+  // Throws SceneError where the scene is wrong at a corner of the plane, RequestError for a name in options.rods that
+  // is not an elastic link.
   ScenePlane(SceneFamily family, PlaneAxis x, PlaneAxis y, PlaneOptions options);
   ScenePlane(SceneSource source, std::vector<Override> overrides, PlaneAxis x, PlaneAxis y, PlaneOptions options)
       : ScenePlane(SceneFamily(std::move(source), std::move(overrides)), std::move(x), std::move(y),

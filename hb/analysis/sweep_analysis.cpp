@@ -427,8 +427,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
       num_boundaries += rod.boundaries.size();
       for (const StabilityBoundary& boundary : rod.boundaries) {
         if (boundary.converged) continue;
-        result.notes.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only", rod.name,
-                                           scene.axis().path, boundary.x, boundary.error));
+        result.notes.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only",
+                                           rod.name, scene.axis().path, boundary.x, boundary.error));
       }
     }
   }
@@ -472,8 +472,9 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
         if (work.ends_early()) return std::nullopt;
         const PeakTask& task = tasks[k];
         const RodAlong& rod = along[task.rod];
-        const std::optional<ResponsePeak> peak = locate_peak(rod.largest(task.component, peaks.rough), rod.largest(task.component, peaks.fine),
-                                                             task.low, task.inside, task.high, peaks.height);
+        const std::optional<ResponsePeak> peak =
+            locate_peak(rod.largest(task.component, peaks.rough), rod.largest(task.component, peaks.fine), task.low,
+                        task.inside, task.high, peaks.height);
         if (!peak) return std::nullopt;
         CriticalPoint point;
         point.rod = task.rod;
@@ -511,8 +512,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
     if (!point) continue;
     if (!point->peak.converged) {
       result.notes.push_back(fmt::format("{}: the peak of q_{} at {} = {:.10g} is known to {:.1e} only",
-                                              result.rods[point->rod].name, point->component + 1, scene.axis().path,
-                                              point->peak.x, point->peak.error));
+                                         result.rods[point->rod].name, point->component + 1, scene.axis().path,
+                                         point->peak.x, point->peak.error));
     }
     result.critical.push_back(*point);
   }
@@ -523,7 +524,7 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
     result.stages.push_back({"resonance peaks", 0, "not asked for", true});
   else
     result.stages.push_back(
-      {"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
+        {"resonance peaks", peak_watch.seconds(), counted(fmt::format("{} located, ", tasks.size()))});
 
   // Everything at what was found.
   Stopwatch refined_watch;

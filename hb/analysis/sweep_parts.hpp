@@ -1,8 +1,8 @@
 // Points of a sweep as lists of numbers (hb/engine/boundaries/part.hpp).
 #pragma once
 
-#include "hb/engine/boundaries/part.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
+#include "hb/engine/boundaries/part.hpp"
 
 namespace hb {
 

@@ -77,8 +77,9 @@ inline Butterfly butterfly(double ar, double ai, double br, double bi, double cr
 // Stride 1: places p of the sub-transforms are neighbours.
 void first_radix_4(size_t m, In re, In im, In w, Out y, Out z) {
   for (size_t p = 0; p < m; ++p) {
-    const Butterfly b = butterfly(re[p], im[p], re[p + m], im[p + m], re[p + 2 * m], im[p + 2 * m], re[p + 3 * m],
-                                  im[p + 3 * m], w[p], w[p + m], w[p + 2 * m], w[p + 3 * m], w[p + 4 * m], w[p + 5 * m]);
+    const Butterfly b =
+        butterfly(re[p], im[p], re[p + m], im[p + m], re[p + 2 * m], im[p + 2 * m], re[p + 3 * m], im[p + 3 * m], w[p],
+                  w[p + m], w[p + 2 * m], w[p + 3 * m], w[p + 4 * m], w[p + 5 * m]);
     y[4 * p] = b.y0;
     y[4 * p + 1] = b.y1;
     y[4 * p + 2] = b.y2;

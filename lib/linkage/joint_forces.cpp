@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numbers>
 
+#include "lib/fourier/turn_sampling.hpp"
 #include "lib/linkage/balance.hpp"
 #include "lib/linkage/joint_rows.hpp"
-#include "lib/fourier/turn_sampling.hpp"
 
 namespace hb {
 

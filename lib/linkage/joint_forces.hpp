@@ -30,7 +30,7 @@ struct DyadForces {
 struct MechanismForces {
   std::vector<DyadForces> dyads;
   std::complex<double> crank_pivot;  // acting on the crank
-  double torque = 0;                 // driving torque on the crank
+  double torque = 0;  // driving torque on the crank
 };
 
 // Joint forces that balance given body loads (one per body, numbered as in linkage.hpp; a slider's own entry has its
@@ -41,21 +41,21 @@ struct MechanismForces {
 // Loads of the rigid-body motion in powers of Omega: [0] gravity and applied slider forces, [1] external damping,
 // [2] inertia. Sum with 1, Omega, Omega^2.
 [[nodiscard]] std::array<std::vector<BodyLoad>, 3> rigid_loads(const Linkage& linkage,
-                                                              const std::vector<BodyMotion>& motion,
-                                                              double crank_angle);
+                                                               const std::vector<BodyMotion>& motion,
+                                                               double crank_angle);
 
 // What the deflection of one elastic link (body number `link`) adds to its load, at speed Omega: terms linear in
 // q, q', q'' (' = d/dtau; Ritz coordinates of w = sum q_i sin(i pi x/l)).
 //   integrals of -2 phi_t w_t - phi_tt w along x, w_tt - phi_t^2 w across, damping -c_x phi_t w and c_y w_t,
 //   and of the rigid axial load density on w, third integral of (2.14).
 [[nodiscard]] BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link,
-                                   double speed, const Eigen::Ref<const Eigen::VectorXd>& q,
-                                   const Eigen::Ref<const Eigen::VectorXd>& q1,
-                                   const Eigen::Ref<const Eigen::VectorXd>& q2);
+                                    double speed, const Eigen::Ref<const Eigen::VectorXd>& q,
+                                    const Eigen::Ref<const Eigen::VectorXd>& q1,
+                                    const Eigen::Ref<const Eigen::VectorXd>& q2);
 
 // Deflection of one elastic link as the solver found it.
 struct LinkResponse {
-  int link = 0;     // body number
+  int link = 0;  // body number
   FourierSeries q;  // I components over the crank angle
 };
 
@@ -77,8 +77,9 @@ struct JointForces {
 };
 
 // Over the whole turn at one speed (rad per unit time); sampling doubles until the Fourier coefficients have decayed
-// below `tolerance` relative to the largest (or 2^14 samples, or twice what the responses need). An empty `responses` gives elastic = rigid.
-[[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed,
-                                      const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
+// below `tolerance` relative to the largest (or 2^14 samples, or twice what the responses need). An empty `responses`
+// gives elastic = rigid.
+[[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
+                                       double tolerance = 1e-13);
 
 }  // namespace hb

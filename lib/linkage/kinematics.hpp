@@ -12,15 +12,13 @@ namespace hb {
 
 // Motion of one body's frame at one crank angle; ' = d/dtau.
 struct BodyMotion {
-  std::complex<double> z, z1, z2;    // origin (joint 0; for a slider its joint), z', z''
-  std::complex<double> e = 1;        // e^{i phi}, phi the body's angle
-  double phi1 = 0, phi2 = 0;         // phi', phi'' (zero for a slider)
+  std::complex<double> z, z1, z2;  // origin (joint 0; for a slider its joint), z', z''
+  std::complex<double> e = 1;  // e^{i phi}, phi the body's angle
+  double phi1 = 0, phi2 = 0;  // phi', phi'' (zero for a slider)
 
   // Position, first and second derivative of a point given in the body frame.
   std::complex<double> position(std::complex<double> p) const { return z + e * p; }
-  std::complex<double> velocity(std::complex<double> p) const {
-    return z1 + std::complex<double>(0, phi1) * e * p;
-  }
+  std::complex<double> velocity(std::complex<double> p) const { return z1 + std::complex<double>(0, phi1) * e * p; }
   std::complex<double> acceleration(std::complex<double> p) const {
     return z2 + std::complex<double>(-phi1 * phi1, phi2) * e * p;
   }
@@ -37,7 +35,7 @@ struct Obstruction {
   int dyad = 0;
   double crank_angle = 0;  // rad, in [0, 2 pi)
   bool dead_centre = false;  // closes only just (|sin of the transmission angle| below 1e-6); else: does not close
-  std::string message;       // one sentence: dyad's links, angle in degrees, what happens
+  std::string message;  // one sentence: dyad's links, angle in degrees, what happens
 };
 
 // Searches the whole turn (not only a grid: minima of the closing margin are located); empty if the mechanism turns

@@ -16,29 +16,29 @@ namespace hb {
 
 // Shear of a thick rod: shear force = k G F (w' - rotation of the section).
 struct Shear {
-  double modulus = 0;      // G
+  double modulus = 0;  // G
   double coefficient = 0;  // k
 };
 
 // Uniform pinned-pinned elastic link (physics of the rod; the paper's letters in brackets).
 struct Elastic {
-  double youngs_modulus = 0;    // E
-  double area = 0;              // F
-  double second_moment = 0;     // J
-  double density = 0;           // rho
+  double youngs_modulus = 0;  // E
+  double area = 0;  // F
+  double second_moment = 0;  // J
+  double density = 0;  // rho
   double internal_damping = 0;  // alpha_c, unit time: stress = E (strain + alpha_c d strain/dt)
-  double damping_x = 0;         // c_x, external damping per length, along the rod
-  double damping_y = 0;         // c_y, across the rod
-  double section_height = 0;    // in the plane of motion; 0: unknown
-  std::optional<Shear> shear;   // none: rigid in shear
+  double damping_x = 0;  // c_x, external damping per length, along the rod
+  double damping_y = 0;  // c_y, across the rod
+  double section_height = 0;  // in the plane of motion; 0: unknown
+  std::optional<Shear> shear;  // none: rigid in shear
 };
 
 struct Body {
   std::string name;
-  double length = 0;             // joint 0 to joint 1
+  double length = 0;  // joint 0 to joint 1
   double mass = 0;
   std::complex<double> com = 0;  // centre of mass, body frame
-  double inertia = 0;            // about the centre of mass
+  double inertia = 0;  // about the centre of mass
   std::map<std::string, std::complex<double>> points;  // further joints, body frame
   // Set for an elastic link: then mass is spread evenly (mu = mass/length), com = length/2,
   // inertia = mass length^2/12 + rho J length, and there are no points.
@@ -59,8 +59,8 @@ struct Slider {
   std::string name;
   double mass = 0;
   std::complex<double> guide = 0;  // a point of the guide
-  double direction = 0;            // rad, of the guide
-  FourierSeries force;             // applied along the direction, over the crank angle; one component, empty = none
+  double direction = 0;  // rad, of the guide
+  FourierSeries force;  // applied along the direction, over the crank angle; one component, empty = none
   std::map<std::string, std::complex<double>> points;  // slider frame: origin its joint, real axis along the guide
 };
 

@@ -24,10 +24,10 @@ struct RodCoefficients {
 
 // Everything of a linkage that does not know the speed: Fourier series of f0..f4 of its elastic links.
 struct LinkageCoefficients {
-  std::vector<int> links;                // body numbers of the elastic links
-  std::vector<RodCoefficients> rods;     // one per link
-  Eigen::Index num_samples = 0;          // of the crank angle that were needed
-  double tail = 0;                       // largest coefficient left out, relative to the largest of its kind
+  std::vector<int> links;  // body numbers of the elastic links
+  std::vector<RodCoefficients> rods;  // one per link
+  Eigen::Index num_samples = 0;  // of the crank angle that were needed
+  double tail = 0;  // largest coefficient left out, relative to the largest of its kind
   // The coefficients have decayed, to rounding or below 1e-10. If not, the linkage comes so near a dead centre that
   // num_samples do not show its motion: nothing computed from the coefficients is worth anything.
   bool resolved = true;
@@ -42,11 +42,11 @@ struct LinkageCoefficients {
 // shear.hpp makes q.
 [[nodiscard]] HillSystem ritz_system(const Body& link, const RodCoefficients& rod, Eigen::Index num_modes);
 
-// Largest deflection w(x,t) and bending moment EJ (w'' + alpha_c w''_t is stress-related; here EJ w'') over rod and turn.
-// With shear the section's rotation stands for w' in the moment. q here and below: q_1..q_I, with shear too.
+// Largest deflection w(x,t) and bending moment EJ (w'' + alpha_c w''_t is stress-related; here EJ w'') over rod and
+// turn. With shear the section's rotation stands for w' in the moment. q here and below: q_1..q_I, with shear too.
 struct RodPeak {
   double max_abs = 0;
-  double x = 0;            // from joint 0
+  double x = 0;  // from joint 0
   double crank_angle = 0;  // rad
 };
 

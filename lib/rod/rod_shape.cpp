@@ -5,8 +5,8 @@
 // The tail is the static deflection of a pinned-pinned beam under p^, in closed form, minus its first I sine terms.
 // The f4 term has none beyond I. So w is a sum of products of a shape (of x) and a time function:
 //     sin(i pi x/l)  q_i,     y_0  f0^,     y_1  f1^,     y_3k  (f3 q_k)^,     y_2k  (f2 q_k)^.
-// With shear (lib/README.md (S8)) 1/(i pi/l)^4 becomes 1/(i pi/l)^4 + 1/(S (i pi/l)^2) in w; the bending moment is that of
-// the shapes without shear with p_i, the rotation of the sections, in place of q_i.
+// With shear (lib/README.md (S8)) 1/(i pi/l)^4 becomes 1/(i pi/l)^4 + 1/(S (i pi/l)^2) in w; the bending moment is that
+// of the shapes without shear with p_i, the rotation of the sections, in place of q_i.
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -383,8 +383,9 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
                              Eigen::Index num_harmonics, RodQuantity quantity, double x, double crank_angle) {
   const Eigen::Index I = num_modes;
   const bool moment = quantity == RodQuantity::bending_moment;
-  const Eigen::RowVectorXd s = (moment ? link.elastic->youngs_modulus * link.elastic->second_moment : 1.0) *
-                               RodShapes(link.length, I, moment ? 0 : shear_flexibility(link)).values(x, moment ? 2 : 0);
+  const Eigen::RowVectorXd s =
+      (moment ? link.elastic->youngs_modulus * link.elastic->second_moment : 1.0) *
+      RodShapes(link.length, I, moment ? 0 : shear_flexibility(link)).values(x, moment ? 2 : 0);
   const FourierSeries f = coefficients_at(rod, speed);
   const Eigen::Index H = num_harmonics + f.num_harmonics(), N = power_of_two_from(2 * H + 2);
   FourierSeries W(1, H), delta(1, num_harmonics);

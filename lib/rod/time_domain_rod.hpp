@@ -12,8 +12,8 @@
 
 namespace hb {
 
-// M, B, C, h of one elastic link (body number `link`) with I = num_modes terms w = sum q_i sin(i pi x/l), divided by EJ.
-// With shear 2 I unknowns, q_1..q_I and p_1..p_I of the section's rotation sum p_i (i pi/l) cos(i pi x/l).
+// M, B, C, h of one elastic link (body number `link`) with I = num_modes terms w = sum q_i sin(i pi x/l), divided by
+// EJ. With shear 2 I unknowns, q_1..q_I and p_1..p_I of the section's rotation sum p_i (i pi/l) cos(i pi x/l).
 [[nodiscard]] TimeDomainSystem time_domain_rod(const Linkage& linkage, int link, Eigen::Index num_modes, double speed);
 
 // Ritz coordinates of one elastic link at one crank angle; ' = d/dtau.

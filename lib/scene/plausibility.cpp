@@ -105,11 +105,12 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
   constexpr double per_size = 3.1, most_left_out = 0.003;
   const double size = std::numbers::pi * std::numbers::pi * J / (F * body.length * body.length);
   if (!rod.shear && !(size <= most_left_out) && (elastic.has("section") || solid.holds(J / (F * F)))) {
-    remark(elastic, elastic.has("J") ? "J" : "section", Concern::slenderness,
-           fmt::format("found length/sqrt(J/area) = {:.3g}; shear, left out, adds about {:.2g} % to the deflection of so "
-                       "thick a rod, which the elastic data take as shear = {{ G, k }}",
-                       body.length / std::sqrt(J / F), 100 * per_size * size),
-           context);
+    remark(
+        elastic, elastic.has("J") ? "J" : "section", Concern::slenderness,
+        fmt::format("found length/sqrt(J/area) = {:.3g}; shear, left out, adds about {:.2g} % to the deflection of so "
+                    "thick a rod, which the elastic data take as shear = {{ G, k }}",
+                    body.length / std::sqrt(J / F), 100 * per_size * size),
+        context);
   }
 }
 
@@ -135,10 +136,10 @@ void remark_on_linkage(const TableView& scene, const Linkage& linkage, const Sce
     if (!slip.empty() || !Window{0.01, 5}.holds(longest * size_of(*parse_unit(unit).unit))) continue;
     slip = fmt::format("; {:.4g} {} if the numbers were in {} ([units] length = \"{}\")", longest, unit, unit, unit);
   }
-  remark(
-      scene, "crank", Concern::size,
-      fmt::format("found {} with a length of {}{}; taken as given", name, in_best_unit(metres, {"km", "m", "mm", "um"}), slip),
-      context);
+  remark(scene, "crank", Concern::size,
+         fmt::format("found {} with a length of {}{}; taken as given", name,
+                     in_best_unit(metres, {"km", "m", "mm", "um"}), slip),
+         context);
 }
 
 void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults, const Linkage& linkage,
@@ -148,10 +149,9 @@ void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults
   const double tip =
       omega / context.units.time_in_s * in_si(linkage.crank.body.length, dimension::length, context.units);
   if (!(tip > 300)) return;
-  remark(
-      analysis, defaults.rpm ? "rpm" : "omega", Concern::speed,
-      fmt::format("found a crank whose tip moves at {:.4g} m/s; are speed and lengths in their units?", tip),
-      context);
+  remark(analysis, defaults.rpm ? "rpm" : "omega", Concern::speed,
+         fmt::format("found a crank whose tip moves at {:.4g} m/s; are speed and lengths in their units?", tip),
+         context);
 }
 
 std::vector<std::string> warnings(std::vector<Remark> remarks) {

@@ -215,12 +215,11 @@ toml::table parse_value(const Override& change) {
   } catch (const toml::parse_error&) {
   }
   const std::size_t comma = change.value.find(',');
-  throw SceneError(fmt::format("{}: {}: found {}, allowed a TOML value: a number, \"text\" or a list{}", label(change),
-                               printable(change.path, 100),
-                               change.value.empty() ? "nothing" : fmt::format("\"{}\"", printable(change.value, 100)),
-                               comma == std::string::npos || change.value.front() == '['
-                                   ? ""
-                                   : "; the decimal point is a point"));
+  throw SceneError(
+      fmt::format("{}: {}: found {}, allowed a TOML value: a number, \"text\" or a list{}", label(change),
+                  printable(change.path, 100),
+                  change.value.empty() ? "nothing" : fmt::format("\"{}\"", printable(change.value, 100)),
+                  comma == std::string::npos || change.value.front() == '[' ? "" : "; the decimal point is a point"));
 }
 
 [[noreturn]] void refuse_path(const toml::table& scene, const Override& change) {

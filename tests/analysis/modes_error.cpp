@@ -12,8 +12,7 @@ hb::SpeedResult solve(const char* scene, int num_modes, double speed) {
   settings.modes = num_modes;
   settings.tolerance = 1e-12;
   settings.only = {.steady = true, .stability = false, .reactions = false, .shape = false};
-  const auto model =
-      hb::make_model(hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene), settings);
+  const auto model = hb::make_model(hb::read_scene(std::string(HB_SOURCE_DIR "/tests/scenes/") + scene), settings);
   return hb::analyse(model, speed, settings);
 }
 

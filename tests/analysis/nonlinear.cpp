@@ -31,13 +31,16 @@ TEST(NonlinearFromCpp, SteadyIsTheReferencesMotion) {
 
 TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
   const Linkage linkage = std::get<Linkage>(read_scene(scenes + "six_link.toml").model);
-  const SceneFamily by_function({{"J", 45}}, [linkage](const std::vector<double>& values) {
-    Linkage changed = linkage;
-    Body& rod = changed.dyads[0].coupler;
-    rod.elastic->second_moment = values[0];
-    rod.inertia = rod.mass * rod.length * rod.length / 12 + rod.elastic->density * values[0] * rod.length;
-    return changed;
-  }, read_scene(scenes + "six_link.toml").units);
+  const SceneFamily by_function(
+      {{"J", 45}},
+      [linkage](const std::vector<double>& values) {
+        Linkage changed = linkage;
+        Body& rod = changed.dyads[0].coupler;
+        rod.elastic->second_moment = values[0];
+        rod.inertia = rod.mass * rod.length * rod.length / 12 + rod.elastic->density * values[0] * rod.length;
+        return changed;
+      },
+      read_scene(scenes + "six_link.toml").units);
   SweepRequest request;
   request.rpm = 700;
   request.modes = 1;

@@ -1,4 +1,6 @@
 // Axial force and stress of a rod, and its nearest resonance, against closed forms.
+#include "hb/analysis/rod_stress.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 
 #include "hb/analysis/disturbance.hpp"
 #include "hb/analysis/nearest_resonance.hpp"
-#include "hb/analysis/rod_stress.hpp"
 #include "hb/analysis/steady.hpp"
 
 namespace {
@@ -18,7 +19,8 @@ const std::string scenes = HB_SOURCE_DIR "/tests/scenes/";
 Scene with_section() {
   const char* text =
       "gravity = 0\n[crank]\npivot = [0, 0]\nlength = 0.1\n[[dyad]]\non = \"crank\"\nbranch = 1\n"
-      "coupler = { name = \"AB\", length = 0.3, mass = 0.4, elastic = { E = 2.1e11, section = { shape = \"rectangle\", width = 0.01, height = 0.02 } } }\n"
+      "coupler = { name = \"AB\", length = 0.3, mass = 0.4, elastic = { E = 2.1e11, section = { shape = \"rectangle\", "
+      "width = 0.01, height = 0.02 } } }\n"
       "rocker = { name = \"R\", pivot = [0.3, 0], length = 0.12 }\n";
   return SceneSource(text, "with_section.toml", ".").with({});
 }

@@ -1,4 +1,6 @@
 // A thick rod with shear through everything that is computed of a scene.
+#include "lib/rod/shear.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +11,6 @@
 #include "hb/analysis/cross_check.hpp"
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
 #include "hb/analysis/tune/tune_quantities.hpp"
-#include "lib/rod/shear.hpp"
 #include "lib/rod/time_domain_rod.hpp"
 
 namespace hb {
@@ -79,7 +80,8 @@ TEST(ShearOfAScene, TheErrorOfTheCutCoversTheChangeToManyModes) {
   settings.only = {true, false, false, true};
   const SpeedResult many = analyse(make_model(engine(steel_shear), settings), speed, settings);
   const double w = many.rods[0].shape->deflection.max_abs;
-  EXPECT_LE(std::abs(few.result.rods[0].shape->deflection.max_abs - w), *few.result.rods[0].modes_error * w + 1e-11 * w);
+  EXPECT_LE(std::abs(few.result.rods[0].shape->deflection.max_abs - w),
+            *few.result.rods[0].modes_error * w + 1e-11 * w);
 }
 
 // Time integration of deflection and rotation against harmonic balance of the modes at rest.

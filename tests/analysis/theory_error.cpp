@@ -105,7 +105,8 @@ TEST(TheoryError, IsWithinATenthOfTheTrueChangeOnRandomLinkages) {
     FourierSeries start(answer.model.num_modes(), H);
     for (std::size_t r = 0; r < answer.q.size(); ++r)
       start.c.middleRows(answer.model.first_mode(r), I) = fourier::resized(answer.q[r], H).c;
-    const NonlinearSystem system = exact_system(std::make_shared<const ExactModel>(random.linkage, answer.model.rods()));
+    const NonlinearSystem system =
+        exact_system(std::make_shared<const ExactModel>(random.linkage, answer.model.rods()));
     const PeriodicMotion motion = solve_periodic_motion(system, random.speed, start);
     if (motion.status != MotionStatus::converged) continue;
     const Index longest = std::max(H, motion.q.num_harmonics());

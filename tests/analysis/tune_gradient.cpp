@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "hb/analysis/tune/tune_design.hpp"
 #include "hb/engine/design/differences.hpp"
 #include "lib/scene/scene.hpp"
-#include "hb/analysis/tune/tune_design.hpp"
 
 namespace {
 
@@ -122,11 +122,8 @@ TEST(TuneGradient, AgreesWithDifferencesOfTheSliderCrank) {
 }
 
 TEST(TuneGradient, AgreesWithDifferencesOfARodWithShear) {
-  const Question question{SceneSource(scenes + "thick_rod.toml"),
-                          {"rod.shear.G", "rod.shear.k", "rod.length"},
-                          settings_of(2),
-                          3000,
-                          9000};
+  const Question question{
+      SceneSource(scenes + "thick_rod.toml"), {"rod.shear.G", "rod.shear.k", "rod.length"}, settings_of(2), 3000, 9000};
   expect_gradients(question, {79.3e9, 0.85, 0.11}, {"deflection", "stress", "force:rod.0"}, {"stable", "frequency>=1"});
 }
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/run_command.hpp"
 #include "hb/analysis/bench_rod.hpp"
+#include "tests/support/run_command.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/run_command.hpp"
 #include "hb/analysis/cross_check.hpp"
+#include "tests/support/run_command.hpp"
 
 namespace {
 
@@ -45,8 +45,9 @@ TEST_F(Check, SaysWhatTheLinearTheoryIsOffBy) {
   const Json several = Json::parse(hb(at + "300:1500:600 --json").out);
   EXPECT_EQ(several["rods"]["AB"]["theory_error"].size(), 3u);
   EXPECT_FALSE(Json::parse(hb(at + "300 --json").out).contains("warnings"));
-  EXPECT_FALSE(Json::parse(hb("check " + scene("mathieu") + " --omega 1 --tol 1e-7 --json").out)["rods"]["system"]
-                   .contains("theory_error"));
+  EXPECT_FALSE(
+      Json::parse(hb("check " + scene("mathieu") + " --omega 1 --tol 1e-7 --json").out)["rods"]["system"].contains(
+          "theory_error"));
 }
 
 TEST_F(Check, EveryIntegratorAgreesOnAHillScene) {

@@ -55,8 +55,9 @@ TEST_F(Sweep, WhatWasNotAskedForIsNeitherComputedNorClaimed) {
   }
   for (std::size_t k = 0; k < full["rpm"].size(); ++k) {
     const double here = growth["rods"]["AB"]["growth_rate"][k], all = full["rods"]["AB"]["growth_rate"][k];
-    EXPECT_NEAR(here, all,
-                growth["rods"]["AB"]["growth_error"][k].get<double>() + full["rods"]["AB"]["growth_error"][k].get<double>());
+    EXPECT_NEAR(
+        here, all,
+        growth["rods"]["AB"]["growth_error"][k].get<double>() + full["rods"]["AB"]["growth_error"][k].get<double>());
   }
 }
 

@@ -58,7 +58,8 @@ TEST_F(Map, JsonHasTheKeysOfTheContract) {
 }
 
 TEST_F(Map, WithoutBoundariesItHasTheSameGridAndNoCurves) {
-  for (const std::string& grid : {std::string("9 --y *.J=30:60:5 --modes 1"), std::string("250 --y *.J=30:60:200 --modes 1")}) {
+  for (const std::string& grid :
+       {std::string("9 --y *.J=30:60:5 --modes 1"), std::string("250 --y *.J=30:60:200 --modes 1")}) {
     const std::string asked = scene("six_link") + " --rods AB --x rpm=1800:3000:" + grid;
     const Json full = document(asked), alone = document(asked + " --no-boundaries");
     EXPECT_TRUE(full.contains("boundaries"));

@@ -38,7 +38,8 @@ TEST_F(Nonlinear, SweepPassesTheFoldsAndArrivesAtTheReferencesMotion) {
   const Json& branch = found["branches"][0];
   const std::size_t points = branch["rpm"].size();
   ASSERT_GT(points, 20u);
-  for (const char* key : {"omega", "growth_rate", "verdict", "error_bound"}) ASSERT_EQ(branch[key].size(), points) << key;
+  for (const char* key : {"omega", "growth_rate", "verdict", "error_bound"})
+    ASSERT_EQ(branch[key].size(), points) << key;
   const Json& peaks = branch["rods"]["AB"]["max_abs"];
   ASSERT_EQ(peaks.size(), points);
   EXPECT_EQ(branch["rpm"].back(), 1500.0);
@@ -115,8 +116,9 @@ TEST_F(Nonlinear, SweepAlongASceneNumberIsTheSteadyMotionOfEachScene) {
 }
 
 TEST_F(Nonlinear, SweepWritesItsBranchesAndDrawsThem) {
-  const CommandResult result = hb("sweep " + scene("six_link") +
-                                  " --rpm 600:700:50 --modes 1 --only steady,stability --theory nonlinear --out answer");
+  const CommandResult result =
+      hb("sweep " + scene("six_link") +
+         " --rpm 600:700:50 --modes 1 --only steady,stability --theory nonlinear --out answer");
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.out.find("Motion without linearisation"), std::string::npos);
   const std::string table = read(folder_ / "answer/branches_AB.csv");
@@ -145,7 +147,8 @@ TEST_F(Nonlinear, MotionsOfTwoTurnsAreThoseOfTheIntegration) {
   EXPECT_EQ(found["agrees"], true) << found;
   EXPECT_LE(found["rods"]["AB"]["q_difference"], 1e-6);
   EXPECT_EQ(found["system"]["shooting"]["verdict"], "stable");
-  const Json steady = document("steady " + scene("six_link") + " --rpm 1585 --modes 1 --period 2 --only steady --tol 1e-7");
+  const Json steady =
+      document("steady " + scene("six_link") + " --rpm 1585 --modes 1 --period 2 --only steady --tol 1e-7");
   // Harmonics of half the crank's speed.
   const Json& fourier = steady["rods"]["AB"]["q"]["fourier"][0];
   EXPECT_GT(std::hypot(double(fourier[1][0]), double(fourier[1][1])), 1e-3);
@@ -171,16 +174,20 @@ TEST_F(Nonlinear, SweepFollowsTheDoubledBranch) {
 // The range begins beyond the fold below, so that neither of its ends leads there.
 TEST_F(Nonlinear, SweepStartsFromAMotionThatSteadyWrote) {
   ASSERT_EQ(hb("steady " + scene("six_link") +
-               " --rpm 1490 --modes 1 --only steady --theory nonlinear --out lower --no-plots").status, 0);
+               " --rpm 1490 --modes 1 --only steady --theory nonlinear --out lower --no-plots")
+                .status,
+            0);
   const std::string range = " --rpm 1488:1492:2 --modes 1 --only steady";
   const Json without = document("sweep " + scene("six_link") + range),
              with = document("sweep " + scene("six_link") + range + " --start lower/steady.json");
   EXPECT_EQ(with["branches"].size(), without["branches"].size());  // the branch from below passes it already
   expect_refused("sweep " + scene("six_link") + range + " --start lower/steady.json", "with the linear theory");
-  expect_refused("sweep " + scene("six_link") + " --rpm 600:700:50 --modes 1 --theory nonlinear --start lower/steady.json",
-                 "600 to 700");
-  expect_refused("sweep " + scene("six_link") + " --rpm 1488:1492:2 --modes 2 --theory nonlinear --start lower/steady.json",
-                 "2 asked for");
+  expect_refused(
+      "sweep " + scene("six_link") + " --rpm 600:700:50 --modes 1 --theory nonlinear --start lower/steady.json",
+      "600 to 700");
+  expect_refused(
+      "sweep " + scene("six_link") + " --rpm 1488:1492:2 --modes 2 --theory nonlinear --start lower/steady.json",
+      "2 asked for");
 }
 
 TEST_F(Nonlinear, TimeLimitEndsWithWhatIsThere) {
@@ -203,8 +210,9 @@ TEST_F(Nonlinear, BenchComparesWithIntegration) {
 }
 
 TEST_F(Nonlinear, WhatTheTheoryCannotDoIsRefusedInWords) {
-  expect_refused("map " + scene("mathieu") + " --x omega=1:2:4 --y hill.stiffness.1.cos.0.0=0.1:0.5:4 --theory nonlinear",
-                 "allowed: linear");
+  expect_refused(
+      "map " + scene("mathieu") + " --x omega=1:2:4 --y hill.stiffness.1.cos.0.0=0.1:0.5:4 --theory nonlinear",
+      "allowed: linear");
   expect_refused("tune " + scene("six_link") + " --minimise mass --vary AB.J=40:50 --rpm 300 --theory nonlinear",
                  "allowed: linear");
   expect_refused("sweep " + scene("mathieu") + " --omega 1:2:0.5 --theory nonlinear", "the system is linear");

@@ -5,10 +5,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/run_command.hpp"
-#include "tools/command/command.hpp"
 #include "hb/analysis/tune/tune_design.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
+#include "tests/support/run_command.hpp"
+#include "tools/command/command.hpp"
 #include "tools/output/tune_output.hpp"
 
 namespace {

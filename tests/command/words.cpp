@@ -22,7 +22,8 @@ class Words : public CommandTest {
   static std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 };
 
-void expect(const std::string& text, const std::vector<const char*>& parts, const std::vector<const char*>& without = {}) {
+void expect(const std::string& text, const std::vector<const char*>& parts,
+            const std::vector<const char*>& without = {}) {
   for (const char* part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   for (const char* part : without) EXPECT_EQ(text.find(part), std::string::npos) << part << "\n" << text;
 }
@@ -31,7 +32,8 @@ void expect(const std::string& text, const std::vector<const char*>& parts, cons
 TEST_F(Words, PeriodDoublingNamesThePeriodAndTheStrongestLines) {
   const std::string text = said("steady " + scene("six_link") + " --rpm 3000 --modes 2");
   expect(text,
-         {"repeating after two turns of the crank (period doubling), strongest at 25, 75, 125 Hz = 1/2, 3/2, 5/2 of the speed"},
+         {"repeating after two turns of the crank (period doubling), strongest at 25, 75, 125 Hz = 1/2, 3/2, 5/2 of "
+          "the speed"},
          {"at half the crank's speed"});
 }
 
@@ -87,7 +89,9 @@ TEST_F(Words, TheVerdictIsTheFirstLineOfEveryTable) {
   const std::string sweep = said("sweep " + scene("six_link") + " --rpm 1500:1900:100 --modes 2 --only stability");
   EXPECT_NE(first_line(sweep).find("UNSTABLE because of AB at 168"), std::string::npos) << sweep;
   const std::string map = said("map " + scene("mathieu") + " --x omega=1.5:2.6:8 --y hill.stiffness.1.scale=0.5:1:3");
-  EXPECT_TRUE(first_line(map).starts_with("Forced Mathieu equation: UNSTABLE at ") && first_line(map).ends_with(" % of the points")) << map;
+  EXPECT_TRUE(first_line(map).starts_with("Forced Mathieu equation: UNSTABLE at ") &&
+              first_line(map).ends_with(" % of the points"))
+      << map;
   const std::string steady = said("steady " + scene("mathieu") + " --omega 1");
   EXPECT_EQ(first_line(steady), "Forced Mathieu equation, omega = 1 rad/s: stable (system)");
 }
@@ -97,7 +101,8 @@ TEST_F(Words, ASystemOfEquationsHasNoCrank) {
   for (const char* arguments : {"steady ", "steady --multipliers ", "sweep --omega 1:2.2:0.1 "}) {
     const std::string command = std::string(arguments).substr(0, std::string(arguments).find(' '));
     const std::string flags = std::string(arguments).substr(command.size());
-    const std::string text = said(command + " " + scene("mathieu") + flags + (command == "steady" ? " --omega 2.1" : ""));
+    const std::string text =
+        said(command + " " + scene("mathieu") + flags + (command == "steady" ? " --omega 2.1" : ""));
     expect(text, {"rad/s"}, {"crank", "turn", " mm", " Hz", "rpm", "machine"});
   }
 }
@@ -106,7 +111,8 @@ TEST_F(Words, ASystemOfEquationsHasNoCrank) {
 TEST_F(Words, TheLastPointOfASweepIsInItsTableWithUnits) {
   const std::string text = said("sweep " + scene("slider_crank") + " --rpm 500:4000:100 --modes 1");
   expect(text, {"\n            4000", "theory error", " rpm", "growth [1/s]"});
-  const std::string peaks = said("sweep " + scene("six_link") + " --rpm 1000:1200:20 --rods CD --only steady,stability");
+  const std::string peaks =
+      said("sweep " + scene("six_link") + " --rpm 1000:1200:20 --rods CD --only steady,stability");
   expect(peaks, {"1095.6", " mm, mode 1 at 90.", " Hz = 5 Omega"}, {"per turn of the crank"});
 }
 
@@ -114,7 +120,8 @@ TEST_F(Words, ASweepSaysHowFarTheNextBoundaryIs) {
   const Json found = Json::parse(said("sweep " + scene("mathieu") + " --omega 1.5:2.6:0.1 --json"))["rods"]["system"];
   EXPECT_NEAR(found["distance_to_boundary"][0].get<double>(), 2.0325246720 - 1.5, 1e-9);
   expect(said("sweep " + scene("mathieu") + " --omega 1.5:2.6:0.1"), {"to boundary"});
-  expect(said("sweep " + scene("slider_crank") + " --rpm 500:900:100 --modes 1"), {"stable at all 5 points"}, {"to boundary"});
+  expect(said("sweep " + scene("slider_crank") + " --rpm 500:900:100 --modes 1"), {"stable at all 5 points"},
+         {"to boundary"});
 }
 
 // Good answers ended with status 3 because of a tolerance that nobody had asked for.
@@ -166,7 +173,8 @@ TEST_F(Words, TheTimeLimitIsForTheWholeCommandAndGivesWhatIsThere) {
 
 // With --out what is finished is kept for --resume, and the answer so far is in its folder.
 TEST_F(Words, AfterTheTimeLimitResumeGoesOn) {
-  const std::string arguments = "sweep " + scene("six_link") + " --rpm 500:900:0.05 --only steady --modes 3 --no-plots --out ";
+  const std::string arguments =
+      "sweep " + scene("six_link") + " --rpm 500:900:0.05 --only steady --modes 3 --no-plots --out ";
   ASSERT_EQ(hb(arguments + "whole").status, 0);
   const CommandResult cut = hb(arguments + "parts --time-limit 1");
   ASSERT_EQ(cut.status, 3) << cut.err;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "tests/support/dense_harmonic_balance.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "tests/support/dense_harmonic_balance.hpp"
 #include "tests/support/random_hill_system.hpp"
 
 namespace hb {

@@ -1,6 +1,4 @@
 // Unstable bands, resonance peaks and tracked modes against closed forms and root searches of the test's own.
-#include "hb/engine/boundaries/interval_search.hpp"
-#include "hb/engine/boundaries/mode_tracks.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 
 #include <gtest/gtest.h>
@@ -8,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/mode_tracks.hpp"
 #include "hb/engine/boundaries/part.hpp"
 #include "hb/engine/steady/response_peak.hpp"
 #include "hb/engine/steady/steady_state.hpp"
@@ -163,9 +163,9 @@ TEST(Sweep, BandsDoNotDependOnWhereTheRangeBeginsNorOnTheStep) {
       cplx(0.9857699107816944, 0.007156608197201);
   system.stiffness[0].c.col(1) /= 2;
   // By a grid of 0.0005 and bisection.
-  const std::vector<std::array<double, 2>> known = {
-      {1.1529, 1.1537}, {1.2270, 1.2285}, {1.3649, 1.3710}, {1.5432, 1.5465}, {1.8365, 1.8453},
-      {2.3040, 2.3337}, {2.6962, 2.7431}, {3.5601, 3.7988}, {4.4534, 4.8742}};
+  const std::vector<std::array<double, 2>> known = {{1.1529, 1.1537}, {1.2270, 1.2285}, {1.3649, 1.3710},
+                                                    {1.5432, 1.5465}, {1.8365, 1.8453}, {2.3040, 2.3337},
+                                                    {2.6962, 2.7431}, {3.5601, 3.7988}, {4.4534, 4.8742}};
   for (const double from : {0.35, 1.0, 1.1})
     for (const int intervals : {5, 12, 77, 400}) {
       const Sweep found = sweep(system, from, 8, intervals);

@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "tests/support/dense_harmonic_balance.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
+#include "tests/support/dense_harmonic_balance.hpp"
 
 namespace hb {
 namespace {

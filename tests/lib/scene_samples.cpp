@@ -52,7 +52,8 @@ class SampleFiles : public testing::Test {
     return "";
   }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("hb_sample_files_" + std::to_string(getpid()));
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("hb_sample_files_" + std::to_string(getpid()));
 };
 
 constexpr double eps = 2.220446049250313e-16;

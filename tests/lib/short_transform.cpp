@@ -47,7 +47,8 @@ TEST(ShortTransform, CoefficientsAreTheSumsThatDefineThem) {
         re += f[j] * std::cos(angle);
         im -= f[j] * std::sin(angle);
       }
-      EXPECT_LE(std::abs(c[k] - std::complex<double>(static_cast<double>(re / N), static_cast<double>(im / N))), allowed)
+      EXPECT_LE(std::abs(c[k] - std::complex<double>(static_cast<double>(re / N), static_cast<double>(im / N))),
+                allowed)
           << N << " " << k;
     }
     EXPECT_EQ(c[0].imag(), 0);

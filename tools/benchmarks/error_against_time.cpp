@@ -10,9 +10,9 @@
 
 #include "cases.hpp"
 #include "dense_hill.hpp"
-#include "hb/engine/time/shooting.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "hb/engine/time/shooting.hpp"
 #include "lib/time_domain.hpp"
 #include "timing.hpp"
 

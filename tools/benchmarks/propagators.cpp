@@ -12,9 +12,9 @@
 
 #include "cases.hpp"
 #include "hb/engine/exponents/radau_turn.hpp"
-#include "hb/engine/system/scaled_system.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/exponents/turn_exponents.hpp"
+#include "hb/engine/system/scaled_system.hpp"
 #include "timing.hpp"
 
 namespace hb::benchmarks {

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "dense_hill.hpp"
-#include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/boundaries/stability_map.hpp"
+#include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "synthetic.hpp"
 #include "timing.hpp"

@@ -1,6 +1,6 @@
-// Both rods of the six-link mechanism at one speed, five Ritz terms each: steady state, stability, a dense Hill solve of
-// the same system, and the theory error. Counters beside the time: the true error of the answer, the error bound it came with, and
-// the highest harmonic used.
+// Both rods of the six-link mechanism at one speed, five Ritz terms each: steady state, stability, a dense Hill solve
+// of the same system, and the theory error. Counters beside the time: the true error of the answer, the error bound it
+// came with, and the highest harmonic used.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -134,8 +134,12 @@ std::uint64_t map_key(const ScenePlane& plane, const AxisRange& x, const AxisRan
     key.add(range->axis.path);
     for (const double value : range->values) key.add(value);
   }
-  key.add(settings.tolerance).add(settings.boundary_tolerance).add(settings.boundaries)
-      .add(settings.only.growth).add(settings.only.verdict).add(static_cast<double>(settings.stability_method));
+  key.add(settings.tolerance)
+      .add(settings.boundary_tolerance)
+      .add(settings.boundaries)
+      .add(settings.only.growth)
+      .add(settings.only.verdict)
+      .add(static_cast<double>(settings.stability_method));
   key.add(factors ? factors->low : -1).add(factors ? factors->high : -1);
   for (const double s : {0.0, 0.37, 1.0}) {
     for (const double t : {0.0, 0.61, 1.0}) {
@@ -219,8 +223,7 @@ void AskedMap::compute_all(Work& work) {
 }
 
 MapDocument AskedMap::document() const {
-  return {result_,           plane_->scene(),     plane_options_.num_modes,
-          search_.search.tolerance, search_.boundaries, complete_};
+  return {result_, plane_->scene(), plane_options_.num_modes, search_.search.tolerance, search_.boundaries, complete_};
 }
 
 std::string AskedMap::evidence() const { return plane_->evidence(); }

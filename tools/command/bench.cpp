@@ -12,20 +12,20 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "lib/rod/time_domain_rod.hpp"
 #include "hb/analysis/bench_rod.hpp"
 #include "hb/analysis/nonlinear/nonlinear_bench.hpp"
+#include "lib/rod/time_domain_rod.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/theory_flags.hpp"
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
-#include "tools/work/progress.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/gnuplot.hpp"
 #include "tools/work/interrupts.hpp"
+#include "tools/work/progress.hpp"
 
 namespace hb::tools {
 namespace {
@@ -48,7 +48,8 @@ std::string bench_text(const SceneModel& model, double speed, const std::vector<
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   fmt::format_to(out, "{}, {}: error against run time of the periodic state{}\n", scene_name(model.scene),
-                 speed_text(speed, model.scene), nonlinear ? ", motion without linearisation of all rods together" : "");
+                 speed_text(speed, model.scene),
+                 nonlinear ? ", motion without linearisation of all rods together" : "");
   fmt::format_to(out,
                  "Geometry, once for all speeds (harmonic balance only): {:.3g} s. Integration evaluates the "
                  "equations from the {} at every step.\n",
@@ -189,8 +190,8 @@ int run_bench(const BenchFlags& flags) {
   const auto num_rods = static_cast<std::size_t>(std::ranges::count_if(model.rods, &RodModel::reported));
   std::optional<Progress> progress(std::in_place, "cases", nonlinear ? motion_bench_cases() : num_rods * bench_cases());
   const BenchOptions with{options.steady_method, time_limit, [&] { progress->advance(); }};
-  const std::vector<RodBench> benches = nonlinear ? std::vector{bench_motion(model, speed, options, with, motion)}
-                                                  : bench_rods(model, speed, with);
+  const std::vector<RodBench> benches =
+      nonlinear ? std::vector{bench_motion(model, speed, options, with, motion)} : bench_rods(model, speed, with);
   progress.reset();
   const Json document = bench_json(model, speed, benches, geometry, nonlinear);
   const bool complete = std::none_of(benches.begin(), benches.end(), [](const RodBench& b) { return b.rows.empty(); });

@@ -12,22 +12,22 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "tools/output/check_json.hpp"
-#include "tools/pictures/check_pictures.hpp"
-#include "tools/output/check_report.hpp"
+#include "hb/analysis/cross_check.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/theory_flags.hpp"
-#include "tools/output/nonlinear_check_output.hpp"
-#include "hb/analysis/cross_check.hpp"
+#include "tools/output/check_json.hpp"
+#include "tools/output/check_report.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/nonlinear_check_output.hpp"
 #include "tools/output/output_folder.hpp"
+#include "tools/output/wording.hpp"
+#include "tools/pictures/check_pictures.hpp"
+#include "tools/work/interrupts.hpp"
 #include "tools/work/parallel_for.hpp"
 #include "tools/work/shared_work.hpp"
-#include "tools/output/wording.hpp"
-#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -63,7 +63,8 @@ std::vector<double> speeds_of(const SpeedRange& range, const Units& units) {
   constexpr std::size_t most = 100000;
   std::vector<double> speeds = {range.speeds.from};
   if (range.speeds.from < range.speeds.to) speeds = speed_values(range);
-  if (speeds.size() > most) throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {}", speeds.size(), most));
+  if (speeds.size() > most)
+    throw UsageError(fmt::format("--rpm: found {} speeds, allowed: up to {}", speeds.size(), most));
   if (range.in_rpm)
     for (double& speed : speeds) speed = speed_from_rpm(speed, units);
   return speeds;

@@ -13,9 +13,9 @@
 
 #include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
-#include "tools/report/report_page.hpp"
 #include "tools/command/parameter_range.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/report/report_page.hpp"
 #include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
@@ -103,7 +103,8 @@ Speeds speeds_flag(const std::string& flag, const std::string& text, bool single
   if (parts.size() == 3 && single) refuse(flag, text, "one speed, " + allowed);
   if (!single && parts.size() == 2) allowed += "; a step is missing: " + text + ":10 or " + text + ":x50";
   if (const std::size_t dash = text.find('-', 1); !single && parts.size() == 1 && dash != std::string::npos &&
-                                                  parse<double>(text.substr(0, dash)) && parse<double>(text.substr(dash + 1)))
+                                                  parse<double>(text.substr(0, dash)) &&
+                                                  parse<double>(text.substr(dash + 1)))
     allowed += fmt::format("; a range is {}:{}:10", text.substr(0, dash), text.substr(dash + 1));
   if (parts.size() == 1) allowed += number_hint(text);
   if (parts.size() != 1 && parts.size() != 3) refuse(flag, text, allowed);
@@ -241,8 +242,7 @@ std::string in_flags(const RequestError& error) {
   static const std::map<std::string, std::string> flag_of = {
       {"rods", "--rods"},         {"modes", "--modes"},       {"tolerance", "--tol"}, {"rpm", "--rpm"},
       {"omega", "--omega"},       {"only", "--only"},         {"vary", "--vary"},     {"keep", "--keep"},
-      {"minimise", "--minimise"}, {"maximise", "--maximise"}, {"height", "--height"},
-      {"theory", "--theory"}};
+      {"minimise", "--minimise"}, {"maximise", "--maximise"}, {"height", "--height"}, {"theory", "--theory"}};
   const auto flag = flag_of.find(error.field);
   std::string text = flag == flag_of.end() ? error.field : flag->second;
   if (!text.empty()) text += ": ";

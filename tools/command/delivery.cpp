@@ -56,7 +56,8 @@ int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& del
       figures = write_stage(*folder, pictures, std::move(figures), delivery.write_more);
     if (!figures.empty()) drawn = draw_figures(figures, *folder);
     if (delivery.page) {
-      const std::string page = delivery.page(drawn ? page_pictures(figures, *folder) : std::vector<PageText::Picture>());
+      const std::string page =
+          delivery.page(drawn ? page_pictures(figures, *folder) : std::vector<PageText::Picture>());
       folder->write("report.html", page);
       folder->commit();
     }

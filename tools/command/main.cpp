@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/linkage_analysis.hpp"
 #include "lib/scene/scene.hpp"
 #include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
@@ -26,7 +27,6 @@
 #include "tools/output/printable.hpp"
 #include "tools/output/standard_output.hpp"
 #include "tools/work/interrupts.hpp"
-#include "hb/analysis/linkage_analysis.hpp"
 #include "tools/work/ranks.hpp"
 #ifdef HB_WITH_MPI
 #include "tools/work/mpi_ranks.hpp"

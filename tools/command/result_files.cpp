@@ -82,7 +82,7 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
 }
 
 std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
-                                                const MapDocument* map) {
+                                               const MapDocument* map) {
   return page_pictures([&](OutputFolder& folder) {
     std::vector<Figure> figures = sweep_files(scene, result, folder);
     if (scene.first().linkage() != nullptr) {

@@ -21,6 +21,6 @@ namespace hb::tools {
 
 // Pictures of a report for readers without script; `map` may be null.
 [[nodiscard]] std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
-                                                              const MapDocument* map);
+                                                             const MapDocument* map);
 
 }  // namespace hb::tools

@@ -12,12 +12,12 @@
 #include "tools/command/delivery.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/output/csv_output.hpp"
-#include "tools/pictures/figures.hpp"
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/printable.hpp"
 #include "tools/output/scene_report.hpp"
+#include "tools/pictures/figures.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 namespace {

@@ -97,9 +97,8 @@ int run_nonlinear(const SteadyFlags& flags) {
     place.write("steady.json", json_file_text(document));
     return result.turns == 1 ? write_tables(model, as_speed_result(result), place) : std::vector<Figure>();
   };
-  const int status =
-      deliver(folder ? &*folder : nullptr, out.plots,
-              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
+  const int status = deliver(folder ? &*folder : nullptr, out.plots,
+                             ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
   return status;
 }
@@ -132,8 +131,8 @@ int run_steady(const SteadyFlags& flags) {
       data.add_speed({shared_model, result, ""}, options);
       return data.page(page_text(origin, std::move(pictures)));
     };
-  const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+  const int status =
+      deliver(folder ? &*folder : nullptr, out.plots, result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
   if (out.stats && !out.json) {
     fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
   }

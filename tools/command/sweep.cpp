@@ -6,26 +6,26 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "hb/analysis/sweep_analysis.hpp"
+#include "lib/scene/scene_reader.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/sweep_axis.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/motion_input.hpp"
-#include "lib/scene/scene_reader.hpp"
 #include "tools/output/output_folder.hpp"
-#include "tools/command/sweep_axis.hpp"
+#include "tools/output/sweep_output.hpp"
+#include "tools/output/table_output.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/work/interrupts.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
-#include "hb/analysis/sweep_analysis.hpp"
-#include "tools/output/sweep_output.hpp"
 #include "tools/work/sweep_key.hpp"
-#include "tools/output/table_output.hpp"
-#include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
 namespace {
@@ -50,8 +50,8 @@ int run_sweep_command(const SweepFlags& flags) {
   branches_asked.turns = turns_of(flags.theory);
   branches_asked.stop = stop_of();
   if (!nonlinear && !flags.start.empty())
-    throw UsageError(fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear",
-                                 flags.start.front()));
+    throw UsageError(
+        fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear", flags.start.front()));
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -93,8 +93,8 @@ int run_sweep_command(const SweepFlags& flags) {
       return data.page(page_text(origin, std::move(pictures)));
     };
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
-  const int status = deliver(folder ? &*folder : nullptr, out.plots,
-                             ended_status(reached ? exit_ok : exit_not_reached), delivery);
+  const int status =
+      deliver(folder ? &*folder : nullptr, out.plots, ended_status(reached ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
   if (out.stats && !out.json && branches) fmt::print(stderr, "{}", stages_table(branches->stages));
   return status;
@@ -111,11 +111,14 @@ void add_sweep_command(CLI::App& app, int& status) {
   allow_growth_alone(*command, *flags);
   command->add_flag("--no-search", flags->no_search, "the points alone: no bands, boundaries or peaks between them");
   add_html_flag(*command, *flags);
-  command->add_option("--x", flags->x, "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
+  command
+      ->add_option("--x", flags->x,
+                   "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
       ->type_name("PATH=A:B:STEP|A:B:xN");
   add_theory_flags(*command, flags->theory);
-  command->add_option("--start", flags->start,
-                      "with --theory nonlinear: follow branches from this motion as well, a steady.json of hb steady")
+  command
+      ->add_option("--start", flags->start,
+                   "with --theory nonlinear: follow branches from this motion as well, a steady.json of hb steady")
       ->type_name("FILE");
   command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
   command->add_flag("--restart", flags->restart, "throw away what an interrupted run into the same --out left");

@@ -72,15 +72,15 @@ Json branch_json(const SweepScene& scene, const NonlinearSweep& sweep, const Non
   json["asked"] = over(points, [](const NonlinearPoint& p) { return Json(p.asked); });
   for (std::size_t r = 0; r < sweep.rods.size(); ++r)
     if (sweep.reported[r])
-      json["rods"][sweep.rods[r]]["max_abs"] = over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
+      json["rods"][sweep.rods[r]]["max_abs"] =
+          over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
   json["error_bound"] = over(points, [](const NonlinearPoint& p) { return number(p.error_bound); });
   json["growth_rate"] =
       over(points, [](const NonlinearPoint& p) { return p.stability ? number(p.stability->growth_rate) : Json(); });
   json["growth_error"] =
       over(points, [](const NonlinearPoint& p) { return p.stability ? number(p.stability->growth_error) : Json(); });
-  json["verdict"] = over(points, [](const NonlinearPoint& p) {
-    return p.stability ? Json(to_string(p.stability->verdict)) : Json();
-  });
+  json["verdict"] = over(
+      points, [](const NonlinearPoint& p) { return p.stability ? Json(to_string(p.stability->verdict)) : Json(); });
   json["end"] = to_string(branch.end);
   if (!branch.why.empty()) json["why"] = branch.why;
   return json;
@@ -242,8 +242,7 @@ CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::
   file.name = file_name("branches_" + sweep.rods[r]) + ".csv";
   file.comment = {scene_name(scene.scene()) + ": " + sweep.rods[r] + " along " + scene.axis().path +
                       ", motion without linearisation",
-                  "points of each branch along its arc; growth rate and verdict of all rods together",
-                  verdict_numbers};
+                  "points of each branch along its arc; growth rate and verdict of all rods together", verdict_numbers};
   file.columns = {"branch", "turns", axis_label(scene), "asked for"};
   for (int i = 1; i <= modes; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));
   file.columns.insert(file.columns.end(), {"error bound", "growth rate" + bracketed(units.rate),
@@ -273,9 +272,10 @@ CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::
 CsvFile bifurcations_csv(const SweepScene& scene, const NonlinearSweep& sweep) {
   CsvFile file;
   file.name = "bifurcations.csv";
-  file.comment = {scene_name(scene.scene()) + ": folds, bifurcations and jumps along " + scene.axis().path,
-                  "kind: 0 fold, 1 branch point (+1), 2 period doubling (-1), 3 Neimark-Sacker (complex pair); jump: 1 a "
-                  "stable motion ends there upward, -1 downward, 0 no jump"};
+  file.comment = {
+      scene_name(scene.scene()) + ": folds, bifurcations and jumps along " + scene.axis().path,
+      "kind: 0 fold, 1 branch point (+1), 2 period doubling (-1), 3 Neimark-Sacker (complex pair); jump: 1 a "
+      "stable motion ends there upward, -1 downward, 0 no jump"};
   file.columns = {"branch", axis_label(scene), "error", "kind", "jump"};
   std::vector<NonlinearEvent> all = sweep.folds;
   all.insert(all.end(), sweep.bifurcations.begin(), sweep.bifurcations.end());

@@ -50,7 +50,8 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, bool sta
         integration_tolerance(settings), shooting.q_error, to_string(shooting.integrator), shooting.steps,
         shooting.num_segments, shooting.num_segments == 1 ? "" : "s", shooting.seconds);
   if (rod.theory_error)
-    add(text, "  linear theory            off by {:.2g} of the largest |q|: what both paths leave out\n", *rod.theory_error);
+    add(text, "  linear theory            off by {:.2g} of the largest |q|: what both paths leave out\n",
+        *rod.theory_error);
   if (stats)
     add(text, "  work                     {} evaluations, predicted {:.3g} s; {} {:.1e}\n", shooting.evaluations,
         shooting.predicted_seconds,

@@ -163,8 +163,9 @@ Counts counts(const std::vector<MapPoint>& points) {
 std::vector<std::string> map_notes(const MapDocument& document) {
   std::vector<std::string> notes;
   if (!document.complete)
-    notes.push_back("ended before the answer was complete: points without an answer were not computed, and boundaries may "
-                    "be missing");
+    notes.push_back(
+        "ended before the answer was complete: points without an answer were not computed, and boundaries may "
+        "be missing");
   const std::size_t missed = boundary_points_not_reached(document.result);
   if (missed == 0) return notes;
   const MapResult& r = document.result;
@@ -199,7 +200,8 @@ std::string map_text(const MapDocument& document) {
   json.add("modes", document.num_modes);
   if (document.boundaries) json.add("boundary_tolerance", document.tolerance);
   add_grids(json, first, r.worst);
-  json.add_grid("interpolated", first, r.worst, [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
+  json.add_grid("interpolated", first, r.worst,
+                [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
   json.add_grid("growth_per_turn", first, r.worst, growth_per_turn);
   if (document.boundaries) json.add("boundaries", curves_json(r, r.boundaries));
   Members rods;
@@ -224,8 +226,12 @@ std::string map_text(const MapDocument& document) {
   for (const ResonanceLine& line : r.lines) lines.push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
   json.add("resonance_lines", std::move(lines));
   if (document.boundaries) json.add("boundary_points_not_reached", boundary_points_not_reached(r));
-  json.add("counts", {{"stable", n.stable},       {"bounded", n.bounded}, {"unstable", n.unstable},
-                      {"undecided", n.undecided}, {"missing", n.missing}, {"interpolated", n.interpolated}});
+  json.add("counts", {{"stable", n.stable},
+                      {"bounded", n.bounded},
+                      {"unstable", n.unstable},
+                      {"undecided", n.undecided},
+                      {"missing", n.missing},
+                      {"interpolated", n.interpolated}});
   Json none = Json::array();
   for (const MissingPoints& m : r.missing)
     none.push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
@@ -334,8 +340,11 @@ std::string map_verdict(const MapDocument& document) {
                        std::holds_alternative<Linkage>(document.scene.model)
                            ? fmt::format(" because of {}", fmt::join(because, ", "))
                            : "");
-  if (n.undecided > 0) return fmt::format("undecided at {:.3g} % of the points", 100 * static_cast<double>(n.undecided) / all);
-  return n.bounded == 0 ? "stable at all points" : n.stable == 0 ? "bounded at all points" : "stable or bounded at all points";
+  if (n.undecided > 0)
+    return fmt::format("undecided at {:.3g} % of the points", 100 * static_cast<double>(n.undecided) / all);
+  return n.bounded == 0  ? "stable at all points"
+         : n.stable == 0 ? "bounded at all points"
+                         : "stable or bounded at all points";
 }
 
 std::string map_summary(const MapDocument& document) {
@@ -368,10 +377,10 @@ std::string map_summary(const MapDocument& document) {
   }
   if (fastest != nullptr) {
     const auto place = static_cast<std::size_t>(fastest - r.worst.data());
-    text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {} = {:.6g}, {} = {:.6g}\n",
-                        fastest->growth_rate, document.scene.units.time, growth_per_turn(*fastest),
-                        linkage ? "turn" : "period", r.x_axis.path,
-                        r.x()[place % r.x().size()], r.y_axis.path, r.y()[place / r.x().size()]);
+    text +=
+        fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {} = {:.6g}, {} = {:.6g}\n", fastest->growth_rate,
+                    document.scene.units.time, growth_per_turn(*fastest), linkage ? "turn" : "period", r.x_axis.path,
+                    r.x()[place % r.x().size()], r.y_axis.path, r.y()[place / r.x().size()]);
   }
   for (const MissingPoints& m : r.missing) {
     text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,

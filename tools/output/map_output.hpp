@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/output/csv_output.hpp"
 #include "hb/analysis/map_result.hpp"
+#include "tools/output/csv_output.hpp"
 
 namespace hb::tools {
 
@@ -25,8 +25,8 @@ struct MapDocument {
 [[nodiscard]] std::string map_text(const MapDocument& document);
 [[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
 
-// x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1), then
-// growth of each rod; NaN where there is no system.
+// x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1),
+// then growth of each rod; NaN where there is no system.
 [[nodiscard]] CsvFile map_grid_csv(const MapDocument& document);
 // Curve, rod (from 1), kind (1, -1, 0 complex), x, y, error; a row of NaN between curves.
 [[nodiscard]] CsvFile map_boundary_csv(const MapDocument& document, const std::vector<RodCurve>& curves,

@@ -168,8 +168,8 @@ std::string nonlinear_check_report(const SceneModel& model, const std::vector<No
   for (const NonlinearCheck& check : checks) {
     add_check(text, model, check, settings);
     if (check.opposite_verdicts())
-      add(text, "DISAGREES: harmonic balance says {}, time integration {}\n", to_string(check.series.stability->verdict),
-          to_string(check.shooting.verdict));
+      add(text, "DISAGREES: harmonic balance says {}, time integration {}\n",
+          to_string(check.series.stability->verdict), to_string(check.shooting.verdict));
     add(text, "\n");
     agree = agree && check.agrees();
     complete = complete && compared(check);

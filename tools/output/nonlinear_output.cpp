@@ -23,9 +23,7 @@ void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
 }
 
 // All rods have one verdict together.
-NamedVerdicts verdict_of(const NonlinearResult& result) {
-  return {{"all rods together", result.stability->verdict}};
-}
+NamedVerdicts verdict_of(const NonlinearResult& result) { return {{"all rods together", result.stability->verdict}}; }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 

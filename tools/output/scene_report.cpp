@@ -68,7 +68,8 @@ void add_shear_left_out(Text& text, const Body& link) {
     const double square = modes.stiffness[0](mode - 1) / modes.mass[0](mode - 1);
     return 100 * (1 - std::sqrt(square * (rotary * k2 + mu_EJ)) / k2);
   };
-  add(text, "           shear left out: it would lower the frequency of mode 1 by about {:.2g} %, of mode {} by {:.2g} %\n",
+  add(text,
+      "           shear left out: it would lower the frequency of mode 1 by about {:.2g} %, of mode {} by {:.2g} %\n",
       percent(1), last, percent(last));
 }
 

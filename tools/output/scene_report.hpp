@@ -9,8 +9,8 @@
 
 namespace hb::tools {
 
-// Natural frequencies at rest without axial load, i = 1..count, rad per unit time: omega_i = (i pi/l)^2 sqrt(EJ/mu), and
-// with shear those of Timoshenko's rod.
+// Natural frequencies at rest without axial load, i = 1..count, rad per unit time: omega_i = (i pi/l)^2 sqrt(EJ/mu),
+// and with shear those of Timoshenko's rod.
 [[nodiscard]] std::vector<double> natural_frequencies(const Body& link, int count);
 
 [[nodiscard]] std::string scene_table(const Scene& scene);

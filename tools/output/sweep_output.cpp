@@ -55,7 +55,8 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
     return over_points(points, [&](const SweepPoint& point) { return Json(value(point.rods[r])); });
   };
   if (result.computed.steady) {
-    json["max_abs"] = of_rod([](const RodPoint& rod) { return rod.max_abs.empty() ? Json(nullptr) : Json(rod.max_abs); });
+    json["max_abs"] =
+        of_rod([](const RodPoint& rod) { return rod.max_abs.empty() ? Json(nullptr) : Json(rod.max_abs); });
     json["error_bound"] = of_rod([](const RodPoint& rod) { return number(rod.error_bound); });
     json["resonance_distance"] = of_rod([](const RodPoint& rod) { return number(rod.resonance_distance); });
   }
@@ -81,7 +82,8 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
   return json;
 }
 
-Json ranges_json(const std::vector<SweepPoint>& points, const std::function<const TurnRange*(const SweepPoint&)>& range) {
+Json ranges_json(const std::vector<SweepPoint>& points,
+                 const std::function<const TurnRange*(const SweepPoint&)>& range) {
   Json json;
   for (const bool largest : {false, true}) {
     json[largest ? "max" : "min"] = over_points(points, [&](const SweepPoint& point) {
@@ -98,8 +100,8 @@ void add_forces(Json& json, const SweepResult& result) {
     const std::string& name = result.joint_components[c];
     const std::size_t space = name.rfind(' ');
     const std::string joint = name.substr(0, space), component = name.substr(space + 1);
-    joints[joint][component] = ranges_json(
-        result.points, [&](const SweepPoint& p) { return c < p.joints.size() ? &p.joints[c] : nullptr; });
+    joints[joint][component] =
+        ranges_json(result.points, [&](const SweepPoint& p) { return c < p.joints.size() ? &p.joints[c] : nullptr; });
     joints[joint][component + "_rigid"] = ranges_json(
         result.points, [&](const SweepPoint& p) { return c < p.joints_rigid.size() ? &p.joints_rigid[c] : nullptr; });
   }
@@ -151,9 +153,12 @@ std::string about(const SweepScene& scene, const std::string& what) {
 
 std::string axis_label(const SweepScene& scene) {
   switch (scene.axis().kind) {
-    case Axis::Kind::rpm: return "crank speed [rpm]";
-    case Axis::Kind::omega: return "omega [rad/" + scene.scene().units.time + "]";
-    case Axis::Kind::parameter: break;
+    case Axis::Kind::rpm:
+      return "crank speed [rpm]";
+    case Axis::Kind::omega:
+      return "omega [rad/" + scene.scene().units.time + "]";
+    case Axis::Kind::parameter:
+      break;
   }
   return scene.axis().path + bracketed(path_unit(scene.axis().path, scene.scene().units));
 }
@@ -230,7 +235,8 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   if (result.computed.reactions) add_forces(json, result);
   Json problems = Json::array();
   for (std::size_t k = 0; k < points.size(); ++k)
-    if (!points[k].problem.empty()) problems.push_back({{"index", k}, {"x", points[k].x}, {"reason", points[k].problem}});
+    if (!points[k].problem.empty())
+      problems.push_back({{"index", k}, {"x", points[k].x}, {"reason", points[k].problem}});
   if (!problems.empty()) json["problems"] = std::move(problems);
   if (!result.refined.empty()) {
     Json& refined = json["refined"] = Json::object();
@@ -289,13 +295,14 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   if (has_theory(scene, result)) {
     file.columns.push_back("theory error");
     file.columns.push_back("beyond the linear theory");
-    file.comment.push_back(fmt::format("theory error: first nonlinear correction of q, relative; beyond: above {} or none, "
-                                       "or beyond small deflections",
-                                       theory_error_limit));
+    file.comment.push_back(
+        fmt::format("theory error: first nonlinear correction of q, relative; beyond: above {} or none, "
+                    "or beyond small deflections",
+                    theory_error_limit));
   }
   if (only.stability) {
-    file.columns.insert(file.columns.end(), {"growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate),
-                                             "verdict"});
+    file.columns.insert(file.columns.end(),
+                        {"growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate), "verdict"});
     file.comment.push_back(std::string(verdict_numbers) + "; per mode frequency (unfolded) and growth rate");
     for (int i = 1; i <= I; ++i) {
       file.columns.push_back(fmt::format("frequency of mode {} [{}]", i, frequency.name));
@@ -317,7 +324,8 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
     if (!point.problem.empty()) continue;
     const RodPoint& here = point.rods[r];
     if (only.steady) {
-      for (std::size_t i = 0; i < here.max_abs.size(); ++i) row(column + static_cast<Eigen::Index>(i)) = here.max_abs[i];
+      for (std::size_t i = 0; i < here.max_abs.size(); ++i)
+        row(column + static_cast<Eigen::Index>(i)) = here.max_abs[i];
       column += I;
       row(column++) = here.error_bound;
     }
@@ -385,14 +393,21 @@ CsvFile critical_csv(const SweepScene& scene, const SweepResult& result) {
     rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
   file.comment = {about(scene, "local maxima of the largest |q_i| along " + scene.axis().path),
                   "rods: " + rods + "; mode and order n = omega/Omega: 0 if not known"};
-  file.columns = {"rod", axis_label(scene), "error", "i", "max |q_i|" + bracketed(units.response), "mode", "order",
-                  "frequency [" + frequency.name + "]", "damping" + bracketed(units.rate), "prominence"};
+  file.columns = {"rod",
+                  axis_label(scene),
+                  "error",
+                  "i",
+                  "max |q_i|" + bracketed(units.response),
+                  "mode",
+                  "order",
+                  "frequency [" + frequency.name + "]",
+                  "damping" + bracketed(units.rate),
+                  "prominence"};
   file.rows.resize(static_cast<Eigen::Index>(result.critical.size()), 10);
   for (std::size_t k = 0; k < result.critical.size(); ++k) {
     const CriticalPoint& p = result.critical[k];
     file.rows.row(static_cast<Eigen::Index>(k)) << static_cast<double>(p.rod + 1), p.peak.x, p.peak.error,
-        p.component + 1, p.peak.value, p.mode + 1, p.order,
-        p.frequency * frequency.factor, p.damping, p.prominence;
+        p.component + 1, p.peak.value, p.mode + 1, p.order, p.frequency * frequency.factor, p.damping, p.prominence;
   }
   return file;
 }
@@ -405,14 +420,20 @@ CsvFile bands_csv(const SweepScene& scene, const SweepResult& result) {
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
   file.comment = {about(scene, "unstable bands along " + scene.axis().path),
-                  "rods: " + rods + "; kinds of the multiplier at the ends: 1, -1, 0 a complex pair; open: the sweep ends "
-                                    "inside the band"};
-  file.columns = {"rod", axis_label(scene) + " from", "to", "open below", "open above", "kind from", "kind to",
-                  "fastest growth" + bracketed(units.rate), "at"};
+                  "rods: " + rods +
+                      "; kinds of the multiplier at the ends: 1, -1, 0 a complex pair; open: the sweep ends "
+                      "inside the band"};
+  file.columns = {"rod",        axis_label(scene) + " from",
+                  "to",         "open below",
+                  "open above", "kind from",
+                  "kind to",    "fastest growth" + bracketed(units.rate),
+                  "at"};
   std::size_t count = 0;
   for (const SweepRod& rod : result.rods) count += rod.bands.size();
   file.rows.resize(static_cast<Eigen::Index>(count), 9);
-  const auto kind = [](BoundaryKind k) { return k == BoundaryKind::plus_one ? 1 : k == BoundaryKind::minus_one ? -1 : 0; };
+  const auto kind = [](BoundaryKind k) {
+    return k == BoundaryKind::plus_one ? 1 : k == BoundaryKind::minus_one ? -1 : 0;
+  };
   Eigen::Index row = 0;
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     for (const UnstableBand& band : result.rods[r].bands) {
@@ -432,8 +453,9 @@ CsvFile not_excluded_csv(const SweepScene& scene, const SweepResult& result) {
     rods += fmt::format("{}{} {}", r == 0 ? "" : ", ", r + 1, subject(scene, result, r));
     count += result.rods[r].not_excluded.size();
   }
-  file.comment = {about(scene, "where further unstable bands or stable gaps are not excluded along " + scene.axis().path),
-                  "rods: " + rods};
+  file.comment = {
+      about(scene, "where further unstable bands or stable gaps are not excluded along " + scene.axis().path),
+      "rods: " + rods};
   file.columns = {"rod", axis_label(scene) + " from", "to"};
   file.rows.resize(static_cast<Eigen::Index>(count), 3);
   Eigen::Index row = 0;

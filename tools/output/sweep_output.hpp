@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/output/csv_output.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
+#include "tools/output/csv_output.hpp"
 
 namespace hb::tools {
 
@@ -28,9 +28,9 @@ namespace hb::tools {
 
 // Columns of sweep_rod_csv, from 1 as in gnuplot; 0: not there.
 struct SweepColumns {
-  int first_peak = 0;       // of q_1; the others follow
+  int first_peak = 0;  // of q_1; the others follow
   int deflection = 0, bending_moment = 0;
-  int beyond = 0;           // 1: beyond the linear theory; the theory error stands before it
+  int beyond = 0;  // 1: beyond the linear theory; the theory error stands before it
   int growth = 0;
   int first_frequency = 0;  // of mode 1; its growth rate stands beside, the other modes follow
 };

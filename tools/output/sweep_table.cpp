@@ -35,9 +35,12 @@ std::string axis_column(const SweepScene& scene) {
 
 std::string kind_words(BoundaryKind kind, bool linkage) {
   switch (kind) {
-    case BoundaryKind::plus_one: return linkage ? "repeating with every turn (+1)" : "repeating with every period (+1)";
-    case BoundaryKind::minus_one: return "period doubling (-1)";
-    case BoundaryKind::complex: break;
+    case BoundaryKind::plus_one:
+      return linkage ? "repeating with every turn (+1)" : "repeating with every period (+1)";
+    case BoundaryKind::minus_one:
+      return "period doubling (-1)";
+    case BoundaryKind::complex:
+      break;
   }
   return "at a frequency of its own (complex pair)";
 }
@@ -68,10 +71,12 @@ void add_point(Text& text, const SweepScene& scene, const SweepResult& result, s
   const RodPoint& here = point.rods[r];
   if (result.computed.steady) add(text, "  {:>14.6g}", here.max_abs.empty() ? nan : here.max_abs.front());
   if (result.computed.shape)
-    add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan), here.bending_moment.value_or(nan) * units.moment);
+    add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan),
+        here.bending_moment.value_or(nan) * units.moment);
   if (has_theory(scene, result))
-    add(text, "  {:>12}", (here.theory_error ? fmt::format("{:.1e}", *here.theory_error) : "no value") +
-                              (beyond_theory(here.theory_error) || beyond_limits(here) ? " !" : "  "));
+    add(text, "  {:>12}",
+        (here.theory_error ? fmt::format("{:.1e}", *here.theory_error) : "no value") +
+            (beyond_theory(here.theory_error) || beyond_limits(here) ? " !" : "  "));
   if (result.computed.stability) {
     const Stability& stability = here.stability->stability;
     add(text, "  {:>16}", growth_digits(stability));

@@ -71,16 +71,19 @@ bool is_speed(const SweepScene& scene) { return scene.axis().kind != Axis::Kind:
 
 std::string axis_unit(const SweepScene& scene) {
   switch (scene.axis().kind) {
-    case Axis::Kind::rpm: return "rpm";
-    case Axis::Kind::omega: return "rad/" + scene.scene().units.time;
-    case Axis::Kind::parameter: break;
+    case Axis::Kind::rpm:
+      return "rpm";
+    case Axis::Kind::omega:
+      return "rad/" + scene.scene().units.time;
+    case Axis::Kind::parameter:
+      break;
   }
   return path_unit(scene.axis().path, scene.scene().units);
 }
 
 const SweepPoint* refined_point(const SweepResult& result, double x) {
-  const auto found = std::find_if(result.refined.begin(), result.refined.end(),
-                                  [&](const SweepPoint& point) { return point.x == x; });
+  const auto found =
+      std::find_if(result.refined.begin(), result.refined.end(), [&](const SweepPoint& point) { return point.x == x; });
   return found != result.refined.end() && !found->rods.empty() ? &*found : nullptr;
 }
 
@@ -122,8 +125,9 @@ std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
                         more > 0 ? fmt::format(" and in {} more bands", more) : "");
   }
   if (n.undecided > 0) where += fmt::format("; undecided at {} of {} points", n.undecided, n.answers);
-  if (n.unstable + n.undecided < n.answers) where += fmt::format("; {}stable {}", n.bounded > 0 ? "bounded or " : "",
-                                                                result.searched_bands ? "elsewhere" : "at the others");
+  if (n.unstable + n.undecided < n.answers)
+    where += fmt::format("; {}stable {}", n.bounded > 0 ? "bounded or " : "",
+                         result.searched_bands ? "elsewhere" : "at the others");
   return mechanism_verdict(worst_along(result)) + where;
 }
 
@@ -143,8 +147,8 @@ std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResu
     if (places.empty()) continue;
     double width = 0;
     for (const auto& [from, to] : places) width += to - from;
-    const auto widest = std::ranges::max_element(
-        places, {}, [](const std::array<double, 2>& place) { return place[1] - place[0]; });
+    const auto widest =
+        std::ranges::max_element(places, {}, [](const std::array<double, 2>& place) { return place[1] - place[0]; });
     warnings.push_back(fmt::format(
         "{}: further unstable bands or stable gaps are not excluded in {:.2g} % of the range, the widest place being "
         "{} = {:.10g} .. {:.10g}",

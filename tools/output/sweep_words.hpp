@@ -20,8 +20,8 @@ namespace hb::tools {
 // To the nearest end of an unstable band of this rod; nothing where there is none.
 [[nodiscard]] std::optional<double> distance_to_boundary(const SweepRod& rod, double x);
 
-// The verdict of the mechanism along the axis: "stable at all 56 points", "UNSTABLE because of AB, at 1683.85 to 1895.07
-// rpm; stable elsewhere"; empty where stability was not asked for.
+// The verdict of the mechanism along the axis: "stable at all 56 points", "UNSTABLE because of AB, at 1683.85 to
+// 1895.07 rpm; stable elsewhere"; empty where stability was not asked for.
 [[nodiscard]] std::string sweep_verdict(const SweepScene& scene, const SweepResult& result);
 // The same, short, for titles of pictures.
 [[nodiscard]] std::string sweep_title_verdict(const SweepResult& result);

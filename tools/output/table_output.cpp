@@ -36,7 +36,8 @@ void add_resonance(Text& text, const SceneModel& model, const RodModel& rod_mode
   if (const std::optional<double> slow = quasi_static_response(rod_model.system, rod_model.num_modes, speed)) {
     double largest = 0;
     for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
-    add(text, "  amplification     {:.4g}: largest |q| against that of the same load applied slowly\n", largest / *slow);
+    add(text, "  amplification     {:.4g}: largest |q| against that of the same load applied slowly\n",
+        largest / *slow);
   }
 }
 
@@ -116,10 +117,10 @@ void add_stress(Text& text, const RodStress& stress, const RodResult& rod, const
       stress.tension * units.force, stress.compression * units.force, stress.buckling_share());
   add(text, "  stress            axial {:.3g} MPa, bending {:.3g} MPa{}\n", stress.axial * units.megapascal,
       stress.bending * units.megapascal,
-      stress.height_known ? ""
-                          : fmt::format(" (as of a rectangle {:.3g} {} high: the scene gives no section)",
-                                        2 * std::sqrt(3 * link.elastic->second_moment / link.elastic->area),
-                                        units.length));
+      stress.height_known
+          ? ""
+          : fmt::format(" (as of a rectangle {:.3g} {} high: the scene gives no section)",
+                        2 * std::sqrt(3 * link.elastic->second_moment / link.elastic->area), units.length));
 }
 
 std::string range_text(const FourierSeries& series, Eigen::Index component, double factor) {

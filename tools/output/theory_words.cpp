@@ -107,8 +107,7 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
     }
     if (count == 0) continue;
     std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
-    if (without > 0)
-      size += fmt::format("{}no value at {} of them, first {}", size.empty() ? "" : ", ", without, why);
+    if (without > 0) size += fmt::format("{}no value at {} of them, first {}", size.empty() ? "" : ", ", without, why);
     sentences.push_back(
         fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size, scene.axis().path,
                     runs(result.points, [&](const SweepPoint& p) { return beyond_theory(p.rods[r].theory_error); })));
@@ -120,8 +119,8 @@ std::vector<std::string> limit_warnings(const SceneModel& model, const SpeedResu
   std::vector<std::string> sentences;
   for (std::size_t r = 0; model.linkage() && r < result.rods.size(); ++r) {
     const RodResult& rod = result.rods[r];
-    const std::string why = too_large(rod, *body_at(*model.linkage(), rod.link),
-                                      result.theory ? result.theory->rods[r].q : std::nullopt);
+    const std::string why =
+        too_large(rod, *body_at(*model.linkage(), rod.link), result.theory ? result.theory->rods[r].q : std::nullopt);
     if (!why.empty()) sentences.push_back(fmt::format("{}: {}: {}", rod.name, large, why));
   }
   return sentences;
@@ -139,9 +138,10 @@ std::vector<std::string> limit_warnings(const SweepScene& scene, const SweepResu
       share = std::max(share, point.rods[r].buckling_share.value_or(0));
       strain = std::max(strain, point.rods[r].strain.value_or(0));
     }
-    sentences.push_back(fmt::format("{}: {} (pushed with up to {:.3g} of its buckling load, strained by up to {:.2g} %): "
-                                    "{} = {}",
-                                    result.rods[r].name, large, share, 100 * strain, scene.axis().path, where));
+    sentences.push_back(
+        fmt::format("{}: {} (pushed with up to {:.3g} of its buckling load, strained by up to {:.2g} %): "
+                    "{} = {}",
+                    result.rods[r].name, large, share, 100 * strain, scene.axis().path, where));
   }
   return sentences;
 }

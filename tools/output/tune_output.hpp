@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/output/csv_output.hpp"
 #include "hb/analysis/tune/tune_problem.hpp"
+#include "tools/output/csv_output.hpp"
 
 namespace hb::tools {
 

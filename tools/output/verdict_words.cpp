@@ -50,8 +50,8 @@ std::string kind_of(const Stability& stability, double speed, const Scene& scene
   if (folded <= slack)
     return fmt::format(", repeating with every {}{}", is_linkage(scene) ? "turn of the crank" : "period", strongest);
   if (std::abs(folded - speed / 2) <= slack)
-    return fmt::format(", repeating after two {} (period doubling){}", is_linkage(scene) ? "turns of the crank" : "periods",
-                       strongest);
+    return fmt::format(", repeating after two {} (period doubling){}",
+                       is_linkage(scene) ? "turns of the crank" : "periods", strongest);
   return strongest;
 }
 
@@ -169,30 +169,29 @@ std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, 
   if (stability.exponents.empty() && stability.uncertain.empty()) return "";
   const OutputUnits units = output_units(scene);
   const FrequencyUnit unit = frequency_unit(scene);
-  std::string text = fmt::format("  {:<12}  {:>18}  {:>16}  {:>12}  {:>13}  {:>12}\n", "disturbances",
-                                 "growth [" + units.rate + "]", "frequency [" + unit.name + "]",
-                                 is_linkage(scene) ? "per turn" : "per period", "damping ratio",
-                                 "error [" + units.rate + "]");
+  std::string text =
+      fmt::format("  {:<12}  {:>18}  {:>16}  {:>12}  {:>13}  {:>12}\n", "disturbances", "growth [" + units.rate + "]",
+                  "frequency [" + unit.name + "]", is_linkage(scene) ? "per turn" : "per period", "damping ratio",
+                  "error [" + units.rate + "]");
   const auto add = [&](const std::vector<Exponent>& exponents, const char* mark) {
     const std::vector<const Exponent*> shown = one_of_each_pair(exponents);
     for (std::size_t k = 0; k < std::min(shown.size(), max_exponents_shown); ++k) {
       const Exponent& e = *shown[k];
       const double re = e.value.real() + 0.0, size = std::hypot(re, e.frequency);
       const double slack = std::max(e.error, 1e-9 * speed) / speed;
-      text += fmt::format("  {:>12}  {:>18}  {:>16}  {:>12}  {:>13}  {:>12.1e}\n", mark,
-                          fmt::format("{:.{}g}", re, trusted_digits(re, e.error)),
-                          fmt::format("{:.{}g}", e.frequency * unit.factor,
-                                      std::min(7, trusted_digits(e.frequency, e.error))),
-                          order_text(e.frequency / speed, slack), size > 0 ? fmt::format("{:.3g}", -re / size) : "",
-                          e.error);
+      text += fmt::format(
+          "  {:>12}  {:>18}  {:>16}  {:>12}  {:>13}  {:>12.1e}\n", mark,
+          fmt::format("{:.{}g}", re, trusted_digits(re, e.error)),
+          fmt::format("{:.{}g}", e.frequency * unit.factor, std::min(7, trusted_digits(e.frequency, e.error))),
+          order_text(e.frequency / speed, slack), size > 0 ? fmt::format("{:.3g}", -re / size) : "", e.error);
     }
     if (shown.size() > max_exponents_shown)
       text += fmt::format("    ... {} more (--json has all)\n", shown.size() - max_exponents_shown);
   };
   add(stability.exponents, "");
   if (unresolved > 0) {
-    text += fmt::format("    {} not resolved to a part in 10^6{}\n", unresolved,
-                        stability.uncertain.empty() ? "" : ":");
+    text +=
+        fmt::format("    {} not resolved to a part in 10^6{}\n", unresolved, stability.uncertain.empty() ? "" : ":");
     add(stability.uncertain, "?");
   }
   return text;
@@ -200,9 +199,8 @@ std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, 
 
 std::string multipliers_rows(const Stability& stability, double speed, const Scene& scene) {
   if (stability.exponents.empty()) return "";
-  std::string text =
-      fmt::format("  {:<12}  {:>18}  {:>16}  {:>12}   what a {} makes of a disturbance\n", "multipliers", "real part",
-                  "imaginary part", "modulus", is_linkage(scene) ? "turn" : "period");
+  std::string text = fmt::format("  {:<12}  {:>18}  {:>16}  {:>12}   what a {} makes of a disturbance\n", "multipliers",
+                                 "real part", "imaginary part", "modulus", is_linkage(scene) ? "turn" : "period");
   for (const Exponent* e : one_of_each_pair(stability.exponents)) {
     const std::complex<double> mu = e->multiplier(speed);
     const double error = e->error * 2 * std::numbers::pi / speed * std::abs(mu);

@@ -19,8 +19,8 @@ struct FrequencyUnit {
 };
 [[nodiscard]] FrequencyUnit frequency_unit(const Scene& scene);
 
-// What the verdict means for a disturbance, with the time to halve or to grow tenfold; `lines`: of the leading one, where
-// they are known.
+// What the verdict means for a disturbance, with the time to halve or to grow tenfold; `lines`: of the leading one,
+// where they are known.
 [[nodiscard]] std::string verdict_sentence(const Stability& stability, double speed, const Scene& scene,
                                            const std::vector<DisturbanceLine>& lines = {});
 
@@ -32,8 +32,8 @@ using NamedVerdicts = std::vector<std::pair<std::string, std::optional<Verdict>>
 // The same, short, for titles of pictures: "stable", "UNSTABLE because of AB", "stability undecided (AB)".
 [[nodiscard]] std::string title_verdict(const NamedVerdicts& verdicts);
 
-// Rows of growth rate, frequency (Exponent::frequency), damping ratio and error; of a conjugate pair one. Those not resolved to a
-// part in 10^6 are marked with ?.
+// Rows of growth rate, frequency (Exponent::frequency), damping ratio and error; of a conjugate pair one. Those not
+// resolved to a part in 10^6 are marked with ?.
 [[nodiscard]] std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, double speed,
                                          const Scene& scene);
 // Rows of e^(lambda 2 pi/Omega): all of them.

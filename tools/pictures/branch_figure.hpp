@@ -8,7 +8,8 @@
 
 namespace hb::tools {
 
-// max |q_1| of one rod: solid where stable, dashed where not, folds as dots, bifurcations as circles; grey the linear answer.
+// max |q_1| of one rod: solid where stable, dashed where not, folds as dots, bifurcations as circles; grey the linear
+// answer.
 [[nodiscard]] Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const NonlinearSweep& sweep,
                                    std::size_t rod, const CsvFile& linear_csv, const CsvFile& branches);
 

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "tools/output/csv_output.hpp"
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <fmt/core.h>
 
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 namespace {
@@ -47,8 +47,9 @@ std::string rod_title(const SceneModel& model, const SpeedResult& result, const 
   std::string beyond;
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     if (&result.rods[r] == &rod) beyond = beyond_text(result, r);
-  return two_lines(short_name(model.scene) + subject + ", " + speed_text(result.speed, model.scene) + verdict_text(result),
-                   shown + (beyond.empty() ? "" : "; " + beyond));
+  return two_lines(
+      short_name(model.scene) + subject + ", " + speed_text(result.speed, model.scene) + verdict_text(result),
+      shown + (beyond.empty() ? "" : "; " + beyond));
 }
 
 std::string scene_title(const SceneModel& model, const SpeedResult& result, const std::string& shown) {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numbers>
 
-#include "tools/pictures/figure_text.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 
 namespace hb::tools {
 namespace {

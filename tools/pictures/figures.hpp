@@ -1,9 +1,9 @@
 // The pictures of `hb steady` and `hb scene`, drawn from the CSV files of csv_output.hpp.
 #pragma once
 
+#include "hb/analysis/linkage_analysis.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/pictures/gnuplot.hpp"
-#include "hb/analysis/linkage_analysis.hpp"
 
 namespace hb::tools {
 

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "tools/pictures/figure_text.hpp"
-#include "tools/pictures/figures.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
+#include "tools/pictures/figures.hpp"
 
 namespace hb::tools {
 namespace {

@@ -133,9 +133,10 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom vertical maxrows 3 samplen 3 "
       "width 1\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
-      literal(short_name(document.scene) + ", " + map_verdict(document)), quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(),
-      r.y().front(), r.y().back(), axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label),
-      -limit, limit, ticks(c, colour), palette, line_labels(r));
+      literal(short_name(document.scene) + ", " + map_verdict(document)),
+      quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(), r.y().front(), r.y().back(),
+      axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label), -limit, limit, ticks(c, colour),
+      palette, line_labels(r));
   if (some_missing) {
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";

@@ -1,8 +1,8 @@
 // The picture of a stability map: growth as colour, boundaries by kind, resonance lines with their names.
 #pragma once
 
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/map_output.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 

@@ -59,7 +59,8 @@ std::string shaded(const SweepResult& result, std::size_t r) {
 std::string shaded_note(const SweepResult& result, std::size_t r) {
   std::string others;
   for (std::size_t other = 0; other < result.rods.size(); ++other)
-    if (other != r && !result.rods[other].bands.empty()) others += (others.empty() ? "" : ", ") + result.rods[other].name;
+    if (other != r && !result.rods[other].bands.empty())
+      others += (others.empty() ? "" : ", ") + result.rods[other].name;
   return (result.rods[r].bands.empty() ? std::string() : std::string("; shaded: unstable")) +
          (others.empty() ? "" : "; shaded grey: unstable because of " + literal(others));
 }
@@ -150,7 +151,8 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   std::string& text = figure.commands;
   text += title(scene, result, r,
                 "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
-                    (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") + shaded_note(result, r) + beyond_note(csv, columns));
+                    (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") +
+                    shaded_note(result, r) + beyond_note(csv, columns));
   text += axis(scene) + shaded(result, r);
   text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [{}]'\nunset key\nset rmargin 20\n", top,
                       literal(unit.name));
@@ -212,10 +214,10 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
     const std::string beyond = columns.beyond > 0 ? fmt::format("column({}) > 0", columns.beyond) : "0";
     if (columns.beyond > 0) {
       text += fmt::format("grey{} = NaN\n", mode);
-      add(fmt::format(
-          "'{}' using 1:(now = column({}), jumps = abs(now - grey{}) > {} * ({} * $1 + {}), grey{} = now, "
-          "jumps ? NaN : now) with lines linecolor rgb '#999999' dashtype 2 linewidth 2 notitle",
-          csv.name, frequency(mode), mode, jump, factor, constant, mode));
+      add(
+          fmt::format("'{}' using 1:(now = column({}), jumps = abs(now - grey{}) > {} * ({} * $1 + {}), grey{} = now, "
+                      "jumps ? NaN : now) with lines linecolor rgb '#999999' dashtype 2 linewidth 2 notitle",
+                      csv.name, frequency(mode), mode, jump, factor, constant, mode));
     }
     add(fmt::format(
         "'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
@@ -250,7 +252,8 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   figure.name = figure_name("peaks", rod.name);
   const std::string meaning = scene.first().linkage() ? "q_i: amplitude of sin(iπx/l)" : "q_i: unknowns of the system";
   std::string& text = figure.commands;
-  text += title(scene, result, r, meaning + ", largest over the turn" + shaded_note(result, r) + beyond_note(csv, columns)) +
+  text += title(scene, result, r,
+                meaning + ", largest over the turn" + shaded_note(result, r) + beyond_note(csv, columns)) +
           axis(scene) + shaded(result, r);
   double top = 0, bottom = HUGE_VAL;
   for (int i = 0; i < shown; ++i) {
@@ -282,14 +285,14 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
   figure.name = figure_name("sweep_deflection", rod.name);
   figure.height = 640;
   std::string& text = figure.commands;
-  std::string heading =
-      title(scene, result, r, "largest deflection and bending moment over rod and turn" + shaded_note(result, r) +
-                                    beyond_note(csv, columns));
+  std::string heading = title(
+      scene, result, r,
+      "largest deflection and bending moment over rod and turn" + shaded_note(result, r) + beyond_note(csv, columns));
   heading.replace(0, 10, "");  // without "set title "
   heading.pop_back();
   text += fmt::format(
-      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n",
-      heading, beyond_note(csv, columns).empty() ? 4.5 : 6);
+      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n", heading,
+      beyond_note(csv, columns).empty() ? 4.5 : 6);
   text += axis(scene) + shaded(result, r);
   const auto range = [&](int column) {
     const std::vector<double> values = where_stable(result, csv, column);
@@ -318,8 +321,9 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
   Figure figure;
   figure.name = figure_name("growth", rod.name);
   std::string& text = figure.commands;
-  text += title(scene, result, r, "growth rate of disturbances: below zero they die out" + shaded_note(result, r) +
-                                         beyond_note(csv, columns)) +
+  text += title(scene, result, r,
+                "growth rate of disturbances: below zero they die out" + shaded_note(result, r) +
+                    beyond_note(csv, columns)) +
           axis(scene) + shaded(result, r);
   // Around the leading rate: modes that decay far faster would hide it.
   const double low = growth.empty() ? -1 : *std::min_element(growth.begin(), growth.end());
@@ -333,10 +337,10 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
                       columns.growth);
   const int shown = std::min(rod.num_modes, max_curves);
   for (int mode = 0; mode < shown; ++mode) {
-    text += fmt::format(", {} title 'mode {}'",
-                        curve(csv.name, columns.first_frequency + 2 * mode + 1, columns, fmt::format("lt {}", mode + 1),
-                              1.4),
-                        mode + 1);
+    text += fmt::format(
+        ", {} title 'mode {}'",
+        curve(csv.name, columns.first_frequency + 2 * mode + 1, columns, fmt::format("lt {}", mode + 1), 1.4),
+        mode + 1);
   }
   text += "\n";
   text += clean_up;

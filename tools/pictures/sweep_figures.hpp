@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "tools/pictures/gnuplot.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 

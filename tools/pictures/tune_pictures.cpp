@@ -7,14 +7,14 @@
 #include <map>
 #include <mutex>
 
+#include "hb/analysis/sweep_analysis.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/map_output.hpp"
-#include "tools/pictures/map_plot.hpp"
 #include "tools/output/output_units.hpp"
-#include "tools/work/shared_work.hpp"
-#include "hb/analysis/sweep_analysis.hpp"
-#include "tools/pictures/sweep_figures.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/map_plot.hpp"
+#include "tools/pictures/sweep_figures.hpp"
+#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -167,8 +167,8 @@ StabilityMap grid_map(const Way& way, std::size_t rod, const std::vector<double>
   return map;
 }
 
-void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene, const Work& work,
-             OutputFolder& folder, std::vector<Figure>& figures) {
+void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene, const Work& work, OutputFolder& folder,
+             std::vector<Figure>& figures) {
   const Way way(task, result, task.settings);
   const double from = std::min(result.span_before.from, result.span_after.from) / task.speed_unit;
   const double to = std::max(result.span_before.to, result.span_after.to) / task.speed_unit;
@@ -188,8 +188,7 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
       if (own.points[p].growth_rate > map.worst[p].growth_rate) map.worst[p] = own.points[p];
   }
   constexpr double no_boundaries = 0;
-  const MapDocument document{map, scene, tuned->rods.front().num_modes,
-                             no_boundaries};
+  const MapDocument document{map, scene, tuned->rods.front().num_modes, no_boundaries};
   MapFiles files;
   const auto write = [&](CsvFile file, const std::string& name) {
     file.name = name;
@@ -224,8 +223,8 @@ void write_curves(const TuneTask& task, const TuneResult& result, const Scene& s
   }
 }
 
-std::vector<Figure> tune_figures(const TuneTask& task, const TuneResult& result, const Scene& scene,
-                                 int num_threads, OutputFolder& folder) {
+std::vector<Figure> tune_figures(const TuneTask& task, const TuneResult& result, const Scene& scene, int num_threads,
+                                 OutputFolder& folder) {
   if (task.span.from == task.span.to) return {};
   std::vector<Figure> figures = {curves_figure(task, result, scene)};
   SharedWork work(num_threads);

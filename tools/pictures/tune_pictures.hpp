@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "tools/pictures/gnuplot.hpp"
-#include "tools/output/output_folder.hpp"
 #include "hb/analysis/tune/tune_problem.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 

@@ -16,8 +16,9 @@ constexpr int exit_interrupted = 130;  // as shells report Ctrl-C
 // what they run in the background and which is then sent on purpose.
 void end_cleanly_on_signals();
 
-// After `seconds` long work under an InterruptGuard is asked to end; what is not over five seconds later, and other work a
-// second later, ends the program with `status`, `message` on standard error and `document` on standard output. Once at most.
+// After `seconds` long work under an InterruptGuard is asked to end; what is not over five seconds later, and other
+// work a second later, ends the program with `status`, `message` on standard error and `document` on standard output.
+// Once at most.
 void end_after(double seconds, int status, const std::string& message, const std::string& document);
 [[nodiscard]] bool time_is_up();
 

@@ -182,7 +182,9 @@ bool KeptRun::run(const std::function<void(SharedWork&)>& work) {
   const InterruptGuard guard;
   const bool alone = ranks().size() == 1;
   SharedWork shared(num_threads_, checkpoint_ ? &*checkpoint_ : nullptr,
-                    alone && !checkpoint_ ? std::function<bool()>() : alone ? interrupted : asked_to_end,
+                    alone && !checkpoint_ ? std::function<bool()>()
+                    : alone               ? interrupted
+                                          : asked_to_end,
                     alone ? early_end(checkpoint_.has_value()) : std::function<bool()>());
   try {
     work(shared);

@@ -8,8 +8,8 @@
 
 namespace hb {
 
-// Unknowns: Ritz coordinates of all rods, as RitzSamples. Each call gives a system with scratch of its own. Throws RequestError where a rod has shear,
-// which the exact model leaves out.
+// Unknowns: Ritz coordinates of all rods, as RitzSamples. Each call gives a system with scratch of its own. Throws
+// RequestError where a rod has shear, which the exact model leaves out.
 [[nodiscard]] NonlinearSystem exact_system(std::shared_ptr<const ExactModel> model);
 
 }  // namespace hb

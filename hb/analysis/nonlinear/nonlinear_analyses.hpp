@@ -1,5 +1,5 @@
-// The motion without linearisation of a scene, along a number of it, and checked, by a request. All throw RequestError for
-// what cannot be asked, and SceneError for what cannot be.
+// The motion without linearisation of a scene, along a number of it, and checked, by a request. All throw RequestError
+// for what cannot be asked, and SceneError for what cannot be.
 #pragma once
 
 #include <functional>

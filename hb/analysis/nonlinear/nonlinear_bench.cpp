@@ -83,18 +83,16 @@ RodBench bench_motion(const SceneModel& model, double speed, const Settings& set
   const FourierSeries start =
       fourier::resized(found.motion.q, std::min(found.motion.q.num_harmonics(), start_harmonics * turns));
   constexpr Index num_starts = 128;
-  const StartingOrbit starting{at_samples(start, num_starts), at_samples(fourier::derivative(start), num_starts) / turns};
+  const StartingOrbit starting{at_samples(start, num_starts),
+                               at_samples(fourier::derivative(start), num_starts) / turns};
   const StartingOrbit near{at_samples(found.motion.q, num_starts),
                            at_samples(fourier::derivative(found.motion.q), num_starts) / turns};
   const auto shoot = [&](Integrator integrator, double tolerance, double seconds, const StartingOrbit& from) {
-    return shoot_motion(system, speed, from,
-                        {.tolerance = tolerance,
-                         .turns = turns,
-                         .integrator = integrator,
-                         .stop = limit(seconds, asked.stop)});
+    return shoot_motion(
+        system, speed, from,
+        {.tolerance = tolerance, .turns = turns, .integrator = integrator, .stop = limit(seconds, asked.stop)});
   };
-  const ShootingResult reference =
-      shoot(Integrator::adams, reference_tolerance, 10 * options.time_limit, near);
+  const ShootingResult reference = shoot(Integrator::adams, reference_tolerance, 10 * options.time_limit, near);
   options.done();
   if (reference.orbit.q.size() == 0) {
     bench.notes.push_back("no reference: " + reference.message);
@@ -112,10 +110,10 @@ RodBench bench_motion(const SceneModel& model, double speed, const Settings& set
     time_row(row, [&] { motion = solve_periodic_motion(system, speed, start, with); });
     options.done();
     if (motion.status != MotionStatus::converged && motion.status != MotionStatus::not_reached) {
-      bench.notes.push_back(fmt::format("{}{}: {}", method,
-                                        tolerance > 0 ? fmt::format(" at {:.0e}", tolerance)
-                                                      : fmt::format(" with {}", with.num_harmonics),
-                                        to_string(motion.status)));
+      bench.notes.push_back(fmt::format(
+          "{}{}: {}", method,
+          tolerance > 0 ? fmt::format(" at {:.0e}", tolerance) : fmt::format(" with {}", with.num_harmonics),
+          to_string(motion.status)));
       return;
     }
     row.size = motion.num_harmonics;

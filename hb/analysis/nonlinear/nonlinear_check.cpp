@@ -1,10 +1,10 @@
-#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/nonlinear/nonlinear_check.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/nonlinear/exact_system.hpp"
 #include "hb/analysis/stopwatch.hpp"
 #include "hb/engine/nonlinear/motion_shooting.hpp"

@@ -169,15 +169,16 @@ class Search {
   bool usable(const PeriodicMotion& motion, double at) {
     if (motion.status == MotionStatus::converged || motion.status == MotionStatus::not_reached) return true;
     result_.search = motion.status == MotionStatus::stopped ? MotionSearch::stopped : MotionSearch::none;
-    result_.why = fmt::format("no motion was found at {:.6g} rpm: {}{}", rpm(at),
-                              to_string(motion.status), motion.failure ? ": " + motion.failure->reason : "");
+    result_.why = fmt::format("no motion was found at {:.6g} rpm: {}{}", rpm(at), to_string(motion.status),
+                              motion.failure ? ": " + motion.failure->reason : "");
     return false;
   }
 
   ContinuationOptions continuation(double from) const {
     ContinuationOptions options;
     options.motion = motion_options_;
-    options.motion.tolerance = options_.turns > 1 ? doubling_tolerance : std::max(motion_options_.tolerance, way_tolerance);
+    options.motion.tolerance =
+        options_.turns > 1 ? doubling_tolerance : std::max(motion_options_.tolerance, way_tolerance);
     options.exponents.tolerance = exponent_share * options.motion.tolerance;
     options.low = 0.5 * from;
     options.high = speed_;
@@ -283,7 +284,8 @@ class Search {
     double highest = 0;
     for (const BranchPoint& point : branch.points) highest = std::max(highest, point.motion.speed);
     result_.why = fmt::format(
-        "the branch from low speed was followed over {} motions and did not come to {:.6g} rpm: the highest speed on it is "
+        "the branch from low speed was followed over {} motions and did not come to {:.6g} rpm: the highest speed on "
+        "it is "
         "{:.6g} rpm, the last one {:.6g} rpm ({}{})",
         branch.points.size(), rpm(speed_), rpm(highest), rpm(result_.last_speed.value_or(0)), to_string(branch.end),
         branch.failure ? ": " + branch.failure->reason : "");
@@ -502,8 +504,9 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
       if (const std::optional<PeriodicMotion> finer = search.with_more_harmonics())
         result.stability = motion_stability(search.system(), *finer, exponents);
     if (!result.stability->converged)
-      result.shortfalls.push_back(fmt::format("the growth rate's error {:.1e} exceeds {:.1e} of the larger of growth and speed",
-                                              result.stability->growth_error, exponents.tolerance));
+      result.shortfalls.push_back(
+          fmt::format("the growth rate's error {:.1e} exceeds {:.1e} of the larger of growth and speed",
+                      result.stability->growth_error, exponents.tolerance));
     result.stages.push_back({"stability of the motion", stability_watch.seconds(), result.stability->evidence});
   }
   if (settings.only.reactions) {

@@ -57,9 +57,9 @@ class SystemAlong {
       std::map<double, NonlinearSystem> at;
       std::map<double, std::string> problem;
     };
-    system.evaluate = [&scene, &rods, known = Known{}](double x, const MotionSamples& motion, Derivatives wanted,
-                                                       ResidualSamples& out) mutable
-        -> std::optional<EvaluationFailure> {
+    system.evaluate = [&scene, &rods, known = Known{}](
+                          double x, const MotionSamples& motion, Derivatives wanted,
+                          ResidualSamples& out) mutable -> std::optional<EvaluationFailure> {
       constexpr std::size_t most = 8;
       if (known.at.size() + known.problem.size() > most) known = {};
       if (!known.at.contains(x) && !known.problem.contains(x)) {
@@ -195,14 +195,14 @@ class Sweeper {
   }
 
   void note(const Branch& branch, double seconds) {
-    result_.stages.push_back({fmt::format("branch {}", result_.branches.size() + 1), seconds,
-                              fmt::format("{} points, {} evaluations of an angle, {} factorisations, {}",
-                                          branch.points.size(), branch.evaluations, branch.factorisations,
-                                          to_string(branch.end))});
+    result_.stages.push_back(
+        {fmt::format("branch {}", result_.branches.size() + 1), seconds,
+         fmt::format("{} points, {} evaluations of an angle, {} factorisations, {}", branch.points.size(),
+                     branch.evaluations, branch.factorisations, to_string(branch.end))});
   }
 
   NonlinearPoint point_of(const BranchPoint& point) const {
-    return {point.motion.parameter,       point.motion.speed,           point.stop,      peaks(point.motion.q),
+    return {point.motion.parameter,   point.motion.speed,           point.stop,     peaks(point.motion.q),
             point.motion.error_bound, point.motion.parameter_error, point.stability};
   }
 
@@ -216,8 +216,8 @@ class Sweeper {
     result_.branches.push_back(std::move(added));
     for (const Bifurcation& found : branch.bifurcations) {
       const BranchPoint& at = found.point;
-      NonlinearEvent event{found.kind,          at.motion.parameter,  at.motion.speed, found.parameter_error,
-                           branch.turns,        index,                found.after + first, peaks(at.motion.q)};
+      NonlinearEvent event{found.kind, at.motion.parameter, at.motion.speed,   found.parameter_error, branch.turns,
+                           index,      found.after + first, peaks(at.motion.q)};
       (found.kind == BifurcationKind::fold ? result_.folds : result_.bifurcations).push_back(std::move(event));
       if (found.kind == BifurcationKind::branch_point || found.kind == BifurcationKind::period_doubling)
         leaving_.push_back(found);
@@ -272,7 +272,8 @@ class Sweeper {
         const double share = (x - a.x) / (b.x - a.x);
         bool near = true;
         for (std::size_t r = 0; r < here.size(); ++r) {
-          const double size = *std::ranges::max_element(here[r]), at = (1 - share) * a.max_abs[r][0] + share * b.max_abs[r][0];
+          const double size = *std::ranges::max_element(here[r]),
+                       at = (1 - share) * a.max_abs[r][0] + share * b.max_abs[r][0];
           near = near && std::abs(at - here[r][0]) <= same_place * size;
         }
         if (near) return true;
@@ -295,8 +296,8 @@ class Sweeper {
   void find_jumps() {
     for (const NonlinearEvent& fold : result_.folds) {
       const std::vector<NonlinearPoint>& points = result_.branches[fold.branch].points;
-      const bool stable = beside(points, fold.after, -1) == Verdict::stable ||
-                          beside(points, fold.after + 1, 1) == Verdict::stable;
+      const bool stable =
+          beside(points, fold.after, -1) == Verdict::stable || beside(points, fold.after + 1, 1) == Verdict::stable;
       if (!stable) continue;
       Jump jump{fold.x, fold.speed, fold.error, points[fold.after].x < fold.x, fold.max_abs, {}};
       for (std::size_t b = 0; b < result_.branches.size(); ++b) add_stable_at(jump, b);
@@ -327,8 +328,9 @@ class Sweeper {
     if (!from_below_) return;
     const std::vector<NonlinearPoint>& points = result_.branches.front().points;
     for (std::size_t k = 0; k < values.size(); ++k) {
-      const auto place = std::ranges::find_if(
-          points, [&](const NonlinearPoint& p) { return p.asked && std::abs(p.x - values[k]) <= 1e-12 * std::abs(values[k]); });
+      const auto place = std::ranges::find_if(points, [&](const NonlinearPoint& p) {
+        return p.asked && std::abs(p.x - values[k]) <= 1e-12 * std::abs(values[k]);
+      });
       if (place != points.end()) result_.followed[k] = {0, static_cast<std::size_t>(place - points.begin())};
     }
   }

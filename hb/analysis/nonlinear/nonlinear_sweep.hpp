@@ -80,8 +80,8 @@ struct NonlinearSweepOptions {
   std::function<bool()> stop = {};  // true ends the work with what is there
 };
 
-// Throws RequestError for a [hill] scene, one without elastic links or with shear, turns that are no power of two, and a
-// start that is none.
+// Throws RequestError for a [hill] scene, one without elastic links or with shear, turns that are no power of two, and
+// a start that is none.
 void require_nonlinear(const SweepScene& scene, const NonlinearSweepOptions& options);
 
 // From the motion at the axis' first value (nonlinear_steady) upward, and from its last value downward where the motion

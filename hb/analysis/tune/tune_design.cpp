@@ -172,8 +172,7 @@ void DesignAnalysis::find_instabilities() {
         const SearchedInterval interval =
             search_interval(at, samples[k], samples[k + 1], k > 0 ? &samples[k - 1] : nullptr,
                             k + 2 < num_nodes ? &samples[k + 2] : nullptr, options);
-        for (const StabilitySample& sample : interval.samples)
-          found[k].push_back(sample.x);
+        for (const StabilitySample& sample : interval.samples) found[k].push_back(sample.x);
       });
     }
   }

@@ -31,8 +31,8 @@ struct DesignCurves {
 
 class DesignAnalysis {
  public:
-  // Keeps references to model, settings and work. Bands of instability, and those that decay slower than required, are looked for also
-  // where narrow.
+  // Keeps references to model, settings and work. Bands of instability, and those that decay slower than required, are
+  // looked for also where narrow.
   DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span, SectionHeights heights,
                  const Work& work, std::vector<RequiredDecay> required = {});
   ~DesignAnalysis();

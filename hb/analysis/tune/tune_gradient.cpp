@@ -6,11 +6,11 @@
 #include <memory>
 #include <numbers>
 
+#include "hb/analysis/tune/tune_quantities.hpp"
 #include "hb/engine/design/differences.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/shear.hpp"
-#include "hb/analysis/tune/tune_quantities.hpp"
 
 namespace hb {
 namespace {

@@ -14,7 +14,8 @@ constexpr const char* metric_words =
     "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD], frequency[:ROD], stable, "
     "clearance[:N], speed-range";
 
-constexpr const char* small_words = "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD]";
+constexpr const char* small_words =
+    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD]";
 constexpr const char* large_words = "stable (the margin), frequency[:ROD], clearance[:N], speed-range";
 
 // What may stand in a field of the request.
@@ -147,8 +148,9 @@ Keep parse_keep(const std::string& text) {
   const std::size_t less = dense.find("<="), more = dense.find(">=");
   const std::size_t sign = std::min(less, more);
   if (const std::size_t strict = dense.find_first_of("<>="); sign == std::string::npos && strict != sign)
-    refuse("keep", text, "with a sign that is not <= or >=",
-           fmt::format("{}{}{}", dense.substr(0, strict), dense[strict] == '>' ? ">=" : "<=", dense.substr(strict + 1)));
+    refuse(
+        "keep", text, "with a sign that is not <= or >=",
+        fmt::format("{}{}{}", dense.substr(0, strict), dense[strict] == '>' ? ">=" : "<=", dense.substr(strict + 1)));
   keep.metric = parse_metric("keep", text, dense.substr(0, sign));
   keep.at_least = more < less;
   if (sign == std::string::npos) {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <stdexcept>
 
-
 namespace hb {
 namespace {
 
@@ -100,8 +99,8 @@ class Tuner {
   }
 
   DesignSpace space_of(DesignSpace::At overrides, DesignSpace::SpanAt span) {
-    return {task_.source,    settings_,        task_.heights,     std::move(overrides),
-            std::move(span), aims_->metrics(), aims_->required(), counts_,           work_};
+    return {task_.source,      settings_, task_.heights, std::move(overrides), std::move(span), aims_->metrics(),
+            aims_->required(), counts_,   work_};
   }
 
   // The worst cases on more speeds, with the errors of their values, and with the modes needed at this design. Where

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/design/design.hpp"
 #include "hb/analysis/tune/tune_design.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 #include "hb/analysis/tune/tune_space.hpp"
+#include "hb/engine/design/design.hpp"
 
 namespace hb {
 

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "hb/analysis/accuracy.hpp"
-#include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "hb/engine/design/worst_case.hpp"
+#include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/shear.hpp"
 

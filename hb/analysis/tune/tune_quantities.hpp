@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/boundaries/mode_tracks.hpp"
-#include "hb/engine/exponents/stability.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/nearest_resonance.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
+#include "hb/engine/boundaries/mode_tracks.hpp"
+#include "hb/engine/exponents/stability.hpp"
 
 namespace hb {
 

@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 
-
 namespace hb {
 namespace {
 

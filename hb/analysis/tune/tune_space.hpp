@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "hb/engine/design/design.hpp"
 #include "hb/analysis/tune/tune_design.hpp"
 #include "hb/analysis/tune/tune_gradient.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
+#include "hb/engine/design/design.hpp"
 
 namespace hb {
 
@@ -92,8 +92,8 @@ class DesignAims {
   const std::vector<Metric>& goal_parts() const { return goal_parts_; }
   std::vector<RequiredDecay> required() const;
 
-  // Values of the metrics at the start: units of weighted terms and of margins. Throws RequestError where a weighted sum
-  // has none.
+  // Values of the metrics at the start: units of weighted terms and of margins. Throws RequestError where a weighted
+  // sum has none.
   void scale_by(std::vector<double> start);
   // Kept free of every part, in its unit: for errors of values.
   Eigen::VectorXd allowance;

@@ -29,8 +29,8 @@ struct CurveLink {
 // Links in the order in which they follow each other.
 struct CurveChain {
   std::vector<std::size_t> points;  // crossings
-  std::vector<std::size_t> cells;   // of the links between them: one less
-  bool closed = false;              // the last point repeats the first
+  std::vector<std::size_t> cells;  // of the links between them: one less
+  bool closed = false;  // the last point repeats the first
 };
 
 // Every link in one chain; a crossing has at most two links. Open chains first, by their smaller end, then closed ones.

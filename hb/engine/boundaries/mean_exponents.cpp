@@ -37,7 +37,9 @@ double largest_off_diagonal(const MatrixXd& A) {
   return largest;
 }
 
-bool is_symmetric(const MatrixXd& A) { return (A - A.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * A.cwiseAbs().maxCoeff(); }
+bool is_symmetric(const MatrixXd& A) {
+  return (A - A.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * A.cwiseAbs().maxCoeff();
+}
 
 void sort(MeanModes& modes) {
   std::vector<Index> order(static_cast<std::size_t>(modes.mu.size()));

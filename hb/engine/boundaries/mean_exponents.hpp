@@ -19,8 +19,9 @@ struct MeanExponent {
 // 2I of them, imaginary part ascending, then real part: each is continuous along a parameter.
 [[nodiscard]] std::vector<MeanExponent> mean_exponents(const ScaledSystem& system);
 
-// How strongly the resonance of order k >= 1 between two mean exponents n and r, Im mu_r - Im mu_n near k, pulls the two
-// apart, per radian: the growth that it would reach without damping. An estimate from above: with moduli throughout,
+// How strongly the resonance of order k >= 1 between two mean exponents n and r, Im mu_r - Im mu_n near k, pulls the
+// two apart, per radian: the growth that it would reach without damping. An estimate from above: with moduli
+// throughout,
 //     a_k(r) = E_k,rn + sum_{0<m<k} sum_l E_k-m,rl a_m(l)/|mu_n + im - mu_l|
 // sums all ways of harmonics that add up to k; forth and back give the root of the product, with a margin for ways that
 // turn back. Where stiffness and damping are symmetric two exponents on the same side of the real axis do not excite

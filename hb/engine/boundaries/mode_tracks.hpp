@@ -9,8 +9,8 @@ namespace hb {
 
 // One mode at one place. NaN: not resolved there.
 struct ModeState {
-  double frequency = 0;   // >= 0, unfolded, rad per unit time
-  double growth = 0;      // larger real part of its two exponents, 1/time
+  double frequency = 0;  // >= 0, unfolded, rad per unit time
+  double growth = 0;  // larger real part of its two exponents, 1/time
   double growth_low = 0;  // smaller one
   double damping() const { return -0.5 * (growth + growth_low); }
 };

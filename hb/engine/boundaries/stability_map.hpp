@@ -9,8 +9,8 @@
 
 #include "hb/engine/boundaries/boundary_curve.hpp"
 #include "hb/engine/boundaries/part.hpp"
-#include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
+#include "hb/engine/exponents/stability.hpp"
 
 namespace hb {
 

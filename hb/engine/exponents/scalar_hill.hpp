@@ -12,7 +12,7 @@ namespace hb {
 
 struct ExponentPair {
   std::array<std::complex<double>, 2> s;  // per radian of crank angle, imaginary part not folded
-  std::array<double, 2> error;            // bounds on |error|
+  std::array<double, 2> error;  // bounds on |error|
 };
 
 // With x = exp(-int beta/2) y, y'' + Q y = 0 and Q = alpha - beta^2/4 - beta'/2, the solutions are

@@ -9,9 +9,9 @@ namespace hb {
 
 struct ResponsePeak {
   double x = 0;
-  double value = 0;         // infinite at a pole
-  double error = 0;         // estimate, of x
-  bool converged = false;   // error within the tolerance
+  double value = 0;  // infinite at a pole
+  double error = 0;  // estimate, of x
+  bool converged = false;  // error within the tolerance
 };
 
 // Empty where the function does not exist.

@@ -3,9 +3,8 @@
 
 #include <vector>
 
-#include "lib/dense.hpp"
-
 #include "hb/engine/steady/steady_operator.hpp"
+#include "lib/dense.hpp"
 
 namespace hb::steady {
 

@@ -333,8 +333,7 @@ SteadyState solve_steady_state(const HillSystem& system, double speed, const Ste
   require(options);
   const ScaledSystem scaled = scale_system(system, speed);
   if (scaled.load_scale == 0) return at_rest(system.num_modes());
-  const Given given{
-      &system, speed, scaled.load_scale, scaled.T, scaled.T_inverse * dense::inverse(system.mass), true};
+  const Given given{&system, speed, scaled.load_scale, scaled.T, scaled.T_inverse * dense::inverse(system.mass), true};
   return Solver(scaled, given, options).run();
 }
 

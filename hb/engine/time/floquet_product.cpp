@@ -30,8 +30,7 @@ CyclicSolution solve_cyclic(const std::vector<SegmentMap>& segments) {
     rest.bottomRightCorner(n, 1) = segments[k].particular;
     const dense::Qr qr = dense::qr(column);
     rest = (qr.Q.transpose() * rest).eval();
-    kept.push_back({rest.topLeftCorner(n, n), qr.R.topRows(n),
-                    rest.block(0, n, n, n), rest.topRightCorner(n, 1)});
+    kept.push_back({rest.topLeftCorner(n, n), qr.R.topRows(n), rest.block(0, n, n, n), rest.topRightCorner(n, 1)});
     A = rest.bottomLeftCorner(n, n);
     D = rest.block(n, n, n, n);
     r = rest.bottomRightCorner(n, 1);

@@ -16,7 +16,7 @@ struct SegmentMap {
 
 struct CyclicSolution {
   std::vector<Eigen::VectorXd> states;  // y_0..y_(N-1), with y_N = y_0
-  double reciprocal_condition = 0;      // of the last, condensed system; 0: singular
+  double reciprocal_condition = 0;  // of the last, condensed system; 0: singular
 };
 
 // Structured orthogonal elimination around the cycle: stable for growing and decaying solutions together (S. J. Wright,
@@ -31,7 +31,7 @@ struct LogMultiplier {
 
 struct LogMultipliers {
   std::vector<LogMultiplier> values;  // real part descending; those above the noise
-  bool some_below = false;                   // others vanished below `noise` in some segment
+  bool some_below = false;  // others vanished below `noise` in some segment
 };
 
 // Orthogonal iteration over the turn: the triangular factors of the segments keep every growth rate apart. A direction

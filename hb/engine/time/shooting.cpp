@@ -278,9 +278,9 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
     result.q_error = error(result.orbit.q, result.coarser.q, fine.x_sensitivity);
     result.q1_error = error(result.orbit.q1, result.coarser.q1, fine.v_sensitivity);
   }
-  if (!judge_exponents({fine.multipliers, single ? nullptr : &coarse.multipliers, map_error, plan.num_segments,
-                        fine.steps, Omega},
-                       result))
+  if (!judge_exponents(
+          {fine.multipliers, single ? nullptr : &coarse.multipliers, map_error, plan.num_segments, fine.steps, Omega},
+          result))
     return;
   const double growth_scale = std::max(std::abs(result.growth_rate), Omega);
   const bool reached =

@@ -149,8 +149,8 @@ Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double toler
   void* cvode = sundials.cvode;
   require_success(CVodeInit(cvode, right_hand_side, tau0, sundials.y), "CVodeInit");
   require_success(CVodeSetErrHandlerFn(
-              cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
-          "CVodeSetErrHandlerFn");
+                      cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
+                  "CVodeSetErrHandlerFn");
   require_success(CVodeSetUserData(cvode, &problem), "CVodeSetUserData");
   require_success(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
   require_success(CVodeSetMaxNumSteps(cvode, std::numeric_limits<long>::max() / 2), "CVodeSetMaxNumSteps");
@@ -280,7 +280,8 @@ Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double
       }
       // Rows of fast modes are h^2 w^2 larger than the others: equal them before pivoting.
       const Eigen::VectorXd row_scale = system.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
-      const Eigen::MatrixXd a = dense::Lu<double>(row_scale.asDiagonal() * system).solve(row_scale.asDiagonal() * right);
+      const Eigen::MatrixXd a =
+          dense::Lu<double>(row_scale.asDiagonal() * system).solve(row_scale.asDiagonal() * right);
       Eigen::MatrixXd dx = h * u, du = Eigen::MatrixXd::Zero(I, m);
       for (Eigen::Index k = 0; k < s; ++k) {
         dx += h * h * tableau.A2(s - 1, k) * a.middleRows(k * I, I);
