@@ -26,7 +26,7 @@ std::optional<Vector> tangent(Vector to, Vector from) {
   return t * (1 / t.length());
 }
 
-// The middle of the cubic with unit tangents T1, T2 at both ends: (P1 + P2)/2 + |d| (T1 - T2)/8. An end without a
+// The middle of the cubic with unit tangents T1, T2 at both ends (hb/engine/README.md, (B8)). An end without a
 // tangent has that of a parabola.
 Vector middle_of_cubic(const CurveStretch& s, const std::function<Vector(const CurvePoint&)>& scaled) {
   const Vector p1 = scaled(s.a), p2 = scaled(s.b), d = p2 - p1;

@@ -25,9 +25,9 @@ struct CurveStretch {
   double low_x, high_x, low_y, high_y;  // the curve stays in this box
 };
 
-// Near the middle of the stretch, by a cubic through its ends, then along x or y, whichever is more across the curve.
-// `wide`, `high`: of the map, which scale x and y. Empty if no boundary is there that has the same side unstable as
-// both ends.
+// Near the middle of the stretch, by a cubic through its ends (hb/engine/README.md, (B8)), then along x or y, whichever
+// is more across the curve. `wide`, `high`: of the map, which scale x and y. Empty if no boundary is there that has the
+// same side unstable as both ends.
 [[nodiscard]] std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretch& stretch, double wide,
                                                       double high, const SweepOptions& options);
 
