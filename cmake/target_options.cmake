@@ -19,3 +19,25 @@ function(hb_target_options target)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
 endfunction()
+
+# Reading Eigen and the standard library is half of the compile time: one precompiled set for the libraries, one with
+# JSON and text for the command, one with JSON and GoogleTest for the tests. Each belongs to a target without flags of
+# its own, since a set serves only those who define what it was made with.
+option(HB_PRECOMPILED_HEADERS "Read Eigen and the standard library once for each kind of target" ON)
+function(hb_header_set name)
+  if(NOT HB_PRECOMPILED_HEADERS)
+    return()
+  endif()
+  file(WRITE ${PROJECT_BINARY_DIR}/header_sets/${name}.cpp "")
+  add_library(hb_headers_${name} OBJECT ${PROJECT_BINARY_DIR}/header_sets/${name}.cpp)
+  hb_target_options(hb_headers_${name})
+  target_compile_features(hb_headers_${name} PUBLIC cxx_std_20)
+  target_link_libraries(hb_headers_${name} PRIVATE Eigen3::Eigen)
+  target_precompile_headers(hb_headers_${name} PRIVATE <Eigen/Dense> <algorithm> <array> <cmath> <complex> <functional>
+    <map> <memory> <optional> <string> <utility> <vector> ${ARGN})
+endfunction()
+function(hb_precompiled target name)
+  if(HB_PRECOMPILED_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM hb_headers_${name})
+  endif()
+endfunction()
