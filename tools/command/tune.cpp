@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "tools/command/asked.hpp"
 #include "tools/command/asked_tune.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"

@@ -29,7 +29,12 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, co
                        fmt::format("at most {} in all", max_points));
   if (!request.only.stability)
     throw RequestError("only", shown(*given(arguments, "only")), "stability, growth, verdict");
-  PythonWork work(read_threads(arguments), progress);
+  if (const auto range = given(arguments, "damping_range")) {
+    const std::vector<double> factors = numbers("damping_range", *range);
+    if (factors.size() != 2) throw RequestError("damping_range", shown(*range), "a pair (low, high) of factors");
+    request.damping_range = {factors[0], factors[1]};
+  }
+  PythonWork work(arguments, progress);
   return work.run([&] { return std::make_shared<Map>(map(core.source, request, work)); });
 }
 

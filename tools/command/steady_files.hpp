@@ -1,0 +1,15 @@
+// The CSV files of one speed, and what is drawn of them.
+#pragma once
+
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/pictures/gnuplot.hpp"
+
+namespace hb::tools {
+
+[[nodiscard]] std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result,
+                                               OutputFolder& folder);
+
+}  // namespace hb::tools
