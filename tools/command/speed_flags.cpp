@@ -96,9 +96,4 @@ SpeedRange first_speed(const CommonFlags& flags, const Scene& scene) {
   return range;
 }
 
-double single_speed(const CommonFlags& flags, const Scene& scene) {
-  const auto [speeds, in_rpm] = first_speed(flags, scene);
-  return in_rpm ? speed_from_rpm(speeds.from, scene.units) : speeds.from;
-}
-
 }  // namespace hb::tools

@@ -21,7 +21,5 @@ struct SpeedRange {
 [[nodiscard]] std::vector<double> speed_values(const SpeedRange& range);
 // One speed: of a range in the scene the first; throws UsageError where a flag gives a range.
 [[nodiscard]] SpeedRange first_speed(const CommonFlags& flags, const Scene& scene);
-// The same in rad per unit time.
-[[nodiscard]] double single_speed(const CommonFlags& flags, const Scene& scene);
 
 }  // namespace hb::tools

@@ -104,7 +104,7 @@ std::shared_ptr<HillCore> hill_core(const py::object& mass, const py::object& da
   system.mass = matrix("mass", mass);
   const Eigen::Index size = system.mass.rows();
   if (size < 1 || system.mass.cols() != size)
-    throw RequestError("mass", fmt::format("a {} x {} matrix", size, system.mass.cols()), "a square matrix");
+    throw RequestError("mass", fmt::format("a {} x {} matrix", size, system.mass.cols()), "a square matrix of a row or more");
   system.damping = damping.is_none() ? Eigen::MatrixXd::Zero(size, size) : matrix("damping", damping);
   if (system.damping.rows() != size || system.damping.cols() != size)
     throw RequestError("damping", fmt::format("a {} x {} matrix", system.damping.rows(), system.damping.cols()),
@@ -115,7 +115,9 @@ std::shared_ptr<HillCore> hill_core(const py::object& mass, const py::object& da
     Scene scene = scene_of(system);
     return std::make_shared<HillCore>(HillCore{std::move(system), std::move(scene)});
   } catch (const std::invalid_argument& error) {
-    throw RequestError("mass", error.what(), "an invertible mass and finite numbers");
+    std::string found = error.what();
+    if (const std::string prefix = "HillSystem: "; found.starts_with(prefix)) found.erase(0, prefix.size());
+    throw RequestError("mass", found, "an invertible mass and finite numbers");
   }
 }
 

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/command/result_files.hpp"
+#include "tools/output/map_output.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/tune_output.hpp"
 #include "tools/python/arguments.hpp"
