@@ -20,9 +20,6 @@ constexpr double most_detuning = 0.3;
 // A maximum lower than this above its valleys, relative, is not told from rounding.
 constexpr double least_prominence = 1e-8;
 
-// The problem of a point that the work ended before.
-constexpr const char* not_computed = "not computed before the end";
-
 bool wants_steady(const Only& only) { return only.steady || only.shape || only.reactions; }
 
 Only available(const SceneModel& model, Only only) {
@@ -335,19 +332,19 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   // The points asked for.
   Stopwatch watch;
   const auto visit_whole_point = [](auto& visit, SweepPoint& point) { visit_point(visit, point); };
-  const auto left_out = [&](double x) {
-    SweepPoint point;
-    point.x = x;
-    const bool in_rpm = scene.axis().kind == Axis::Kind::rpm;
-    point.speed = scene.axis().kind == Axis::Kind::omega
-                      ? x
-                      : speed_from_rpm(in_rpm ? x : scene.fixed_rpm(), scene.scene().units);
-    point.problem = not_computed;
-    return point;
-  };
   result.points = work.results<SweepPoint>(
       "sweep", values.size(),
-      [&](std::size_t k) { return work.ends_early() ? left_out(values[k]) : analyse_point(scene, values[k], only); },
+      [&](std::size_t k) {
+        if (!work.ends_early()) return analyse_point(scene, values[k], only);
+        SweepPoint left_out;
+        left_out.x = values[k];
+        const bool in_rpm = scene.axis().kind == Axis::Kind::rpm;
+        left_out.speed = scene.axis().kind == Axis::Kind::omega
+                             ? values[k]
+                             : speed_from_rpm(in_rpm ? values[k] : scene.fixed_rpm(), scene.scene().units);
+        left_out.problem = "not computed before the end";
+        return left_out;
+      },
       visit_whole_point);
   result.stages.push_back({"points", watch.seconds(), fmt::format("{} points", values.size())});
 
@@ -552,10 +549,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
   });
   places.erase(std::unique(places.begin(), places.end()), places.end());
   result.refined = work.results<SweepPoint>(
-      "refined points", places.size(),
-      [&](std::size_t k) { return work.ends_early() ? left_out(places[k]) : analyse_point(scene, places[k], only); },
+      "refined points", places.size(), [&](std::size_t k) { return analyse_point(scene, places[k], only); },
       visit_whole_point);
-  std::erase_if(result.refined, [](const SweepPoint& point) { return point.problem == not_computed; });
   if (work.ends_early()) {
     const auto without = std::count_if(result.points.begin(), result.points.end(),
                                        [](const SweepPoint& point) { return point.rods.empty(); });
