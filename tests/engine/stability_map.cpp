@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <thread>
 
@@ -355,6 +356,38 @@ TEST(StabilityMap, RefusesAxesThatDoNotAscend) {
   EXPECT_THROW((void)stability_map(at, {1}, {0, 1}), std::invalid_argument);
   EXPECT_THROW((void)stability_map(at, {1, 2}, {0, NAN}), std::invalid_argument);
   EXPECT_THROW((void)stability_map(at, {1, 2}, {}), std::invalid_argument);
+}
+
+TEST(StabilityMap, PointsBetweenCrossingsLieOnTheTongueInOrder) {
+  const StabilityMap map = stability_map(speed_and_swing(0.1), spaced(1.5, 3, 4), spaced(0.05, 0.6, 3));
+  ASSERT_EQ(map.boundaries.size(), 1u);
+  const std::vector<BoundaryPoint>& p = map.boundaries[0].points;
+  int between = 0;
+  const auto of_grid = [](double v, double from, double step) {
+    const double k = 32 * (v - from) / step;  // places of the mesh that the grid begins with
+    return std::abs(k - std::round(k)) < 1e-9;
+  };
+  for (std::size_t k = 0; k < p.size(); ++k) {
+    between += p[k].along_x ? !of_grid(p[k].y, 0.05, 0.275) : !of_grid(p[k].x, 1.5, 0.5);
+    const double growth = analyse_stability(mathieu(0.1, 1.2, p[k].y), p[k].x).growth_rate;
+    EXPECT_NEAR(growth, 0, 1e-8) << p[k].x << ", " << p[k].y;
+    if (k == 0 || k + 1 == p.size()) continue;
+    const double ux = (p[k].x - p[k - 1].x) / 1.5, uy = (p[k].y - p[k - 1].y) / 0.55;
+    const double vx = (p[k + 1].x - p[k].x) / 1.5, vy = (p[k + 1].y - p[k].y) / 0.55;
+    EXPECT_GT(ux * vx + uy * vy, 0.5 * std::hypot(ux, uy) * std::hypot(vx, vy)) << k;
+  }
+  EXPECT_GT(between, 5);
+}
+
+TEST(BoundaryCurve, AChordIsCoarseWhereTheCurveTurnsAlongIt) {
+  std::vector<BoundaryPoint> circle;
+  for (int k = 0; k <= 12; ++k)
+    circle.push_back({std::cos(k * std::numbers::pi / 6), std::sin(k * std::numbers::pi / 6), 0, true});
+  // An arc of 30 degrees of the unit circle leaves its chord by 1 - cos 15 degrees = 0.034.
+  EXPECT_EQ(coarse_chords(circle, true, 0.030), std::vector<bool>(12, true));
+  EXPECT_EQ(coarse_chords(circle, true, 0.037), std::vector<bool>(12, false));
+  EXPECT_EQ(coarse_chords({{0, 0, 0, true}, {1, 0, 0, true}, {1.1, 0.1, 0, true}, {1.2, 0.2, 0, true}}, false, 0.05),
+            (std::vector<bool>{true, false, false}));
 }
 
 TEST(BoundaryCurve, LinksBecomeChainsThatPassEachOnce) {

@@ -166,9 +166,16 @@ std::vector<std::string> map_notes(const MapDocument& document) {
     notes.push_back(
         "ended before the answer was complete: points without an answer were not computed, and boundaries may "
         "be missing");
-  const std::size_t missed = boundary_points_not_reached(document.result);
-  if (missed == 0) return notes;
   const MapResult& r = document.result;
+  std::size_t pieces = 0;
+  for (const StabilityMap& map : r.maps) pieces += map.not_excluded.size();
+  if (pieces > 0)
+    notes.push_back(fmt::format(
+        "narrow bands or gaps are not excluded on {} of the lines between neighbouring points (not_excluded "
+        "in the JSON)",
+        pieces));
+  const std::size_t missed = boundary_points_not_reached(r);
+  if (missed == 0) return notes;
   double worst = 0;
   for (const StabilityMap& map : r.maps)
     for (const BoundaryCurve& curve : map.boundaries)
@@ -216,6 +223,7 @@ std::string map_text(const MapDocument& document) {
       Json curves = Json::array();
       for (const BoundaryCurve& curve : r.maps[k].boundaries) curves.push_back(curve_json(curve));
       rod.add("boundaries", std::move(curves));
+      rod.add("not_excluded", r.maps[k].not_excluded);
     }
     rods.add(r.rods[k], rod);
   }

@@ -45,23 +45,20 @@ std::vector<std::array<std::size_t, 2>> joined_in_cell(std::size_t num_crossings
   return pairs;
 }
 
-std::vector<std::size_t> coarse_cells(const CurveChain& chain, const std::vector<BoundaryPoint>& scaled, double sag) {
-  std::vector<std::size_t> cells;
-  const std::size_t n = chain.points.size();
-  const auto check = [&](std::size_t before, std::size_t middle, std::size_t after, std::size_t cell_before,
-                         std::size_t cell_after) {
-    const BoundaryPoint &p0 = scaled[before], &p1 = scaled[middle], &p2 = scaled[after];
-    const double ux = p1.x - p0.x, uy = p1.y - p0.y, vx = p2.x - p1.x, vy = p2.y - p1.y;
+std::vector<bool> coarse_chords(const std::vector<BoundaryPoint>& scaled, bool closed, double sag) {
+  const std::size_t n = scaled.size() - 1;  // stretches
+  std::vector<bool> coarse(n, false);
+  const auto check = [&](std::size_t before, std::size_t after) {
+    const BoundaryPoint &p0 = scaled[before], &p1 = scaled[before + 1], &p2 = scaled[after], &p3 = scaled[after + 1];
+    const double ux = p1.x - p0.x, uy = p1.y - p0.y, vx = p3.x - p2.x, vy = p3.y - p2.y;
     const double u = std::hypot(ux, uy), v = std::hypot(vx, vy);
     const double turn = std::atan2(std::abs(ux * vy - uy * vx), ux * vx + uy * vy);
-    if (u * turn / 8 > sag) cells.push_back(cell_before);
-    if (v * turn / 8 > sag) cells.push_back(cell_after);
+    if (u * turn / 8 > sag) coarse[before] = true;
+    if (v * turn / 8 > sag) coarse[after] = true;
   };
-  for (std::size_t k = 1; k + 1 < n; ++k) {
-    check(chain.points[k - 1], chain.points[k], chain.points[k + 1], chain.cells[k - 1], chain.cells[k]);
-  }
-  if (chain.closed) check(chain.points[n - 2], chain.points[0], chain.points[1], chain.cells[n - 2], chain.cells[0]);
-  return cells;
+  for (std::size_t k = 0; k + 1 < n; ++k) check(k, k + 1);
+  if (closed) check(n - 1, 0);
+  return coarse;
 }
 
 }  // namespace hb

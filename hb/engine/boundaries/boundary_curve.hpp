@@ -41,9 +41,8 @@ struct CurveChain {
 [[nodiscard]] std::vector<std::array<std::size_t, 2>> joined_in_cell(std::size_t num_crossings, bool start_unstable,
                                                                      bool centre_unstable);
 
-// Cells of those links whose chord leaves the curve by more than `sag`, in coordinates scaled to the map: an arc of
-// length s that turns by t leaves its chord by s t/8.
-[[nodiscard]] std::vector<std::size_t> coarse_cells(const CurveChain& chain, const std::vector<BoundaryPoint>& scaled,
-                                                    double sag);
+// Of the stretches between these points those whose chord leaves the curve by more than `sag`, in coordinates scaled to
+// the map: an arc of length s that turns by t leaves its chord by s t/8.
+[[nodiscard]] std::vector<bool> coarse_chords(const std::vector<BoundaryPoint>& scaled, bool closed, double sag);
 
 }  // namespace hb

@@ -3,126 +3,84 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
+#include <map>
+#include <set>
+#include <utility>
 
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/map_mesh.hpp"
 
 namespace hb {
 
 namespace {
 
-// Places are numbered on a lattice: per axis `units` steps (a power of two) between two values that the caller gave.
-struct Axis {
-  std::vector<double> values;
-  int units = 1;
-  int base = 1;  // steps of a cell of the first mesh, a power of two
+// Stretches of a curve shorter than this part of the map are not divided.
+constexpr double shortest_stretch = 1.0 / 8192;
 
-  int last() const { return static_cast<int>(values.size() - 1) * units; }
-  double at(int i) const {
-    const int k = i / units, r = i % units;
-    const double v = values[static_cast<std::size_t>(k)];
-    return r == 0 ? v : v + (values[static_cast<std::size_t>(k) + 1] - v) * (static_cast<double>(r) / units);
-  }
-  double scaled(double v) const { return (v - values.front()) / (values.back() - values.front()); }
+// A piece of a curve inside one cell, between two crossings, the smaller number first.
+struct Link {
+  std::size_t cell, from, to;
+  auto operator<=>(const Link&) const = default;
 };
 
-// Cells of the first mesh per axis at least, and the finest division of an axis for thin or curved boundaries.
-constexpr int first_cells = 24;
-constexpr int finest_cells = 8192;
+// Where on a curve a point is wanted.
+struct Wanted {
+  Link link;
+  std::size_t position;  // among the points that the link has
+  CurveStretch stretch;
+};
 
-int floor_power(int n) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(std::max(n, 1)))); }
-
-Axis make_axis(std::vector<double> values, bool every_value, const char* name) {
-  if (values.size() < 2 || values.size() > 1000000) {
-    throw std::invalid_argument(std::string("stability_map: ") + name + " needs 2 to 1000000 values");
-  }
-  for (std::size_t k = 0; k + 1 < values.size(); ++k) {
-    if (!(values[k] < values[k + 1]) || !std::isfinite(values[k]) || !std::isfinite(values[k + 1])) {
-      throw std::invalid_argument(std::string("stability_map: ") + name + " must ascend and be finite");
-    }
-  }
-  const int cells = static_cast<int>(values.size() - 1);
-  Axis axis{std::move(values), floor_power(finest_cells / cells), 1};
-  axis.base = floor_power(static_cast<int>(static_cast<long long>(cells) * axis.units / first_cells));
-  if (every_value) axis.base = std::min(axis.base, axis.units);
-  return axis;
+template <class Visit>
+void visit_curve_point(Visit& visit, CurvePoint& point) {
+  visit(point.place.x);
+  visit(point.place.y);
+  visit(point.place.error);
+  visit_as_number(visit, point.place.along_x);
+  visit_as_number(visit, point.kind);
+  visit_as_number(visit, point.unstable_above);
+  visit_as_number(visit, point.converged);
 }
 
-// Where a stretch is halved: at the lattice's coarsest place inside.
-int middle_of(int a, int b) { return a + floor_power(b - a - 1); }
-
-struct Node {
-  int i, j;
-  std::optional<StabilitySample> sample;
-
-  bool unstable() const { return sample && is_unstable(*sample); }
-};
-
-struct Crossing {
-  std::size_t edge;
-  StabilityBoundary boundary;
-};
-
-constexpr std::size_t none = static_cast<std::size_t>(-1);
-
-struct Edge {
-  Edge(std::size_t from, std::size_t to, bool horizontal) : a(from), b(to), along_x(horizontal) {}
-  std::size_t a, b;
-  bool along_x;
-  std::size_t before = none, after = none;  // nodes next to its ends on the same line
-  std::array<std::size_t, 2> children{};
-  std::size_t middle = 0;
-  bool halved = false;
-  std::vector<std::size_t> crossings;  // ascending; of a halved edge those of its children count
-};
-
-// Corners and edges counter-clockwise from the lower left: bottom, right, top, left.
-struct Cell {
-  std::array<std::size_t, 4> corners, edges;
-  bool halved = false;
-};
-
-class Mesh {
+class MapSearch {
  public:
-  Mesh(const MapSystemAt& at, Axis x, Axis y, bool every_value, const MapOptions& options)
-      : at_(at),
-        x_(std::move(x)),
-        y_(std::move(y)),
-        options_(options),
-        grid_alone_(every_value && !options.boundaries) {
+  MapSearch(const MapSystemAt& at, MapAxis x, MapAxis y, bool every_value, const MapOptions& options)
+      : at_(at), options_(options), grid_alone_(every_value && !options.boundaries), mesh_(std::move(x), std::move(y)) {
     along_edges_ = options.search;
     constexpr double rough_tolerance = 1e-9;
     along_edges_.stability.tolerance = std::max(options.search.stability.tolerance, rough_tolerance);
     at_nodes_ = along_edges_.stability;
     at_nodes_.leading_only = grid_alone_;
     at_nodes_.verdict_only = grid_alone_ && options.verdict_only;
-    leading_ = at_nodes_;
-    leading_.leading_only = true;
+    along_curves_ = along_edges_;
+    along_curves_.stability.leading_only = true;
   }
 
-  void build() {
-    first_mesh();
+  void run() {
     evaluate();
     if (grid_alone_) return;
     growth_range();
-    for (;;) {
-      refine();
-      if (!options_.boundaries || !refine_curves()) break;
-    }
+    do refine();
+    while (options_.boundaries && refine_curves());
   }
 
   StabilityMap result() {
     StabilityMap map;
     if (!options_.curves_only) fill(map);
-    for (const CurveChain& chain : chains_) add_curves(chain, map.boundaries);
-    for (const Crossing& crossing : crossings_) map.not_converged += options_.boundaries && !reached(crossing.boundary);
-    map.samples = samples_;
-    map.x = x_.values;
-    map.y = y_.values;
+    if (options_.boundaries) {
+      for (const CurveChain& chain : chains_) {
+        add_curves(chain, map.boundaries);
+        const std::vector<CurvePoint> points = curve(chain).points;
+        map.not_converged += static_cast<std::size_t>(std::count_if(
+            points.begin() + chain.closed, points.end(), [&](const CurvePoint& point) { return !reached(point); }));
+      }
+    }
+    map.samples = num_samples_;
+    map.not_excluded = std::move(not_excluded_);
+    map.x = mesh_.x().values;
+    map.y = mesh_.y().values;
     return map;
   }
 
@@ -134,219 +92,135 @@ class Mesh {
   }
 
   // Error within ten times what was asked, or within what searches promise.
-  bool reached(const StabilityBoundary& boundary) const {
-    return boundary.converged || boundary.error <= 10 * options_.search.tolerance * std::abs(boundary.x);
+  bool reached(const CurvePoint& point) const {
+    return point.converged || point.place.error <= 10 * options_.search.tolerance *
+                                                       std::abs(point.place.along_x ? point.place.x : point.place.y);
+  }
+
+  // --- What the system says ---
+
+  std::optional<ScaledSystem> system(double x, double y) const {
+    ++num_samples_;
+    return at_(x, y);
   }
 
   // All exponents at a node; the leading ones suffice elsewhere.
   std::optional<StabilitySample> sample(double x, double y, const StabilityOptions& stability) const {
-    ++samples_;
-    if (!grid_alone_) return stability_sample([&](double t) { return at_(t, y); }, x, stability);
-    const std::optional<ScaledSystem> system = at_(x, y);
-    if (!system) return std::nullopt;
-    return StabilitySample{x, system->speed, with_finite_growth(*system, stability)};
+    if (!grid_alone_) return stability_sample([&](double t) { return system(t, y); }, x, stability);
+    const std::optional<ScaledSystem> there = system(x, y);
+    if (!there) return std::nullopt;
+    return StabilitySample{x, there->speed, with_finite_growth(*there, stability)};
   }
 
-  std::size_t add_node(int i, int j) {
-    nodes_.push_back({i, j, std::nullopt});
-    return nodes_.size() - 1;
-  }
-
-  std::size_t add_edge(std::size_t a, std::size_t b, bool along_x) {
-    edges_.emplace_back(a, b, along_x);
-    new_edges_.push_back({edges_.size() - 1, true});
-    return edges_.size() - 1;
-  }
-
-  void set_beside(std::size_t edge, std::size_t before, std::size_t after) {
-    edges_[edge].before = before;
-    edges_[edge].after = after;
-  }
-
-  static std::vector<int> first_places(const Axis& axis) {
-    std::vector<int> places;
-    for (int i = 0; i < axis.last(); i += axis.base) places.push_back(i);
-    places.push_back(axis.last());
-    return places;
-  }
-
-  void first_mesh() {
-    const std::vector<int> is = first_places(x_), js = first_places(y_);
-    const std::size_t nx = is.size(), ny = js.size();
-    for (const int j : js) {
-      for (const int i : is) add_node(i, j);
-    }
-    std::vector<std::size_t> bottom, left;  // edges that leave a node to the right and upward
-    for (std::size_t j = 0; j < ny; ++j) {
-      for (std::size_t i = 0; i < nx; ++i) {
-        const std::size_t node = i + nx * j;
-        bottom.push_back(i + 1 < nx ? add_edge(node, node + 1, true) : 0);
-        if (i + 1 < nx) set_beside(bottom.back(), i > 0 ? node - 1 : none, i + 2 < nx ? node + 2 : none);
-        left.push_back(j + 1 < ny ? add_edge(node, node + nx, false) : 0);
-        if (j + 1 < ny) set_beside(left.back(), j > 0 ? node - nx : none, j + 2 < ny ? node + 2 * nx : none);
-      }
-    }
-    for (std::size_t j = 0; j + 1 < ny; ++j) {
-      for (std::size_t i = 0; i + 1 < nx; ++i) {
-        const std::size_t node = i + nx * j;
-        cells_.push_back({{node, node + 1, node + nx + 1, node + nx},
-                          {bottom[node], left[node + 1], bottom[node + nx], left[node]}});
-      }
-    }
-  }
-
-  double coordinate(std::size_t node, bool along_x) const {
-    return along_x ? x_.at(nodes_[node].i) : y_.at(nodes_[node].j);
-  }
+  bool unstable(std::size_t node) const { return samples_[node] && is_unstable(*samples_[node]); }
 
   // Samples at the nodes and crossings of the edges that are new.
   void evaluate() {
     using Sample = std::optional<StabilitySample>;
+    const std::size_t known = samples_.size();
     std::vector<Sample> samples = results<Sample>(
-        nodes_.size() - evaluated_nodes_,
-        [this](std::size_t k) {
-          const Node& node = nodes_[evaluated_nodes_ + k];
-          return sample(x_.at(node.i), y_.at(node.j), at_nodes_);
-        },
+        mesh_.nodes().size() - known,
+        [&](std::size_t k) { return sample(mesh_.x_of(known + k), mesh_.y_of(known + k), at_nodes_); },
         [](auto& visit, Sample& sample) {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
         });
-    for (Sample& sample : samples) nodes_[evaluated_nodes_++].sample = std::move(sample);
+    std::ranges::move(samples, std::back_inserter(samples_));
     if (grid_alone_) return;
 
-    using Found = std::optional<std::vector<StabilityBoundary>>;
-    const std::vector<Found> found = results<Found>(
-        new_edges_.size(), [this](std::size_t k) { return crossings_of(new_edges_[k]); },
+    using Found = std::optional<SearchedInterval>;
+    const std::size_t first = searched_edges_;
+    searched_edges_ = mesh_.num_edges();
+    std::vector<Found> found = results<Found>(
+        searched_edges_ - first, [&](std::size_t k) { return crossings_of(first + k); },
         [](auto& visit, Found& crossings) {
-          visit_if_there(visit, crossings, [&](std::vector<StabilityBoundary>& all) {
-            visit_elements(visit, all, [&](StabilityBoundary& boundary) { visit_boundary(visit, boundary); });
-          });
+          visit_if_there(visit, crossings, [&](SearchedInterval& there) { visit_interval(visit, there); });
         });
-    for (std::size_t k = 0; k < new_edges_.size(); ++k) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
       if (!found[k]) continue;
-      Edge& edge = edges_[new_edges_[k].edge];
-      edge.crossings.clear();
-      for (const StabilityBoundary& boundary : *found[k]) {
-        edge.crossings.push_back(crossings_.size());
-        crossings_.push_back({new_edges_[k].edge, boundary});
-      }
+      mesh_.set_crossings(first + k, found[k]->boundaries);
+      for (const auto& [from, to] : found[k]->not_excluded) not_excluded_.push_back(piece_of(first + k, from, to));
     }
-    new_edges_.clear();
   }
 
-  struct NewEdge {
-    std::size_t edge;
-    bool search;  // also between ends of one verdict without known crossings
-  };
-
   // Crossings, or nothing if those that the edge has from its parent agree with the verdicts at its ends.
-  std::optional<std::vector<StabilityBoundary>> crossings_of(const NewEdge& item) const {
-    const Edge& edge = edges_[item.edge];
-    const Node &a = nodes_[edge.a], &b = nodes_[edge.b];
-    if (!a.sample || !b.sample) return std::nullopt;
-    const bool changes = a.unstable() != b.unstable(), odd = edge.crossings.size() % 2 == 1;
-    if (changes == odd && (!edge.crossings.empty() || !item.search)) return std::nullopt;
-    const double fixed = edge.along_x ? y_.at(a.j) : x_.at(a.i);
-    const SystemAt along = [&](double t) {
-      ++samples_;
-      return edge.along_x ? at_(t, fixed) : at_(fixed, t);
-    };
+  std::optional<SearchedInterval> crossings_of(std::size_t e) const {
+    const MapEdge& edge = mesh_.edge(e);
+    if (!samples_[edge.a] || !samples_[edge.b]) return std::nullopt;
+    const bool changes = unstable(edge.a) != unstable(edge.b), odd = edge.crossings.size() % 2 == 1;
+    if (changes == odd && (!edge.crossings.empty() || mesh_.searched_as_a_whole(e))) return std::nullopt;
+    const double fixed = mesh_.coordinate(edge.a, !edge.along_x);
+    const SystemAt along = [&](double t) { return edge.along_x ? system(t, fixed) : system(fixed, t); };
     const auto sample_at = [&](std::size_t node) {
       std::optional<StabilitySample> sample;
-      if (node != none) sample = nodes_[node].sample;
-      if (sample) sample->x = coordinate(node, edge.along_x);
+      if (node != no_node) sample = samples_[node];
+      if (sample) sample->x = mesh_.coordinate(node, edge.along_x);
       return sample;
     };
     const auto before = sample_at(edge.before), first = sample_at(edge.a), last = sample_at(edge.b),
                after = sample_at(edge.after);
-    return search_interval(along, *first, *last, before ? &*before : nullptr, after ? &*after : nullptr, along_edges_)
-        .boundaries;
+    SearchedInterval found =
+        search_interval(along, *first, *last, before ? &*before : nullptr, after ? &*after : nullptr, along_edges_);
+    found.samples.clear();
+    return found;
   }
+
+  std::array<double, 4> piece_of(std::size_t e, double from, double to) const {
+    const MapEdge& edge = mesh_.edge(e);
+    const double fixed = mesh_.coordinate(edge.a, !edge.along_x);
+    if (edge.along_x) return {from, fixed, to, fixed};
+    return {fixed, from, fixed, to};
+  }
+
+  // --- The quadtree ---
 
   void growth_range() {
     double low = HUGE_VAL, high = -HUGE_VAL;
-    for (const Node& node : nodes_) {
-      if (!node.sample) continue;
-      low = std::min(low, node.sample->stability.growth_rate);
-      high = std::max(high, node.sample->stability.growth_rate);
+    for (const auto& sample : samples_) {
+      if (!sample) continue;
+      low = std::min(low, sample->stability.growth_rate);
+      high = std::max(high, sample->stability.growth_rate);
     }
     range_ = high > low ? high - low : 0;
   }
 
-  void append_crossings(std::size_t e, std::vector<std::size_t>& all) const {
-    const Edge& edge = edges_[e];
-    if (edge.halved) {
-      append_crossings(edge.children[0], all);
-      append_crossings(edge.children[1], all);
-    } else {
-      all.insert(all.end(), edge.crossings.begin(), edge.crossings.end());
+  bool larger_than_the_grid(const MapCell& cell) const {
+    return mesh_.width(cell) > mesh_.x().units || mesh_.height(cell) > mesh_.y().units;
+  }
+  bool divisible(const MapCell& cell) const { return mesh_.width(cell) >= 2 && mesh_.height(cell) >= 2; }
+
+  bool wants_halving(const MapCell& cell) const {
+    if (!divisible(cell)) return false;
+    const auto present = std::ranges::count_if(cell.corners, [&](std::size_t n) { return samples_[n].has_value(); });
+    const std::size_t crossings = mesh_.rim(cell).size();
+    if (larger_than_the_grid(cell)) {
+      if (options_.curves_only) return crossings != 0 && crossings != 2;
+      return crossings != 0 || (present > 0 && present < 4) || (present == 4 && uneven(cell));
     }
+    return present == 4 && crossings > 2 && !thin_band(cell);
   }
 
-  // Counter-clockwise from the lower left corner.
-  std::vector<std::size_t> rim(const Cell& cell) const {
-    std::vector<std::size_t> all;
-    for (std::size_t side = 0; side < 4; ++side) {
-      const auto start = static_cast<std::ptrdiff_t>(all.size());
-      append_crossings(cell.edges[side], all);
-      if (side >= 2) std::reverse(all.begin() + start, all.end());
-    }
-    return all;
-  }
-
-  int width(const Cell& cell) const { return nodes_[cell.corners[1]].i - nodes_[cell.corners[0]].i; }
-  int height(const Cell& cell) const { return nodes_[cell.corners[3]].j - nodes_[cell.corners[0]].j; }
-
-  bool wants_halving(const Cell& cell) const {
-    const int w = width(cell), h = height(cell);
-    if (w < 2 || h < 2) return false;
-    int present = 0;
-    for (const std::size_t corner : cell.corners) present += nodes_[corner].sample.has_value();
-    const std::vector<std::size_t> crossings = rim(cell);
-    if (w > x_.units || h > y_.units) {
-      if (options_.curves_only) return !crossings.empty() && crossings.size() != 2;
-      return !crossings.empty() || (present > 0 && present < 4) || (present == 4 && uneven(cell));
-    }
-    if (present < 4 || crossings.empty()) return false;
-    if (crossings.size() > 2) return !thin_band(cell);
-    const Crossing &p = crossings_[crossings[0]], &q = crossings_[crossings[1]];
-    return p.boundary.kind != q.boundary.kind || one_side(cell);
-  }
-
-  // Two crossings of one kind on each of two sides, in a cell smaller than the grid's: a tongue, or the gap between
-  // two, passes through.
-  bool thin_band(const Cell& cell) const {
-    if (width(cell) >= x_.units || height(cell) >= y_.units) return false;
+  // Two crossings of one kind on each of two sides: a tongue, or the gap between two, passes through. Points on both
+  // sides of it confirm that (coarse_stretches).
+  bool thin_band(const MapCell& cell) const {
     std::vector<std::size_t> all;
     for (const std::size_t e : cell.edges) {
-      const std::size_t before = all.size();
-      append_crossings(e, all);
-      if (all.size() != before && all.size() != before + 2) return false;
+      const std::vector<std::size_t> own = mesh_.crossings_along(e);
+      if (!own.empty() && own.size() != 2) return false;
+      all.insert(all.end(), own.begin(), own.end());
     }
-    const auto kind = [&](std::size_t c) { return crossings_[c].boundary.kind; };
+    const auto kind = [&](std::size_t c) { return mesh_.crossings()[c].boundary.kind; };
     // A gap between two tongues has two kinds.
-    return all.size() == 4 &&
-           (nodes_[cell.corners[0]].unstable() ||
-            std::all_of(all.begin(), all.end(), [&](std::size_t c) { return kind(c) == kind(all[0]); }));
-  }
-
-  // Both crossings on one side: the tip of a tongue.
-  bool one_side(const Cell& cell) const {
-    for (const std::size_t e : cell.edges) {
-      std::vector<std::size_t> own;
-      append_crossings(e, own);
-      if (own.size() == 2) return true;
-    }
-    return false;
+    return all.size() == 4 && (unstable(cell.corners[0]) ||
+                               std::ranges::all_of(all, [&](std::size_t c) { return kind(c) == kind(all[0]); }));
   }
 
   // Corners of different verdicts, growth that changes too much to be interpolated (2 % of the map's range), or that
   // may pass through zero inside.
-  bool uneven(const Cell& cell) const {
+  bool uneven(const MapCell& cell) const {
     double low = HUGE_VAL, high = -HUGE_VAL, nearest = HUGE_VAL, bars = 0;
-    const Verdict verdict = nodes_[cell.corners[0]].sample->stability.verdict;
+    const Verdict verdict = samples_[cell.corners[0]]->stability.verdict;
     for (const std::size_t corner : cell.corners) {
-      const Stability& s = nodes_[corner].sample->stability;
+      const Stability& s = samples_[corner]->stability;
       if (s.verdict != verdict) return true;
       low = std::min(low, s.growth_rate);
       high = std::max(high, s.growth_rate);
@@ -357,76 +231,89 @@ class Mesh {
     return !(spread <= 0.02 * range_) || (spread > 10 * bars && nearest <= spread);
   }
 
-  void halve_edge(std::size_t e) {
-    if (edges_[e].halved) return;
-    const Edge edge = edges_[e];
-    const Node a = nodes_[edge.a], b = nodes_[edge.b];
-    const std::size_t middle = edge.along_x ? add_node(middle_of(a.i, b.i), a.j) : add_node(a.i, middle_of(a.j, b.j));
-    const double t = coordinate(middle, edge.along_x);
-    std::array<std::size_t, 2> children = {add_edge(edge.a, middle, edge.along_x),
-                                           add_edge(middle, edge.b, edge.along_x)};
-    for (const std::size_t c : edge.crossings) {
-      edges_[children[crossings_[c].boundary.x < t ? 0 : 1]].crossings.push_back(c);
-    }
-    set_beside(children[0], edge.before, edge.b);
-    set_beside(children[1], edge.a, edge.after);
-    // An edge without crossings was searched as a whole.
-    new_edges_[new_edges_.size() - 2].search = new_edges_[new_edges_.size() - 1].search = !edge.crossings.empty();
-    edges_[e].children = children;
-    edges_[e].middle = middle;
-    edges_[e].halved = true;
-  }
-
-  void halve(std::size_t c) {
-    cells_[c].halved = true;
-    const Cell cell = cells_[c];
-    for (const std::size_t e : cell.edges) halve_edge(e);
-    std::array<std::size_t, 4> m{};
-    for (std::size_t side = 0; side < 4; ++side) m[side] = edges_[cell.edges[side]].middle;
-    const std::size_t centre = add_node(nodes_[m[0]].i, nodes_[m[1]].j);
-    const std::size_t down = add_edge(m[0], centre, false), up = add_edge(centre, m[2], false);
-    const std::size_t left = add_edge(m[3], centre, true), right = add_edge(centre, m[1], true);
-    const auto half = [&](std::size_t side, std::size_t k) { return edges_[cell.edges[side]].children[k]; };
-    const auto& corner = cell.corners;
-    cells_.push_back({{corner[0], m[0], centre, m[3]}, {half(0, 0), down, left, half(3, 0)}});
-    cells_.push_back({{m[0], corner[1], m[1], centre}, {half(0, 1), half(1, 0), right, down}});
-    cells_.push_back({{centre, m[1], corner[2], m[2]}, {right, half(1, 1), half(2, 1), up}});
-    cells_.push_back({{m[3], centre, m[2], corner[3]}, {left, up, half(2, 0), half(3, 1)}});
-  }
-
   // Until no cell wants halving; a halved edge may change what the cell on its other side wants.
   void refine() {
     for (bool changed = true; changed;) {
       changed = false;
-      const std::size_t count = cells_.size();
+      const std::size_t count = mesh_.cells().size();
       for (std::size_t c = 0; c < count; ++c) {
-        if (cells_[c].halved || !wants_halving(cells_[c])) continue;
-        halve(c);
+        if (mesh_.cells()[c].halved || !wants_halving(mesh_.cells()[c])) continue;
+        mesh_.halve(c);
         changed = true;
       }
       evaluate();
     }
   }
 
-  // Joins the crossings into chains; true if cells were halved because their chords are too coarse.
+  // --- Curves ---
+
+  CurvePoint crossing(std::size_t k) const {
+    const MapCrossing& c = mesh_.crossings()[k];
+    const MapEdge& edge = mesh_.edge(c.edge);
+    const double fixed = mesh_.coordinate(edge.a, !edge.along_x), found = c.boundary.x;
+    const BoundaryPoint place{edge.along_x ? found : fixed, edge.along_x ? fixed : found, c.boundary.error,
+                              edge.along_x};
+    return {place, c.boundary.kind, c.boundary.unstable_above, c.boundary.converged};
+  }
+
+  // Joins the crossings into chains and puts points between them until their chords are straight. True if cells were
+  // halved instead, where no point was found.
   bool refine_curves() {
+    join_crossings();
+    for (;;) {
+      const std::vector<Wanted> wanted = coarse_stretches();
+      if (wanted.empty()) return false;
+      using Found = std::optional<CurvePoint>;
+      const std::vector<Found> found = results<Found>(
+          wanted.size(),
+          [&](std::size_t k) {
+            const MapSystemAt counted = [this](double x, double y) { return system(x, y); };
+            return point_between(counted, wanted[k].stretch, wide(), high(), along_curves_);
+          },
+          [](auto& visit, Found& point) {
+            visit_if_there(visit, point, [&](CurvePoint& there) { visit_curve_point(visit, there); });
+          });
+      if (insert(wanted, found)) return true;
+    }
+  }
+
+  // From the back, so that positions stay what they are.
+  bool insert(const std::vector<Wanted>& wanted, const std::vector<std::optional<CurvePoint>>& found) {
+    std::map<Link, std::map<std::size_t, CurvePoint, std::greater<>>> new_points;
+    std::set<std::size_t> cells;
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      const Link& link = wanted[k].link;
+      if (found[k]) {
+        new_points[link].emplace(wanted[k].position, *found[k]);
+      } else if (divisible(mesh_.cells()[link.cell])) {
+        cells.insert(link.cell);
+      } else {
+        closed_.insert(link);
+      }
+    }
+    for (const auto& [link, points] : new_points) {
+      std::vector<CurvePoint>& all = inserted_[link];
+      for (const auto& [position, point] : points)
+        all.insert(all.begin() + static_cast<std::ptrdiff_t>(position), point);
+    }
+    for (const std::size_t c : cells) mesh_.halve(c);
+    if (cells.empty()) return false;
+    std::erase_if(inserted_, [&](const auto& link) { return cells.contains(link.first.cell); });
+    evaluate();
+    return true;
+  }
+
+  void join_crossings() {
     std::vector<std::size_t> crossed, unclear;
-    std::vector<std::vector<std::size_t>> rims(cells_.size());
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-      if (cells_[c].halved) continue;
-      rims[c] = rim(cells_[c]);
+    std::vector<std::vector<std::size_t>> rims(mesh_.cells().size());
+    for (std::size_t c = 0; c < rims.size(); ++c) {
+      if (mesh_.cells()[c].halved) continue;
+      rims[c] = mesh_.rim(mesh_.cells()[c]);
       if (rims[c].size() >= 2 && rims[c].size() % 2 == 0) crossed.push_back(c);
       if (rims[c].size() > 2 && rims[c].size() % 2 == 0) unclear.push_back(c);
     }
     const std::vector<char> centre_unstable = results<char>(
-        unclear.size(),
-        [&](std::size_t k) -> char {
-          const Cell& cell = cells_[unclear[k]];
-          if (thin_band(cell)) return !nodes_[cell.corners[0]].unstable();
-          const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
-          const auto s = sample(0.5 * (x_.at(low.i) + x_.at(high.i)), 0.5 * (y_.at(low.j) + y_.at(high.j)), leading_);
-          return s && is_unstable(*s);
-        },
+        unclear.size(), [&](std::size_t k) -> char { return unstable_centre(mesh_.cells()[unclear[k]]); },
         [](auto& visit, char& unstable) { visit_as_number(visit, unstable); });
     std::vector<CurveLink> links;
     std::size_t next_unclear = 0;
@@ -436,61 +323,113 @@ class Mesh {
         links.push_back({{r[0], r[1]}, c});
         continue;
       }
-      const bool start = nodes_[cells_[c].corners[0]].unstable();
-      for (const auto& [p, q] : joined_in_cell(r.size(), start, centre_unstable[next_unclear])) {
+      const bool start = unstable(mesh_.cells()[c].corners[0]);
+      for (const auto& [p, q] : joined_in_cell(r.size(), start, centre_unstable[next_unclear]))
         links.push_back({{r[p], r[q]}, c});
-      }
       ++next_unclear;
     }
-    chains_ = chains(crossings_.size(), links);
-
-    std::vector<BoundaryPoint> scaled(crossings_.size());
-    for (std::size_t k = 0; k < crossings_.size(); ++k) {
-      const BoundaryPoint p = point(k);
-      scaled[k] = {x_.scaled(p.x), y_.scaled(p.y), 0, p.along_x};
-    }
-    bool halved = false;
-    for (const CurveChain& chain : chains_) {
-      for (const std::size_t c : coarse_cells(chain, scaled, options_.sag)) {
-        if (cells_[c].halved || width(cells_[c]) < 2 || height(cells_[c]) < 2) continue;
-        halve(c);
-        halved = true;
-      }
-    }
-    evaluate();
-    return halved;
+    unclear_ = {unclear.begin(), unclear.end()};
+    chains_ = chains(mesh_.crossings().size(), links);
   }
 
-  BoundaryPoint point(std::size_t crossing) const {
-    const Crossing& c = crossings_[crossing];
-    const Edge& edge = edges_[c.edge];
-    const Node& a = nodes_[edge.a];
-    if (edge.along_x) return {c.boundary.x, y_.at(a.j), c.boundary.error, true};
-    return {x_.at(a.i), c.boundary.x, c.boundary.error, false};
+  bool unstable_centre(const MapCell& cell) const {
+    if (thin_band(cell)) return !unstable(cell.corners[0]);
+    const double x = 0.5 * (mesh_.x_of(cell.corners[0]) + mesh_.x_of(cell.corners[2]));
+    const double y = 0.5 * (mesh_.y_of(cell.corners[0]) + mesh_.y_of(cell.corners[2]));
+    const std::optional<StabilitySample> s = sample(x, y, along_curves_.stability);
+    return s && is_unstable(*s);
+  }
+
+  double wide() const { return mesh_.x().values.back() - mesh_.x().values.front(); }
+  double high() const { return mesh_.y().values.back() - mesh_.y().values.front(); }
+  BoundaryPoint scaled(const CurvePoint& point) const {
+    return {mesh_.x().scaled(point.place.x), mesh_.y().scaled(point.place.y), 0, point.place.along_x};
+  }
+
+  // A chain with the points put between its crossings, and for each stretch the link that it belongs to and the place
+  // that a point in it would have there.
+  struct Curve {
+    std::vector<CurvePoint> points;
+    std::vector<std::pair<Link, std::size_t>> stretches;
+  };
+
+  Curve curve(const CurveChain& chain) const {
+    Curve curve;
+    curve.points.push_back(crossing(chain.points[0]));
+    for (std::size_t k = 0; k < chain.cells.size(); ++k) {
+      const std::size_t a = chain.points[k], b = chain.points[k + 1];
+      const Link link{chain.cells[k], std::min(a, b), std::max(a, b)};
+      std::vector<CurvePoint> between;
+      if (const auto it = inserted_.find(link); it != inserted_.end()) between = it->second;
+      if (a > b) std::ranges::reverse(between);
+      for (std::size_t p = 0; p <= between.size(); ++p)
+        curve.stretches.push_back({link, a > b ? between.size() - p : p});
+      std::ranges::copy(between, std::back_inserter(curve.points));
+      curve.points.push_back(crossing(b));
+    }
+    return curve;
+  }
+
+  std::vector<Wanted> coarse_stretches() const {
+    std::vector<Wanted> wanted;
+    for (const CurveChain& chain : chains_) {
+      const Curve c = curve(chain);
+      std::vector<BoundaryPoint> places;
+      for (const CurvePoint& point : c.points) places.push_back(scaled(point));
+      std::vector<bool> coarse = coarse_chords(places, chain.closed, options_.sag);
+      for (std::size_t k = 0; k < c.stretches.size(); ++k) {
+        const auto& [link, position] = c.stretches[k];
+        const bool changes_kind = c.points[k].kind != c.points[k + 1].kind;
+        const bool unconfirmed = unclear_.contains(link.cell) && !inserted_.contains(link);
+        if (closed_.contains(link) || !(coarse[k] || changes_kind || unconfirmed)) continue;
+        if (std::hypot(places[k + 1].x - places[k].x, places[k + 1].y - places[k].y) < shortest_stretch) continue;
+        wanted.push_back({link, position, stretch(c, k, chain.closed)});
+      }
+    }
+    return wanted;
+  }
+
+  CurveStretch stretch(const Curve& c, std::size_t k, bool closed) const {
+    const std::size_t n = c.stretches.size();
+    const MapCell& cell = mesh_.cells()[c.stretches[k].first.cell];
+    CurveStretch s{{},
+                   {},
+                   c.points[k],
+                   c.points[k + 1],
+                   mesh_.x_of(cell.corners[0]),
+                   mesh_.x_of(cell.corners[2]),
+                   mesh_.y_of(cell.corners[0]),
+                   mesh_.y_of(cell.corners[2])};
+    if (k > 0 || closed) s.before = c.points[k > 0 ? k - 1 : n - 1];
+    if (k + 1 < n || closed) s.after = c.points[k + 1 < n ? k + 2 : 1];
+    return s;
   }
 
   // Pieces of one kind.
   void add_curves(const CurveChain& chain, std::vector<BoundaryCurve>& curves) const {
-    const std::size_t n = chain.points.size() - (chain.closed ? 1 : 0);
-    const auto kind = [&](std::size_t k) { return crossings_[chain.points[k % n]].boundary.kind; };
+    const std::vector<CurvePoint> points = curve(chain).points;
+    const std::size_t n = points.size() - (chain.closed ? 1 : 0);
+    const auto kind = [&](std::size_t k) { return points[k % n].kind; };
     std::size_t start = 0;
     while (chain.closed && start < n && kind(start) == kind(start + n - 1)) ++start;
     if (start == n) start = 0;  // one kind all round
-    BoundaryCurve curve;
+    BoundaryCurve piece;
     for (std::size_t k = start; k < start + n; ++k) {
-      if (!curve.points.empty() && kind(k) != curve.kind) {
-        curves.push_back(std::move(curve));
-        curve = {};
+      if (!piece.points.empty() && kind(k) != piece.kind) {
+        curves.push_back(std::move(piece));
+        piece = {};
       }
-      curve.kind = kind(k);
-      curve.points.push_back(point(chain.points[k % n]));
+      piece.kind = kind(k);
+      piece.points.push_back(points[k % n].place);
     }
-    if (chain.closed && curve.points.size() == n) {
-      curve.closed = true;
-      curve.points.push_back(curve.points.front());
+    if (chain.closed && piece.points.size() == n) {
+      piece.closed = true;
+      piece.points.push_back(piece.points.front());
     }
-    curves.push_back(std::move(curve));
+    curves.push_back(std::move(piece));
   }
+
+  // --- The grid ---
 
   static MapPoint known(const StabilitySample& sample) {
     const Stability& s = sample.stability;
@@ -500,30 +439,32 @@ class Mesh {
 
   // Values at the places that the caller gave: those of the nodes, and inside larger cells between the corners.
   void fill(StabilityMap& map) const {
-    const std::size_t nx = x_.values.size(), ny = y_.values.size();
+    const MapAxis &along_x = mesh_.x(), &along_y = mesh_.y();
+    const std::size_t nx = along_x.values.size(), ny = along_y.values.size();
     map.points.assign(nx * ny, {});
-    std::vector<bool> set(nx * ny, false);
-    for (const Node& node : nodes_) {
-      if (node.i % x_.units != 0 || node.j % y_.units != 0) continue;
+    std::vector<bool> done(nx * ny, false);
+    for (std::size_t n = 0; n < samples_.size(); ++n) {
+      const MapNode& node = mesh_.nodes()[n];
+      if (node.i % along_x.units != 0 || node.j % along_y.units != 0) continue;
       const std::size_t place =
-          static_cast<std::size_t>(node.i / x_.units) + nx * static_cast<std::size_t>(node.j / y_.units);
-      set[place] = true;
-      if (node.sample) map.points[place] = known(*node.sample);
+          static_cast<std::size_t>(node.i / along_x.units) + nx * static_cast<std::size_t>(node.j / along_y.units);
+      done[place] = true;
+      if (samples_[n]) map.points[place] = known(*samples_[n]);
     }
-    for (const Cell& cell : cells_) {
-      if (cell.halved || (width(cell) <= x_.units && height(cell) <= y_.units)) continue;
-      const Node &low = nodes_[cell.corners[0]], &high = nodes_[cell.corners[2]];
+    for (const MapCell& cell : mesh_.cells()) {
+      if (cell.halved || (mesh_.width(cell) <= along_x.units && mesh_.height(cell) <= along_y.units)) continue;
+      const MapNode &low = mesh_.nodes()[cell.corners[0]], &high = mesh_.nodes()[cell.corners[2]];
       std::array<MapPoint, 4> corner;
       for (std::size_t k = 0; k < 4; ++k) {
-        if (const auto& s = nodes_[cell.corners[k]].sample) corner[k] = known(*s);
+        if (const auto& s = samples_[cell.corners[k]]) corner[k] = known(*s);
       }
-      for (int j = (low.j + y_.units - 1) / y_.units; j * y_.units <= high.j; ++j) {
-        for (int i = (low.i + x_.units - 1) / x_.units; i * x_.units <= high.i; ++i) {
+      for (int j = (low.j + along_y.units - 1) / along_y.units; j * along_y.units <= high.j; ++j) {
+        for (int i = (low.i + along_x.units - 1) / along_x.units; i * along_x.units <= high.i; ++i) {
           const std::size_t place = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(j);
-          if (set[place]) continue;
-          set[place] = true;
-          const double u = static_cast<double>(i * x_.units - low.i) / (high.i - low.i);
-          const double v = static_cast<double>(j * y_.units - low.j) / (high.j - low.j);
+          if (done[place]) continue;
+          done[place] = true;
+          const double u = static_cast<double>(i * along_x.units - low.i) / (high.i - low.i);
+          const double v = static_cast<double>(j * along_y.units - low.j) / (high.j - low.j);
           const std::array<double, 4> weight = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
           MapPoint& point = map.points[place];
           if (corner[0].source == MapSource::missing) continue;
@@ -542,19 +483,19 @@ class Mesh {
   }
 
   const MapSystemAt& at_;
-  const Axis x_, y_;
   const MapOptions& options_;
   const bool grid_alone_;  // every point evaluated, nothing between them
-  SweepOptions along_edges_;
-  StabilityOptions at_nodes_, leading_;  // leading_: where the leading exponents suffice
-  mutable std::atomic<std::size_t> samples_ = 0;
-  std::vector<Node> nodes_;
-  std::vector<Edge> edges_;
-  std::vector<Cell> cells_;
-  std::vector<Crossing> crossings_;
-  std::vector<NewEdge> new_edges_;
+  SweepOptions along_edges_, along_curves_;  // along_curves_: the leading exponents suffice
+  StabilityOptions at_nodes_;
+  mutable std::atomic<std::size_t> num_samples_ = 0;
+  MapMesh mesh_;
+  std::vector<std::optional<StabilitySample>> samples_;  // by node
+  std::size_t searched_edges_ = 0;
+  std::vector<std::array<double, 4>> not_excluded_;
   std::vector<CurveChain> chains_;
-  std::size_t evaluated_nodes_ = 0;
+  std::set<std::size_t> unclear_;  // cells that more than one curve passes
+  std::map<Link, std::vector<CurvePoint>> inserted_;  // from the crossing of the smaller number
+  std::set<Link> closed_;  // no more points are found there
   double range_ = 0;
 };
 
@@ -563,13 +504,14 @@ class Mesh {
 StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                            const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
-  Axis along_x = make_axis(std::move(x), every_value, "x"), along_y = make_axis(std::move(y), every_value, "y");
+  MapAxis along_x = make_map_axis(std::move(x), every_value, "x"),
+          along_y = make_map_axis(std::move(y), every_value, "y");
   // Nothing between the places that were given where every one is evaluated and no curve is asked for.
   if (every_value && !options.boundaries)
-    for (Axis* axis : {&along_x, &along_y}) axis->base = axis->units;
-  Mesh mesh(system, std::move(along_x), std::move(along_y), every_value, options);
-  mesh.build();
-  return mesh.result();
+    for (MapAxis* axis : {&along_x, &along_y}) axis->base = axis->units;
+  MapSearch search(system, std::move(along_x), std::move(along_y), every_value, options);
+  search.run();
+  return search.result();
 }
 
 }  // namespace hb

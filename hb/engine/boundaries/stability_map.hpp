@@ -2,21 +2,19 @@
 // verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (interval_search.hpp).
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "hb/engine/boundaries/boundary_curve.hpp"
+#include "hb/engine/boundaries/curve_point.hpp"
 #include "hb/engine/boundaries/part.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 #include "hb/engine/exponents/stability.hpp"
 
 namespace hb {
-
-// Empty where there is no system (a linkage that does not close). Same place, same result; called from several threads
-// when the parts are computed by several.
-using MapSystemAt = std::function<std::optional<ScaledSystem>(double x, double y)>;
 
 struct MapOptions {
   SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
@@ -50,6 +48,8 @@ struct StabilityMap {
   std::vector<BoundaryCurve> boundaries;
   std::size_t samples = 0;  // places where the exponents were computed
   std::size_t not_converged = 0;  // boundary points whose bracket stayed wider than asked
+  // x, y of the ends of pieces of cell edges where a tongue or a gap may have been missed.
+  std::vector<std::array<double, 4>> not_excluded;
 
   const MapPoint& at(std::size_t i, std::size_t j) const { return points[i + x.size() * j]; }
 };

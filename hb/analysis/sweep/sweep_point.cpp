@@ -1,0 +1,101 @@
+#include "hb/analysis/sweep/sweep_point.hpp"
+
+#include <algorithm>
+
+#include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/rod_steady.hpp"
+
+namespace hb {
+namespace {
+
+bool wants_steady(const Only& only) { return only.steady || only.shape || only.reactions; }
+
+TurnRange turn_range(const FourierSeries& series, Eigen::Index component) {
+  if (series.num_harmonics() < 0) return {};
+  const Range range = fourier::range(series, component);
+  return {range.min.value, range.max.value};
+}
+
+RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
+                     const Only& only, FourierSeries& q) {
+  RodPoint point;
+  if (wants_steady(only)) {
+    SteadyState state = solve_rod(rod.system, rod.num_modes, speed, response_options(settings));
+    point.steady = state.status;
+    point.num_harmonics = state.num_harmonics;
+    point.error_bound = state.error_bound;
+    point.resonance_distance = state.resonance_distance;
+    if (state.status != SteadyStatus::singular) {
+      for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
+        point.max_abs.push_back(fourier::max_abs(state.q, i).value);
+      if (only.shape && rod.reported) {
+        const Body& link = *body_at(*model.linkage(), rod.link);
+        const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+        const RodShape shape = rod_shape(link, coefficients, speed, state.q);
+        point.deflection = shape.deflection.max_abs;
+        point.bending_moment = shape.bending_moment.max_abs;
+        const RodStress stress = rod_stress(link, coefficients, speed, *point.bending_moment);
+        point.buckling_share = stress.buckling_share();
+        point.strain = stress.strain;
+      }
+      q = std::move(state.q);
+    }
+  }
+  if (only.stability) {  // of every rod: the mechanism is stable where all are
+    const StabilityOptions options = exponent_options(settings);
+    if (only.all_exponents()) {
+      point.stability = stability_sample(scale_system(rod.system, speed), x, options);
+    } else {
+      point.stability.emplace();
+      point.stability->x = x;
+      point.stability->speed = speed;
+      point.stability->stability = analyse_stability(rod.system, speed, options);
+    }
+  }
+  return point;
+}
+
+}  // namespace
+
+Only available(const SceneModel& model, Only only) {
+  if (!model.linkage()) only.reactions = only.shape = false;
+  return only;
+}
+
+SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) {
+  const ScenePlace place = scene.at(x);
+  SweepPoint point;
+  point.x = x;
+  point.speed = place.speed;
+  point.problem = place.problem;
+  if (!place.model) return point;
+  const Only only = available(*place.model, wanted);
+  const std::vector<RodModel>& rods = place.model->rods;
+  std::vector<FourierSeries> q(rods.size());
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only, q[r]));
+  const bool solved = std::ranges::none_of(q, [](const FourierSeries& series) { return series.c.size() == 0; });
+  if (place.model->exact) {
+    std::vector<LinearRod> linear;
+    for (std::size_t r = 0; r < rods.size(); ++r) linear.push_back({&rods[r].system, &q[r]});
+    const TheoryErrors errors = theory_errors(*place.model->exact, place.speed, linear);
+    for (std::size_t r = 0; r < rods.size(); ++r) point.rods[r].theory_error = errors.rods[r].q;
+    point.theory_reason = errors.reason;
+  }
+  if (only.reactions && solved) {
+    std::vector<LinkResponse> responses;
+    for (std::size_t r = 0; r < rods.size(); ++r) responses.push_back({rods[r].link, q[r]});
+    const JointForces forces = joint_forces(*place.model->linkage(), place.speed, responses);
+    for (const JointForce& joint : forces.joints) {
+      for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
+        point.joints.push_back(turn_range(joint.elastic, c));
+        point.joints_rigid.push_back(turn_range(joint.rigid, c));
+      }
+    }
+    point.torque = turn_range(forces.torque, 0);
+    point.torque_rigid = turn_range(forces.torque_rigid, 0);
+  }
+  return point;
+}
+
+}  // namespace hb

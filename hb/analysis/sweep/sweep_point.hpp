@@ -1,0 +1,43 @@
+// Everything asked for at one place of a sweep.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/sweep/sweep_scene.hpp"
+#include "hb/engine/boundaries/stability_sample.hpp"
+
+namespace hb {
+
+// Smallest and largest over the turn.
+struct TurnRange {
+  double min = 0, max = 0;
+};
+
+struct RodPoint {
+  std::optional<SteadyStatus> steady;  // empty: not asked for
+  int num_harmonics = 0;
+  double error_bound = 0, resonance_distance = 0;
+  std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
+  std::optional<double> deflection, bending_moment;  // largest over rod and turn
+  std::optional<double> buckling_share, strain;  // RodStress, beside them
+  std::optional<double> theory_error;  // TheoryErrors::Rod::q; empty: beyond the linear theory, or q not asked for
+  std::optional<StabilitySample> stability;
+};
+
+struct SweepPoint {
+  double x = 0, speed = 0;
+  std::string problem;  // no linkage at this x: why; everything below is empty then
+  std::vector<RodPoint> rods;
+  std::string theory_reason;  // TheoryErrors::reason
+  std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
+  std::optional<TurnRange> torque, torque_rigid;
+};
+
+// What of `only` the model has.
+[[nodiscard]] Only available(const SceneModel& model, Only only);
+
+[[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted);
+
+}  // namespace hb
