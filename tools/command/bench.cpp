@@ -22,7 +22,9 @@
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/progress.hpp"
@@ -44,11 +46,12 @@ double peak_memory_megabytes() {
 }
 
 std::string bench_text(const SceneModel& model, double speed, const std::vector<RodBench>& benches, double geometry,
-                       bool nonlinear) {
+                       bool nonlinear, const NamedVerdicts& verdicts) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}, {}: error against run time of the periodic state{}\n", scene_name(model.scene),
-                 speed_text(speed, model.scene),
+  const std::string verdict = mechanism_verdict(verdicts);
+  fmt::format_to(out, "{}, {}{}{}\nerror against run time of the periodic state{}\n", scene_name(model.scene),
+                 speed_text(speed, model.scene), verdict.empty() ? "" : ": ", verdict,
                  nonlinear ? ", motion without linearisation of all rods together" : "");
   fmt::format_to(out,
                  "Geometry, once for all speeds (harmonic balance only): {:.3g} s. Integration evaluates the "
@@ -91,12 +94,13 @@ std::string bench_csv(const SceneModel& model, double speed, const std::vector<R
 }
 
 Json bench_json(const SceneModel& model, double speed, const std::vector<RodBench>& benches, double geometry,
-                bool nonlinear) {
+                bool nonlinear, const NamedVerdicts& verdicts) {
   Json json;
   json["title"] = scene_name(model.scene);
   json["rpm"] = rpm_from_speed(speed, model.scene.units);
   json["omega"] = speed;
   json["theory"] = nonlinear ? "nonlinear" : "linear";
+  if (const std::optional<Verdict> verdict = worst_of(verdicts)) json["verdict"] = to_string(*verdict);
   json["geometry_seconds"] = geometry;
   json["memory_megabytes"] = peak_memory_megabytes();
   json["rods"] = Json::object();
@@ -121,15 +125,17 @@ Json bench_json(const SceneModel& model, double speed, const std::vector<RodBenc
 }
 
 // The rows of `bench` begin at `first_row` of bench.csv, those of each method stand together.
-Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench, std::size_t first_row) {
+Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench, std::size_t first_row,
+                    const NamedVerdicts& verdicts) {
   Figure figure;
   figure.name = file_name("bench_" + bench.name);
   figure.width = 1050;
   figure.commands = fmt::format(
       "set title {}\nset logscale xy\nset format xy '10^{{%L}}'\nset xlabel 'time of one solution [s]'\n"
       "set ylabel 'max |error of q| / max |q|'\nset yrange [1e-16:10]\nset key outside right top\nplot ",
-      quoted(fmt::format("{}, {}, {}: error against run time", scene_name(model.scene), bench.name,
-                         speed_text(speed, model.scene))));
+      figure_title(model.scene,
+                   {model.linkage() ? bench.name : "", speed_text(speed, model.scene), title_verdict(verdicts)},
+                   "error of the periodic state against run time"));
   std::size_t m = 0;
   for (std::size_t begin = 0, end = 0; begin < bench.rows.size(); begin = end, ++m) {
     const std::string& method = bench.rows[begin].method;
@@ -165,6 +171,18 @@ std::vector<RodBench> bench_rods(const SceneModel& model, double speed, const Be
   return benches;
 }
 
+// Of the linear theory, of all elastic links whichever are measured.
+NamedVerdicts verdicts_at(const SceneModel& model, double speed, Settings settings) {
+  settings.only = {false, true, false, false, true};
+  return named_verdicts(analyse(model, speed, settings).rods);
+}
+
+// Of the motion of all rods together, by the reference; empty: there was none.
+NamedVerdicts of_motion(const RodBench& bench) {
+  if (bench.rows.empty()) return {};
+  return {{bench.name, bench.verdict}};
+}
+
 int run_bench(const BenchFlags& flags) {
   const SceneInput input = scene_input(flags.common.scene_file);
   Scene scene = input.source.with(overrides(flags.common));
@@ -188,22 +206,28 @@ int run_bench(const BenchFlags& flags) {
   const SceneModel model = make_model(std::move(scene), options);
   const double geometry = seconds_since(start);
   const auto num_rods = static_cast<std::size_t>(std::ranges::count_if(model.rods, &RodModel::reported));
-  std::optional<Progress> progress(std::in_place, "cases", nonlinear ? motion_bench_cases() : num_rods * bench_cases());
-  const BenchOptions with{options.steady_method, time_limit, [&] { progress->advance(); }};
+  const std::size_t cases = nonlinear ? motion_bench_cases() : num_rods * bench_cases();
+  std::optional<Progress> progress(std::in_place, "cases", cases);
+  Forecast forecast("the benchmark", cases, 1);
+  const BenchOptions with{options.steady_method, time_limit, [&] {
+                            progress->advance();
+                            forecast.advance();
+                          }};
   const std::vector<RodBench> benches =
       nonlinear ? std::vector{bench_motion(model, speed, options, with, motion)} : bench_rods(model, speed, with);
   progress.reset();
-  const Json document = bench_json(model, speed, benches, geometry, nonlinear);
+  const NamedVerdicts verdicts = nonlinear ? of_motion(benches.front()) : verdicts_at(model, speed, options);
+  const Json document = bench_json(model, speed, benches, geometry, nonlinear, verdicts);
   const bool complete = std::none_of(benches.begin(), benches.end(), [](const RodBench& b) { return b.rows.empty(); });
   Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : bench_text(model, speed, benches, geometry, nonlinear);
+  delivery.printed = out.json ? json_text(document) : bench_text(model, speed, benches, geometry, nonlinear, verdicts);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("bench.json", json_file_text(document));
     place.write("bench.csv", bench_csv(model, speed, benches));
     std::vector<Figure> figures;
     std::size_t row = 0;
     for (const RodBench& bench : benches) {
-      if (!bench.rows.empty()) figures.push_back(bench_figure(model, speed, bench, row));
+      if (!bench.rows.empty()) figures.push_back(bench_figure(model, speed, bench, row, verdicts));
       row += bench.rows.size();
     }
     return figures;

@@ -27,6 +27,7 @@
 #include "tools/pictures/check_pictures.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/parallel_for.hpp"
+#include "tools/work/progress.hpp"
 #include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
@@ -73,7 +74,8 @@ std::vector<double> speeds_of(const SpeedRange& range, const Units& units) {
 // On standard error if that is a terminal: speeds done, and the integration under way if it takes long.
 class CheckProgress {
  public:
-  explicit CheckProgress(std::size_t num_speeds) : num_speeds_(num_speeds), shown_(isatty(STDERR_FILENO) != 0) {}
+  CheckProgress(std::size_t num_speeds, int num_threads)
+      : num_speeds_(num_speeds), shown_(isatty(STDERR_FILENO) != 0), forecast_("the check", num_speeds, num_threads) {}
   CheckProgress(const CheckProgress&) = delete;
   CheckProgress& operator=(const CheckProgress&) = delete;
   ~CheckProgress() {
@@ -82,6 +84,11 @@ class CheckProgress {
 
   void begin(const std::string& rod, const std::string& speed, Integrator integrator, double seconds) {
     const std::lock_guard lock(mutex_);
+    constexpr double worth_saying = 10;
+    if (num_speeds_ == 1 && seconds > worth_saying)
+      fmt::print(stderr,
+                 "hb: {}, integration in time takes about {:.0f} s; --case-limit and --time-limit change that\n", rod,
+                 std::ceil(seconds));
     if (!shown_ || (seconds < 1 && Clock::now() - start_ < std::chrono::milliseconds(400))) return;
     dirty_ = true;
     fmt::print(stderr, "\r\033[K{} of {} speeds done; {} at {}: {}, about {:.0f} s", num_done_, num_speeds_, rod, speed,
@@ -90,6 +97,7 @@ class CheckProgress {
   void end() {
     const std::lock_guard lock(mutex_);
     ++num_done_;
+    forecast_.advance();
   }
 
  private:
@@ -97,6 +105,7 @@ class CheckProgress {
   std::size_t num_speeds_, num_done_ = 0;
   bool shown_, dirty_ = false;
   Clock::time_point start_ = Clock::now();
+  Forecast forecast_;
   std::mutex mutex_;
 };
 
@@ -168,7 +177,7 @@ int run_check(const CheckFlags& flags) {
   std::vector<char> done(speeds.size(), 0);
   {
     const InterruptGuard guard(!out.folder);
-    CheckProgress progress(speeds.size());
+    CheckProgress progress(speeds.size(), out.threads);
     const auto check_one = [&](std::size_t k) {
       CheckOptions here = check_with;
       here.begin = [&](const std::string& rod, Integrator integrator, double seconds) {

@@ -14,6 +14,7 @@
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/machine_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/table_output.hpp"
@@ -26,7 +27,9 @@
 namespace hb::tools {
 namespace {
 
-std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& result, OutputFolder& folder) {
+// `machine`: also what the frame feels and the sliders do, of the linear theory.
+std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& result, bool machine,
+                                 OutputFolder& folder) {
   std::vector<Figure> figures;
   const auto write = [&](const CsvFile& file) { folder.write(file.name, csv_text(file)); };
   for (const RodResult& rod : result.rods) {
@@ -54,7 +57,12 @@ std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& res
     write(forces);
     write(torque);
     for (Figure& figure : force_figures(model, result, forces.name)) figures.push_back(std::move(figure));
+    for (Figure& figure : polar_figures(model, result, forces.name)) figures.push_back(std::move(figure));
     figures.push_back(torque_figure(model, result, torque.name));
+    if (machine) {
+      write(frame_csv(model, result));
+      for (const CsvFile& slider : slider_csvs(model, result)) write(slider);
+    }
   }
   if (model.linkage()) {
     const CsvFile mechanism = mechanism_csv(model.scene);
@@ -95,7 +103,7 @@ int run_nonlinear(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : nonlinear_table(model, result);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return result.turns == 1 ? write_tables(model, as_speed_result(result), place) : std::vector<Figure>();
+    return result.turns == 1 ? write_tables(model, as_speed_result(result), false, place) : std::vector<Figure>();
   };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
                              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
@@ -123,7 +131,7 @@ int run_steady(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : steady_table(model, result, options, flags.multipliers);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return write_tables(model, result, place);
+    return write_tables(model, result, true, place);
   };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
