@@ -555,9 +555,8 @@ SweepResult run_sweep(const SweepScene& scene, Work& work) {
     const auto without = std::count_if(result.points.begin(), result.points.end(),
                                        [](const SweepPoint& point) { return point.rods.empty(); });
     result.shortfalls.push_back(fmt::format(
-        "ended before the answer was complete: {} of {} points have no answer, and bands and peaks between points may "
-        "be missing",
-        without, values.size()));
+        "ended before the answer was complete: {}bands and peaks between points may be missing",
+        without > 0 ? fmt::format("{} of {} points have no answer, and ", without, values.size()) : std::string()));
   }
   result.stages.push_back({"refined points", refined_watch.seconds(), fmt::format("{} points", places.size())});
 

@@ -45,10 +45,10 @@ NamedVerdicts worst_along(const SweepResult& result) {
   return verdicts;
 }
 
-// "7503.3 to 7948.02"; a band narrower than six digits show as "near 2160.03".
+// "7503.3 to 7948.02"; of a band narrower than six digits show its place alone.
 std::string span_text(double from, double to) {
   const std::string first = fmt::format("{:.6g}", from), last = fmt::format("{:.6g}", to);
-  return first == last ? "near " + first : first + " to " + last;
+  return first == last ? first : first + " to " + last;
 }
 
 // Of the points with an answer, how many have which verdict of all rods together.
