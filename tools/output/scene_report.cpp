@@ -98,8 +98,8 @@ void add_elastic(Text& text, const Body& body, const Units& units) {
   add(text,
       "           damping: internal {:.6g} {} (ratio {:.3g} of mode 1), external {:.6g} along and {:.6g} across {}/({} "
       "{})\n",
-      elastic.internal_damping, units.time, elastic.internal_damping * first / 2, elastic.damping_x,
-      elastic.damping_y, units.mass, units.length, units.time);
+      elastic.internal_damping, units.time, elastic.internal_damping * first / 2, elastic.damping_x, elastic.damping_y,
+      units.mass, units.length, units.time);
   std::vector<std::string> hertz, speeds;
   for (const double frequency : omega) {
     hertz.push_back(fmt::format("{:.6g}", frequency / (2 * std::numbers::pi * units.time_in_s)));
