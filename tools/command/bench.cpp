@@ -132,7 +132,8 @@ Figure bench_figure(const SceneModel& model, double speed, const RodBench& bench
   figure.width = 1050;
   figure.commands = fmt::format(
       "set title {}\nset logscale xy\nset format xy '10^{{%L}}'\nset xlabel 'time of one solution [s]'\n"
-      "set ylabel 'max |error of q| / max |q|'\nset yrange [1e-16:10]\nset key outside right top\nplot ",
+      "set ylabel 'max |error of q| / max |q|'\nset yrange [1e-16:10]\nset key outside right top Left reverse samplen "
+      "2\nplot ",
       figure_title(model.scene,
                    {model.linkage() ? bench.name : "", speed_text(speed, model.scene), title_verdict(verdicts)},
                    "error of the periodic state against run time"));

@@ -57,7 +57,8 @@ Figure curves_figure(const SceneModel& model, const SpeedCheck& check, const Rod
   figure.height = 720;
   figure.commands = fmt::format(
       "set multiplot layout 2,1 title {} margins char 13, char 24, char 4, char 4.5 spacing char 0, char 2\n"
-      "set xrange [0:360]\nset xtics 0,60,360\nset key outside right top\nset format x ''\nset format y '%g'\n"
+      "set xrange [0:360]\nset xtics 0,60,360\nset key outside right top Left reverse samplen 2\nset format x ''\nset "
+      "format y '%g'\n"
       "set ylabel 'q_1{}'\n"
       "plot '{}' using 1:2 with lines lt 1 title 'harmonic balance', '' using 1:3 every {} with points lt 2 pt 6 ps "
       "0.6 "
@@ -116,7 +117,7 @@ Figure range_figure(const SceneModel& model, const std::vector<SpeedCheck>& chec
   figure.name = "check";
   figure.commands = fmt::format(
       "set title {}\nset logscale y\nset format y '10^{{%L}}'\nset xlabel {}\n"
-      "set ylabel '|difference of q| / max |q|'\nset key outside right top\nplot ",
+      "set ylabel '|difference of q| / max |q|'\nset key outside right top Left reverse samplen 2\nplot ",
       figure_title(model.scene, {check_verdict(checks)}, "harmonic balance against time integration"),
       quoted(model.linkage() != nullptr ? "crank speed [rpm]" : "omega [rad/" + model.scene.units.time + "]"));
   const std::vector<RodCheck>& rods = checks.front().rods;

@@ -463,14 +463,15 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
     figure.width = 1000;
     figure.height = 130 + 230 * rows;
     figure.commands = fmt::format(
-        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'between smallest and largest force over the turn, "
-        "elastic beside rigid{}{}'\nset tmargin 2.2\nset key at graph 1, graph 1.02 right bottom horizontal samplen "
+        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'{}'\nset tmargin 2.2\nset key at graph 1, graph 1.02 "
+        "right bottom horizontal samplen "
         "3\nset format '%g'\n"
         "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset tmargin -1\nset xtics autofreq\nset ytics "
         "autofreq\n",
         rows, literal(short_name(scene.scene()) + ", joints of " + name + (verdict.empty() ? "" : ", " + verdict)),
-        cut ? ", sharp peaks cut off" : "", bands.empty() ? "" : "; shaded orange: unstable", axis(scene), bands,
-        panels);
+        wrapped(fmt::format("between smallest and largest force over the turn, elastic beside rigid{}{}",
+                            cut ? "; sharp peaks cut off" : "", bands.empty() ? "" : "; shaded orange: unstable")),
+        axis(scene), bands, panels);
     figure.commands += clean_up;
     figures.push_back(std::move(figure));
   }

@@ -66,7 +66,8 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
   const double to = std::max(result.span_before.to, result.span_after.to) / task.speed_unit;
   figure.commands = fmt::format(
       "set multiplot layout 2,1 title {} margins char 14, char 22, char 4, char 4.5 spacing char 0, char 2\n"
-      "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nunset xlabel\nset format y '%g'\nset "
+      "set xrange [{}:{}]\nset key outside right top Left reverse samplen 2\nset grid\nset logscale y\nunset "
+      "xlabel\nset format y '%g'\nset "
       "format x ''\n"
       "set ylabel 'largest deflection{}'\n",
       figure_title(scene, {design_verdicts(result)}, fmt::format("before (dashed) and {}", after_text(result))), from,
