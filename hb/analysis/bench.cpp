@@ -51,6 +51,10 @@ Bench bench(const Scene& scene, const BenchRequest& request) {
                                         : time_domain_system(rod.system, speed);
     result.rods.push_back(bench_rod(rod, system, options));
   }
+  Settings growth = result.settings;
+  growth.only = {.steady = false, .stability = true, .reactions = false, .shape = false, .verdict = true};
+  for (const RodResult& rod : analyse(model, speed, growth).rods)
+    result.verdicts.emplace_back(rod.name, rod.stability ? std::optional(rod.stability->verdict) : std::nullopt);
   return result;
 }
 
@@ -58,7 +62,9 @@ Bench nonlinear_bench(const Scene& scene, const BenchRequest& request, const Non
   Bench result = prepared(scene, request);
   result.nonlinear = true;
   const BenchOptions options = options_of(request, result.settings.steady_method, motion_bench_cases());
-  result.rods.push_back(bench_motion(*result.model, result.given.omega, result.settings, options, motion));
+  const RodBench& rod =
+      result.rods.emplace_back(bench_motion(*result.model, result.given.omega, result.settings, options, motion));
+  if (!rod.rows.empty()) result.verdicts = {{rod.name, rod.verdict}};
   return result;
 }
 

@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "hb/analysis/bench_rod.hpp"
@@ -25,6 +28,9 @@ struct Bench {
   bool nonlinear = false;
   double geometry_seconds = 0;  // once for all speeds
   std::vector<RodBench> rods;  // reported ones; without linearisation all together
+  // Of the linear theory, of all elastic links whichever are measured; without linearisation of all together by the
+  // reference, empty where there was none.
+  std::vector<std::pair<std::string, std::optional<Verdict>>> verdicts;
 
   [[nodiscard]] bool complete() const;  // a reference was found for each
 };

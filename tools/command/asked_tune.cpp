@@ -34,6 +34,9 @@ std::pair<SpeedSpan, bool> span_of(const TuneFlags& flags, const Scene& scene) {
     from = range.speeds.from;
     to = range.speeds.to;
   } else {
+    if (flags.over.find('=') == std::string::npos)
+      throw UsageError(
+          fmt::format("--over: found \"{0}\", allowed: rpm=FROM:TO or omega=FROM:TO, as in rpm={0}", flags.over));
     const NamedRange range = named_range("--over", flags.over);
     if (range.path != "rpm" && range.path != "omega")
       throw UsageError(fmt::format("--over: found {}, allowed: rpm=FROM:TO or omega=FROM:TO", range.path));

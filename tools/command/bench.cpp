@@ -49,9 +49,14 @@ int run_bench(const BenchFlags& flags) {
   if (out.folder) folder.emplace(*out.folder, "bench", provenance(flags.common.line, input));
 
   std::optional<Progress> progress;
+  std::optional<Forecast> forecast;
   request.told = [&](std::size_t, std::size_t total) {
-    if (!progress) progress.emplace("cases", total);
+    if (!progress) {
+      progress.emplace("cases", total);
+      forecast.emplace("the benchmark", total, 1);
+    }
     progress->advance();
+    forecast->advance();
   };
   const Bench found = nonlinear ? nonlinear_bench(scene, request, motion) : bench(scene, request);
   progress.reset();

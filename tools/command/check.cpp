@@ -108,7 +108,7 @@ int run_check(const CheckFlags& flags) {
   Check found;
   {
     const InterruptGuard guard(!out.folder);
-    CheckProgress progress(request.rpms.size() + request.omegas.size());
+    CheckProgress progress(request.rpms.size() + request.omegas.size(), out.threads);
     request.begin = [&](const std::string& rod, double speed, Integrator integrator, double seconds) {
       progress.begin(rod, speed_text(speed, scene), integrator, seconds);
     };

@@ -1,4 +1,5 @@
-// How far a cross-check is, on standard error if that is a terminal.
+// How far a cross-check is, on standard error if that is a terminal; how long it will take, wherever standard error
+// goes.
 #pragma once
 
 #include <chrono>
@@ -7,13 +8,14 @@
 #include <string>
 
 #include "hb/engine/time/time_integration.hpp"
+#include "tools/work/progress.hpp"
 
 namespace hb::tools {
 
 // Speeds done, and the integration under way if it takes long. From any thread.
 class CheckProgress {
  public:
-  explicit CheckProgress(std::size_t num_speeds);
+  CheckProgress(std::size_t num_speeds, int num_threads);
   ~CheckProgress();  // clears its line
   CheckProgress(const CheckProgress&) = delete;
   CheckProgress& operator=(const CheckProgress&) = delete;
@@ -26,6 +28,7 @@ class CheckProgress {
   std::size_t num_speeds_, num_done_ = 0;
   bool shown_, dirty_ = false;
   Clock::time_point start_ = Clock::now();
+  Forecast forecast_;
   std::mutex mutex_;
 };
 

@@ -55,7 +55,7 @@ int run_nonlinear(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : nonlinear_table(model, result);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return result.turns == 1 ? steady_files(model, as_speed_result(result), place) : std::vector<Figure>();
+    return result.turns == 1 ? steady_files(model, as_speed_result(result), false, place) : std::vector<Figure>();
   };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
                              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
@@ -82,7 +82,7 @@ int run_steady(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : steady_table(model, result, result.settings, flags.multipliers);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return steady_files(model, result, place);
+    return steady_files(model, result, true, place);
   };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {

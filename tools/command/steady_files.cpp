@@ -1,11 +1,13 @@
 #include "tools/command/steady_files.hpp"
 
 #include "tools/output/csv_output.hpp"
+#include "tools/output/machine_output.hpp"
 #include "tools/pictures/figures.hpp"
 
 namespace hb::tools {
 
-std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, OutputFolder& folder) {
+std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, bool machine,
+                                 OutputFolder& folder) {
   std::vector<Figure> figures;
   const auto write = [&](const CsvFile& file) { folder.write(file.name, csv_text(file)); };
   for (const RodResult& rod : result.rods) {
@@ -33,7 +35,12 @@ std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& res
     write(forces);
     write(torque);
     for (Figure& figure : force_figures(model, result, forces.name)) figures.push_back(std::move(figure));
+    for (Figure& figure : polar_figures(model, result, forces.name)) figures.push_back(std::move(figure));
     figures.push_back(torque_figure(model, result, torque.name));
+    if (machine) {
+      write(frame_csv(model, result));
+      for (const CsvFile& slider : slider_csvs(model, result)) write(slider);
+    }
   }
   if (model.linkage()) {
     const CsvFile mechanism = mechanism_csv(model.scene);

@@ -9,7 +9,8 @@
 
 namespace hb::tools {
 
-[[nodiscard]] std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result,
+// `machine`: also what the frame feels and the sliders do, of the linear theory.
+[[nodiscard]] std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, bool machine,
                                                OutputFolder& folder);
 
 }  // namespace hb::tools

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/output/json_output.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -37,8 +38,9 @@ std::string bench_text(const Bench& found) {
   const SceneModel& model = *found.model;
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}, {}: error against run time of the periodic state{}\n", scene_name(model.scene),
-                 speed_text(found.given.omega, model.scene),
+  const std::string verdict = mechanism_verdict(found.verdicts);
+  fmt::format_to(out, "{}, {}{}{}\nerror against run time of the periodic state{}\n", scene_name(model.scene),
+                 speed_text(found.given.omega, model.scene), verdict.empty() ? "" : ": ", verdict,
                  found.nonlinear ? ", motion without linearisation of all rods together" : "");
   fmt::format_to(out,
                  "Geometry, once for all speeds (harmonic balance only): {:.3g} s. Integration evaluates the "
@@ -70,6 +72,7 @@ Json bench_json(const Bench& found) {
   json["rpm"] = rpm_from_speed(speed, scene.units);
   json["omega"] = speed;
   json["theory"] = found.nonlinear ? "nonlinear" : "linear";
+  if (const std::optional<Verdict> verdict = worst_of(found.verdicts)) json["verdict"] = to_string(*verdict);
   json["geometry_seconds"] = found.geometry_seconds;
   json["memory_megabytes"] = peak_memory_megabytes();
   json["rods"] = Json::object();
