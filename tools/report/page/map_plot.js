@@ -229,6 +229,7 @@ class MapPlot {
 const setUpMap = () => {
   const canvas = document.getElementById("map");
   if (!canvas || !report.map) {
+    document.getElementById("map-views").classList.add("empty-card");
     document.getElementById("map-views").append(element("p", {class: "missing"}, "This page holds no map: hb report with --x and --y, or hb map, computes one."));
     return;
   }
