@@ -73,6 +73,7 @@ const start = () => {
   // Paper is white: colours of the light scheme, sizes of the page, and everything drawn, in sight or not.
   const onPaper = (on) => {
     document.documentElement.classList.toggle("printing", on);
+    for (const more of document.querySelectorAll("#notes details")) more.open = on;
     recolour();
     for (const chart of charts) chart.onPaper(on);
     drawNow();

@@ -2,6 +2,12 @@
 // takes a click to the nearest computed speed.
 const charts = [];
 
+const nearestRow = (x, at) => {
+  let best = 0;
+  for (let k = 1; k < x.length; ++k) if (Math.abs(x[k] - at) < Math.abs(x[best] - at)) best = k;
+  return best;
+};
+
 // 1, 2, 5 of each decade, or decades alone, or every so many of them, as there is room.
 const logTicks = (low, high, pixels) => {
   const decades = Math.log10(high / low), room = Math.max(2, pixels / 34);
@@ -37,7 +43,7 @@ class SpeedChart {
       logscale, valueRange: yRange, dateWindow: state.zoom ? [...state.zoom] : null, connectSeparatedPoints: true,
       legend: "onmouseover", labelsSeparateLines: false, highlightCircleSize: 3.5, xRangePad: 4, yRangePad: logscale ? 0 : 8,
       axisLabelFontSize: 12, gridLineColor: colours.grid, axisLineColor: colours.rule,
-      axes: {x: {pixelsPerLabel: 64, axisLabelFormatter: (v) => short(v, 5), valueFormatter: (v) => `${report.axis.symbol || "x"} ${short(v, 7)}`},
+      axes: {x: {pixelsPerLabel: 50, axisLabelFormatter: (v) => short(v, 5), valueFormatter: (v) => `${report.axis.symbol || "x"} ${short(v, 7)}`},
         y: {axisLabelWidth: 64, ...(logscale ? {ticker: logTicks} : {}), axisLabelFormatter: (v) => short(v, 4), valueFormatter: (v) => short(v, 5)}},
       underlayCallback: (pen, area, chart) => {
         pen.save();
@@ -54,7 +60,7 @@ class SpeedChart {
       },
       drawCallback: (chart) => { this.chart = chart; this.place(); labels(chart, this.host); },
       zoomCallback: (from, to) => shareZoom(this, from, to),
-      highlightCallback: (event, at, found, row) => { for (const other of charts) if (other !== this && other.x === this.x) other.chart.setSelection(row); },
+      highlightCallback: (event, at, found, row) => { for (const other of charts) if (other !== this) other.chart.setSelection(other.x === this.x ? row : nearestRow(other.x, at)); },
       unhighlightCallback: () => { for (const other of charts) if (other !== this && other.chart.getSelection() !== -1) other.chart.clearSelection(); },
       // Mouse only: touches scroll the page, and a tap is a click.
       interactionModel: {
