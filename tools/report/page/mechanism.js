@@ -45,6 +45,16 @@ const posesAt = (motion, angle) => motionAt(motion, angle).map((pose) => {
   return {...pose, chord, joints};
 });
 
+// The design before stands behind where its bodies are elsewhere.
+let otherBefore;
+const hasOtherBefore = () => {
+  if (otherBefore !== undefined) return otherBefore;
+  const before = report.design && report.motions[report.design.before_motion];
+  const ends = (motion) => [0.3, 2.1, 4.4].flatMap((angle) => motionAt(motion, angle).flatMap((pose) => pose.body.points.flatMap((p) => pose.at(p.at))));
+  const here = before ? ends(report.motions[0]) : [], there = before ? ends(before) : [], size = Math.max(1e-300, ...here.map(Math.abs));
+  return (otherBefore = there.some((v, k) => Math.abs(v - here[k]) > 1e-3 * size));
+};
+
 const drawMechanism = () => {
   const canvas = mechanismCanvas, box = sizeOf(canvas), pen = cleanPen(canvas, box);
   const motion = motionHere();
@@ -106,7 +116,7 @@ const drawMechanism = () => {
     stroke(zs.slice(0, 2), colour, ghost ? 1 : body.elastic ? 2.6 : 4);
     for (const z of zs.slice(2)) { stroke([zs[0], z], colour, ghost ? 1 : 4); stroke([zs[1], z], colour, ghost ? 1 : 2); }
   };
-  if (report.design && report.design.before_motion !== undefined)
+  if (hasOtherBefore())
     for (const pose of posesAt(report.motions[report.design.before_motion], state.angle)) drawBody(pose, true);
   const poses = posesAt(motion, state.angle);
   for (const pose of poses) drawBody(pose, false);
@@ -141,7 +151,7 @@ const drawMechanism = () => {
     ? `${clippedRods.join(", ")}: too large a vibration for this magnification, drawn with 0.4 of the link's length at most.`
     : `${state.magnification === 1 ? "Drawn to scale" : `Vibration drawn ${short(state.magnification)} times larger`}; dashed: ${motion.rigid ? "the chord" : "the rigid link"}.`;
   const theory = beyondRods.length ? ` Beyond the linear theory: ${beyondRods.join(", ")}, drawn grey and dashed.` : "";
-  const more = theory + (report.design && report.design.before_motion !== undefined ? " Light: the design before." : "");
+  const more = theory + (hasOtherBefore() ? " Light: the design before." : "");
   if (note.textContent !== words + more) note.textContent = words + more;
 };
 

@@ -64,7 +64,10 @@ class PlotArea {
     pen.textAlign = "right"; pen.textBaseline = "middle";
     for (const v of yTicks) pen.fillText(tickText(v, yTicks), this.left - 6, this.y(v));
     pen.textAlign = "center"; pen.textBaseline = "top";
-    for (const v of ticks) pen.fillText(tickText(v, ticks), Math.min(this.x(v), this.width - 12), this.bottom + 5);
+    for (const v of ticks) {
+      const text = tickText(v, ticks);
+      pen.fillText(text, Math.min(this.x(v), this.width - 1 - pen.measureText(text).width / 2), this.bottom + 5);
+    }
     if (xLabel) pen.fillText(xLabel, (this.left + this.right) / 2, this.height - 15);
     pen.textAlign = "left";
     if (yLabel) pen.fillText(yLabel, 2, 3);
