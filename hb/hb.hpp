@@ -2,7 +2,7 @@
 #pragma once
 
 #include "hb/analysis/analyses.hpp"  // IWYU pragma: export
-#include "hb/analysis/bench_rod.hpp"  // IWYU pragma: export
+#include "hb/analysis/bench.hpp"  // IWYU pragma: export
 #include "hb/analysis/nonlinear/nonlinear_analyses.hpp"  // IWYU pragma: export
 #include "hb/analysis/request.hpp"  // IWYU pragma: export
 #include "hb/analysis/steady.hpp"  // IWYU pragma: export

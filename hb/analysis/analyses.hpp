@@ -2,32 +2,20 @@
 // given. All throw RequestError for what cannot be asked, and SceneError for what cannot be anywhere.
 #pragma once
 
-#include <array>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "hb/analysis/along.hpp"
 #include "hb/analysis/cross_check.hpp"
-#include "hb/analysis/map_result.hpp"
+#include "hb/analysis/map_task.hpp"
 #include "hb/analysis/request.hpp"
 #include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "hb/analysis/work.hpp"
 
 namespace hb {
-
-// A number and its values in ascending order: "rpm", "omega" (rad per the scene's unit of time), or one of the family.
-struct Along {
-  std::string path;
-  std::vector<double> values;
-};
-// The speed, also by its path in a scene ("analysis.rpm").
-[[nodiscard]] bool is_speed(const std::string& path);
-// Two paths that name one number: "AB.J" and "*.J" do where AB is elastic.
-[[nodiscard]] bool same_number(const SceneFamily& family, const std::string& a, const std::string& b);
-// N >= 2 equally spaced values, both ends included.
-[[nodiscard]] Along along(std::string path, double from, double to, std::size_t count);
 
 struct SweepRequest : Request {
   Along x;
@@ -37,21 +25,12 @@ struct SweepRequest : Request {
 struct Sweep : SweepResult {
   std::shared_ptr<const SweepScene> scene;
 };
+// The request checked and made ready: run_sweep computes it.
+[[nodiscard]] std::shared_ptr<const SweepScene> sweep_scene(const SceneFamily& family, const SweepRequest& request);
 [[nodiscard]] Sweep sweep(const SceneFamily& family, const SweepRequest& request, Work& work);
 [[nodiscard]] Sweep sweep(const SceneFamily& family, const SweepRequest& request);
 
-struct MapRequest : Request {
-  Along x, y;  // one of them may be the speed
-};
-
-struct Map : MapResult {
-  Scene scene;  // at some place of the map
-  Settings settings;
-  int num_modes = 0;
-  double boundary_tolerance = 0;  // of boundary points, relative
-  std::string evidence;  // one sentence: what was computed
-};
-// modes = "auto" stands for 5: of the systems of a map all have the same size.
+// MapTask ready and computed.
 [[nodiscard]] Map map(const SceneFamily& family, const MapRequest& request, Work& work);
 [[nodiscard]] Map map(const SceneFamily& family, const MapRequest& request);
 
@@ -60,11 +39,16 @@ struct CheckRequest : Request {
   Integrator integrator = Integrator::automatic;
   double case_limit = 60;  // seconds for each rod and speed
   bool march = false;  // also march from rest where the motion is stable
+  // Told from any thread: an integration that begins, with the seconds it will take, and a speed (rad per unit time)
+  // that is done.
+  std::function<void(const std::string& rod, double speed, Integrator, double seconds)> begin = {};
+  std::function<void(double speed)> done = {};
 };
 
 // Rad per unit time, those of `rpms` or the one speed. Throws RequestError.
 [[nodiscard]] std::vector<double> speeds_of(const CheckRequest& request, const Scene& scene);
 
+// Work that ends early leaves speeds out, which a shortfall says; perhaps all.
 struct Check {
   Settings settings;
   std::shared_ptr<const SceneModel> model;

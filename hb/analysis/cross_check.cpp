@@ -248,6 +248,8 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
   SpeedResult series = analyse(model, speed, wanted);
   check.seconds_harmonic_balance = seconds_since(start);
   check.shortfalls = series.shortfalls;
+  for (const RodResult& rod : series.rods)
+    if (rod.stability) check.verdicts.emplace_back(rod.name, rod.stability->verdict);
 
   bool complete = true;  // joint forces need every rod
   std::vector<int> links;

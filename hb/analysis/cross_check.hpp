@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
@@ -60,6 +61,8 @@ struct SpeedCheck {
   // a [hill] scene.
   std::optional<TheoryErrors> theory;
   std::vector<std::string> theory_rods;
+  // Of harmonic balance, of all elastic links, asked for or not, by name; empty where stability was not asked for.
+  std::vector<std::pair<std::string, std::optional<Verdict>>> verdicts;
   double seconds_harmonic_balance = 0, seconds_shooting = 0, seconds_marching = 0;
   std::vector<std::string> shortfalls;  // what missed its tolerance, or could not be compared
   bool agrees() const;

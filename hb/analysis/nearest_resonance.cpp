@@ -50,14 +50,14 @@ std::optional<NearestResonance> nearest_resonance(const HillSystem& system, doub
   return nearest;
 }
 
-std::optional<double> quasi_static_response(const HillSystem& system, Index num_modes, double speed) {
+std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Index num_modes, double speed) {
   const FourierSeries C = stiffness_at(system, speed), h = load_at(system, speed);
   const Index I = system.num_modes();
   if (h.c.size() == 0 || I > most_unknowns) return std::nullopt;
   const Index H = std::max(C.num_harmonics(), h.num_harmonics());
   const Index N = fourier::fast_length(std::max<Index>(4 * H + 2, 32));
   const Eigen::MatrixXd matrices = fourier::synthesise(C, N), loads = fourier::synthesise(h, N);
-  double largest = 0;
+  Eigen::MatrixXd motion(num_modes, N);
   int sign = 0;
   for (Index j = 0; j < N; ++j) {
     const Eigen::Map<const Eigen::MatrixXd> at(matrices.col(j).data(), I, I);
@@ -67,12 +67,17 @@ std::optional<double> quasi_static_response(const HillSystem& system, Index num_
     if (!(lu.rcond() > 0) || (j > 0 && now != sign)) return std::nullopt;
     sign = now;
     const Eigen::VectorXd u = lu.solve(Eigen::VectorXd(loads.col(j)));
-    Eigen::VectorXd q = u.head(num_modes);
-    if (I == 2 * num_modes) q += u.tail(num_modes);
-    largest = std::max(largest, q.cwiseAbs().maxCoeff());
+    motion.col(j) = u.head(num_modes);
+    if (I == 2 * num_modes) motion.col(j) += u.tail(num_modes);
   }
-  if (!(largest > 0) || !std::isfinite(largest)) return std::nullopt;
-  return largest;
+  if (!motion.allFinite()) return std::nullopt;
+  return motion;
+}
+
+std::optional<double> quasi_static_response(const HillSystem& system, Index num_modes, double speed) {
+  const std::optional<Eigen::MatrixXd> motion = quasi_static_motion(system, num_modes, speed);
+  if (!motion || !(motion->cwiseAbs().maxCoeff() > 0)) return std::nullopt;
+  return motion->cwiseAbs().maxCoeff();
 }
 
 }  // namespace hb

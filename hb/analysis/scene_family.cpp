@@ -18,7 +18,9 @@ struct SceneFamily::Kind {
 
   virtual Scene scene(const Numbers& numbers) const = 0;
   virtual std::vector<std::string> paths() const = 0;
+  virtual std::vector<std::string> damping_paths() const { return {}; }
   virtual double value(const std::string& path) const = 0;
+  virtual std::shared_ptr<const Kind> with(const Numbers& numbers) const = 0;
 };
 
 namespace {
@@ -42,6 +44,9 @@ SceneFamily::SceneFamily(Scene scene) {
     }
     std::vector<std::string> paths() const override { return {}; }
     double value(const std::string& path) const override { refuse_path(path, {}); }
+    std::shared_ptr<const Kind> with(const Numbers& numbers) const override {
+      return std::make_shared<Single>(scene(numbers));
+    }
     Scene scene_;
   };
   kind_ = std::make_shared<Single>(std::move(scene));
@@ -56,7 +61,19 @@ SceneFamily::SceneFamily(SceneSource source, std::vector<Override> set) {
       return text_.with(all);
     }
     std::vector<std::string> paths() const override { return text_.numeric_paths(); }
-    double value(const std::string& path) const override { return text_.value(path); }
+    std::vector<std::string> damping_paths() const override {
+      std::vector<std::string> of_hill = text_.numeric_paths();
+      std::erase_if(of_hill, [](const std::string& path) { return !path.starts_with("hill.damping."); });
+      return of_hill.empty() ? text_.damping_paths() : of_hill;
+    }
+    double value(const std::string& path) const override {
+      return set_.empty() ? text_.value(path) : SceneSource(text_.text_with(set_), "scene", ".").value(path);
+    }
+    std::shared_ptr<const Kind> with(const Numbers& numbers) const override {
+      std::vector<Override> all = set_;
+      for (const Number& number : numbers) all.push_back(number_override(number.path, number.value));
+      return std::make_shared<FromText>(text_, std::move(all));
+    }
     SceneSource text_;
     std::vector<Override> set_;
   };
@@ -79,6 +96,11 @@ SceneFamily::SceneFamily(Numbers numbers, Build build, Units units) {
       return names;
     }
     double value(const std::string& path) const override { return numbers_[place_of(path)].value; }
+    std::shared_ptr<const Kind> with(const Numbers& numbers) const override {
+      Numbers replaced = numbers_;
+      for (const Number& number : numbers) replaced[place_of(number.path)].value = number.value;
+      return std::make_shared<FromFunction>(std::move(replaced), build_, units_);
+    }
     std::size_t place_of(const std::string& path) const {
       const auto found = std::ranges::find(numbers_, path, &Number::path);
       if (found == numbers_.end()) refuse_path(path, paths());
@@ -104,7 +126,9 @@ FamilyMember SceneFamily::at(const Numbers& numbers) const {
 }
 
 std::vector<std::string> SceneFamily::paths() const { return kind_->paths(); }
+std::vector<std::string> SceneFamily::damping_paths() const { return kind_->damping_paths(); }
 double SceneFamily::value(const std::string& path) const { return kind_->value(path); }
+SceneFamily SceneFamily::with(const Numbers& numbers) const { return SceneFamily(kind_->with(numbers)); }
 
 Scene scene_of(std::variant<Linkage, HillSystem> model, const Units& units) {
   Scene scene;

@@ -44,7 +44,12 @@ class SceneFamily {
   [[nodiscard]] FamilyMember at(const Numbers& numbers) const;
 
   [[nodiscard]] std::vector<std::string> paths() const;
+  // Those that damping is proportional to: internal damping of elastic links, the damping of a [hill] scene. A function
+  // has none that are known.
+  [[nodiscard]] std::vector<std::string> damping_paths() const;
   [[nodiscard]] double value(const std::string& path) const;  // throws SceneError
+  // The same family with these numbers replaced.
+  [[nodiscard]] SceneFamily with(const Numbers& numbers) const;
 
  private:
   struct Kind;

@@ -16,6 +16,9 @@
 namespace hb {
 namespace {
 
+// The problem of a point that the work ended before.
+constexpr const char* not_computed = "not computed before the end";
+
 // What lies between two neighbouring points of one rod.
 struct Between {
   SearchedInterval bands;
@@ -89,7 +92,7 @@ class SweepRun {
     point.speed = scene_.axis().kind == Axis::Kind::omega
                       ? x
                       : speed_from_rpm(in_rpm ? x : scene_.fixed_rpm(), scene_.scene().units);
-    point.problem = "not computed before the end";
+    point.problem = not_computed;
     return point;
   }
 
@@ -279,15 +282,18 @@ class SweepRun {
     const Stopwatch watch;
     const std::vector<double> places = work_.ends_early() ? std::vector<double>{} : places_found();
     result_.refined = work_.results<SweepPoint>(
-        "refined points", places.size(), [&](std::size_t k) { return analyse_point(scene_, places[k], only_); },
+        "refined points", places.size(),
+        [&](std::size_t k) {
+          return work_.ends_early() ? left_out(places[k]) : analyse_point(scene_, places[k], only_);
+        },
         [](auto& visit, SweepPoint& point) { visit_point(visit, point); });
+    std::erase_if(result_.refined, [](const SweepPoint& point) { return point.problem == not_computed; });
     if (work_.ends_early()) {
       const auto without =
           std::ranges::count_if(result_.points, [](const SweepPoint& point) { return point.rods.empty(); });
       result_.shortfalls.push_back(fmt::format(
-          "ended before the answer was complete: {} of {} points have no answer, and bands and peaks between points "
-          "may be missing",
-          without, values_.size()));
+          "ended before the answer was complete: {}bands and peaks between points may be missing",
+          without > 0 ? fmt::format("{} of {} points have no answer, and ", without, values_.size()) : std::string()));
     }
     result_.stages.push_back({"refined points", watch.seconds(), fmt::format("{} points", places.size())});
   }

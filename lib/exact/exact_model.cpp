@@ -10,6 +10,7 @@
 #include "lib/exact/bent_mechanism.hpp"
 #include "lib/exact/bent_rod.hpp"
 #include "lib/exact/rod_quadrature.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -320,6 +321,7 @@ ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, cons
     for (MatrixXd* by : {&result.by_q, &result.by_q1, &result.by_q2}) by->resize(n * n, N);
   }
   for (Index begin = 0; begin < N; begin += most) {
+    end_if_wished();
     const Index count = std::min(most, N - begin);
     const CrankAngles part = angles.part(begin, count);
     const auto columns = [&](const MatrixXd& all) { return all.middleCols(begin, count); };

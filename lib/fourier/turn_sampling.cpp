@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "lib/stop_wish.hpp"
+
 namespace hb {
 
 namespace {
@@ -59,6 +61,7 @@ TurnSeries sample_turn(const std::vector<TurnComponent>& components, const FillS
   TurnSeries turn;
   Eigen::MatrixXd samples(n, 0);
   for (Eigen::Index N = options.first; N <= options.last; N *= 2) {
+    end_if_wished();
     Eigen::MatrixXd finer(n, N);
     if (samples.cols() == 0) {
       fill(finer, 0, 1);

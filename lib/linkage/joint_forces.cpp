@@ -6,6 +6,7 @@
 #include "lib/fourier/turn_sampling.hpp"
 #include "lib/linkage/balance.hpp"
 #include "lib/linkage/joint_rows.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -58,7 +59,9 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
     const Eigen::Index N = samples.cols();
     const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, N);
     const std::vector<ResponseSamples> q = response_samples(responses, N);
+    constexpr Eigen::Index often = 256;
     for (Eigen::Index j = begin; j < N; j += step) {
+      if (j % often == begin) end_if_wished();
       motion_at(linkage, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N), motion);
       rigid_loads(linkage, motion, slider_forces.col(j), powers);
       rigid.resize(motion.size());

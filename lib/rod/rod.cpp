@@ -7,6 +7,7 @@
 #include "lib/fourier/turn_sampling.hpp"
 #include "lib/linkage/balance.hpp"
 #include "lib/rod/shear.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -14,6 +15,7 @@ namespace {
 
 using Complex = std::complex<double>;
 constexpr double pi = std::numbers::pi;
+constexpr Eigen::Index often = 256;  // crank angles or harmonics between two looks at the wish to stop
 
 std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
@@ -100,6 +102,7 @@ LinkageCoefficients linkage_coefficients(const Linkage& linkage, double toleranc
     const Eigen::Index N = samples.cols();
     const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, N);
     for (Eigen::Index j = begin; j < N; j += step) {
+      if (j % often == begin) end_if_wished();
       motion_at(linkage, 2 * pi * static_cast<double>(j) / static_cast<double>(N), motion);
       rigid_loads(linkage, motion, slider_forces.col(j), loads);
       for (std::size_t p = 0; p < 3; ++p) balance(linkage, motion, loads[p], forces[p]);
@@ -150,6 +153,7 @@ HillSystem ritz_system(const Body& link, const RodCoefficients& rod, Eigen::Inde
     C = FourierSeries(I * I, H);
     h = FourierSeries(I, H);
     for (Eigen::Index n = 0; n <= H && !zero; ++n) {
+      if (n % often == 0) end_if_wished();
       const Complex f0 = f.c(0, n), f1 = f.c(1, n), f2 = f.c(2, n), f3 = f.c(3, n), f4 = f.c(4, n);
       const Complex odd_load = -(4 / pi * f0 + 2 * l / pi * f1), even_load = 2 * l / pi * f1;
       const Complex odd_coupling = 2 / l * f3 - f2;

@@ -96,6 +96,62 @@ TEST_F(Words, TheVerdictIsTheFirstLineOfEveryTable) {
   EXPECT_EQ(first_line(steady), "Forced Mathieu equation, omega = 1 rad/s: stable (system)");
 }
 
+// Tables, JSON and pictures of the cross-check, the benchmark and the design said nothing of the mechanism.
+TEST_F(Words, CheckBeginsWithTheVerdictOfTheMechanism) {
+  const std::string at = "check " + scene("six_link") + " --modes 1 --tol 1e-7 ";
+  const std::string one = said(at + "--rpm 2400 --rods CD --out out");
+  EXPECT_EQ(first_line(one),
+            "Six-link mechanism, 2400 rpm: UNSTABLE because of AB; harmonic balance and time integration agree");
+  expect(read(folder_ / "out/check_CD.svg"), {"2400 rpm, UNSTABLE because of AB"});
+  EXPECT_EQ(Json::parse(read(folder_ / "out/check.json"))["verdict"], "unstable");
+  const std::string several = said(at + "--rpm 300:2400:2100 --only steady,stability --out range");
+  EXPECT_EQ(first_line(several),
+            "Six-link mechanism: UNSTABLE because of AB at 1 of 2 speeds; harmonic balance and time "
+            "integration agree");
+  EXPECT_EQ(Json::parse(read(folder_ / "range/check.json"))["verdict"], Json({"stable", "unstable"}));
+  expect(read(folder_ / "range/check.svg"), {"UNSTABLE because of AB at 1 of 2 speeds"});
+  const Json without = Json::parse(said(at + "--rpm 300 --only steady --json"));
+  EXPECT_FALSE(without.contains("verdict"));
+}
+
+TEST_F(Words, BenchBeginsWithTheVerdictOfTheMechanism) {
+  const std::string text =
+      said("bench " + scene("six_link") + " --rpm 2400 --modes 1 --rods CD --case-limit 0.05 --out out");
+  EXPECT_EQ(first_line(text), "Six-link mechanism, 2400 rpm: UNSTABLE because of AB");
+  EXPECT_EQ(Json::parse(read(folder_ / "out/bench.json"))["verdict"], "unstable");
+  expect(read(folder_ / "out/bench_CD.svg"), {"CD, 2400 rpm, UNSTABLE because of AB"});
+}
+
+TEST_F(Words, TuneBeginsWithTheVerdictOfBothDesigns) {
+  const std::string question =
+      "tune " + scene("six_link") +
+      " --modes 1 --tol 1e-6 --minimise deflection --vary CD.J=40:50 --over rpm=1500:2400 --speeds 4 --analyses 8 "
+      "--algorithm direct ";
+  const CommandResult result = hb(question + "--rods CD --out out");
+  ASSERT_TRUE(result.status == 0 || result.status == 3) << result.err;
+  expect(first_line(result.out),
+         {"Six-link mechanism: the design found is UNSTABLE because of AB over 1500 to 2400 rpm; before: UNSTABLE "
+          "because of AB"});
+  const Json found = Json::parse(read(folder_ / "out/tune.json"));
+  EXPECT_EQ(found["verdict"], "unstable");
+  EXPECT_EQ(found["verdict_before"], "unstable");
+  expect(read(folder_ / "out/before_after.svg"), {"UNSTABLE because of AB"});
+  // Metres stood at the unknowns of a system of equations.
+  const std::string system = said("tune " + scene("mathieu") +
+                                  " --minimise deflection --vary hill.damping.0.0=0.1:0.2 --over omega=3:4 --speeds 4");
+  expect(system, {"the design found is stable (system) over 3 to 4 rad/s; before: stable (system)", "largest |q_i|"},
+         {" m\n", "largest deflection", "crank"});
+}
+
+// The share that axial elasticity has in the correction was printed as if it were known.
+TEST_F(Words, WhatAxialElasticityChangesIsARoughEstimate) {
+  expect(said("steady " + scene("six_link") + " --rpm 300 --modes 1"),
+         {" % would be changed by axial elasticity, which it leaves out; a rough estimate"}, {"taken away"});
+  // A rod so stocky that the mass at its end swings along it as slowly as it bends.
+  expect(said("steady " + scene("slider_crank") + " --rpm 300 --modes 1 --set rod.J=45000"),
+         {"half or more would be changed by axial elasticity"});
+}
+
 // Words of a crank and millimetres stood in answers about a system of equations.
 TEST_F(Words, ASystemOfEquationsHasNoCrank) {
   for (const char* arguments : {"steady ", "steady --multipliers ", "sweep --omega 1:2.2:0.1 "}) {

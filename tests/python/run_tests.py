@@ -1,4 +1,4 @@
-"""Runs the tests of this folder; without pytest they are skipped, and that is said."""
+"""Runs the tests of this folder, or of the files named; without pytest they are skipped, and that is said."""
 
 import pathlib
 import sys
@@ -9,5 +9,7 @@ except ImportError:
     print("python.package: skipped, pytest is missing (Debian: python3-pytest)")
     sys.exit(77)
 
-folder = str(pathlib.Path(__file__).parent)
-sys.exit(pytest.main(["-q", "-p", "no:cacheprovider", folder, *sys.argv[1:]]))
+folder = pathlib.Path(__file__).parent
+named = [str(folder / file) for file in sys.argv[1:] if file.endswith(".py")]
+flags = [word for word in sys.argv[1:] if not word.endswith(".py")]
+sys.exit(pytest.main(["-q", "-p", "no:cacheprovider", *(named or [str(folder)]), *flags]))

@@ -177,3 +177,20 @@ def test_wrong_speeds_are_refused(system, omega):
     for method in (system.steady, system.stability):
         with pytest.raises(hb.RequestError):
             method(omega=omega)
+
+
+def test_shapes_are_answered_with_those_of_mass():
+    with pytest.raises(hb.RequestError) as raised:
+        hb.HillSystem(mass=np.eye(2), stiffness={0: 1})
+    assert raised.value.field == "stiffness[0]" and "(2, 2)" in raised.value.allowed
+    with pytest.raises(hb.RequestError, match="0 to 10000"):
+        hb.HillSystem(mass=1, stiffness={20000: 1})
+    with pytest.raises(hb.RequestError) as raised:
+        hb.HillSystem(mass=0, stiffness={0: 1})
+    assert raised.value.found == "mass is singular"
+    with pytest.raises(hb.RequestError) as raised:
+        hb.HillSystem(mass="a", stiffness={0: 1})
+    assert raised.value.found == "'a'"
+    with pytest.raises(hb.RequestError) as raised:
+        hb.HillSystem(mass=np.eye(9) * 1j, stiffness={0: np.eye(9)})
+    assert "\n" not in str(raised.value) and len(raised.value.found) < 90

@@ -171,6 +171,93 @@ def test_a_check_is_the_commands(scene, arguments, flags):
     assert found.seconds["shooting"] > 0
 
 
+def test_a_map_has_boundaries_over_a_range_of_damping(mathieu):
+    arguments = {"x": "omega=1.9:2.5:7", "y": "hill.stiffness.1.cos.0.0=0.1:0.5:5"}
+    flags = ["--x", arguments["x"], "--y", arguments["y"], "--damping-range", "0.5:2"]
+    found = mathieu.map(**arguments, damping_range=(0.5, 2))
+    assert found.to_dict() == command("map", MATHIEU, *flags)
+    assert sorted(found.damping) == [0.5, 2.0]
+    assert len(found.damping[0.5]) >= 1 and found.damping[0.5][0].points.shape[1] == 2
+    again = pickle.loads(pickle.dumps(found))
+    assert str(again) == str(found)
+
+
+@pytest.mark.parametrize(
+    "factors", [(2, 0.5), (-1, 2), (1, float("nan")), (1, float("inf")), (1,), (1, 2, 3), "0.5:2", {"low": 1}, 3]
+)
+def test_factors_on_the_damping_are_checked(mathieu, factors):
+    with pytest.raises(hb.RequestError) as raised:
+        mathieu.map(x="omega=1.9:2.5:3", y="hill.stiffness.1.cos.0.0=0.1:0.5:3", damping_range=factors)
+    assert raised.value.field == "damping_range" and raised.value.found and raised.value.allowed
+
+
+def test_damping_that_is_an_axis_or_not_there_is_not_multiplied(mathieu, six_link):
+    with pytest.raises(hb.RequestError, match="other than the damping"):
+        mathieu.map(x="omega=1.9:2.5:3", y="hill.damping.0.0=0.1:0.5:3", damping_range=(0.5, 2))
+    with pytest.raises(hb.RequestError, match="without boundaries"):
+        mathieu.map(
+            x="omega=1.9:2.5:3", y="hill.stiffness.1.cos.0.0=0.1:0.5:3", damping_range=(0.5, 2), boundaries=False
+        )
+
+
+def test_a_map_without_boundaries_reached_what_was_asked(mathieu):
+    found = mathieu.map(x="omega=1.9:2.5:3", y="hill.stiffness.1.cos.0.0=0.1:0.5:3", boundaries=False)
+    assert found.converged and found.boundaries == [] and found.shortfalls == []
+
+
+def timeless(document):
+    if isinstance(document, dict):
+        return {k: timeless(v) for k, v in document.items() if not any(w in k for w in ("seconds", "memory", "ratios"))}
+    if isinstance(document, list):
+        return [timeless(entry) for entry in document]
+    return document
+
+
+def test_a_bench_is_the_commands():
+    told = []
+    found = hb.load(MATHIEU).bench(omega=1.0, case_limit=1, progress=lambda *a: told.append(a))
+    document = command("bench", MATHIEU, "--omega", "1", "--case-limit", "1")
+    ours, theirs = timeless(found.to_dict()), timeless(document)
+    for one in (ours, theirs):  # what the limit of time left out
+        one["rods"]["system"].pop("left_out")
+        one["rods"]["system"]["rows"] = [row for row in one["rods"]["system"]["rows"] if "harmonic" in row["method"]]
+    assert ours == theirs
+    rod = found["system"]
+    assert found.converged and list(found) == ["system"] and rod.verdict == "stable"
+    assert len(rod.rows) > 20 and all(row["seconds"] > 0 for row in rod.rows) and len(rod.ratios) == 4
+    assert told and all(done <= total for _, done, total in told)
+    assert "error against run time" in str(found)
+    again = pickle.loads(pickle.dumps(found))
+    assert again.to_dict() == found.to_dict() and str(again) == str(found)
+    pytest.importorskip("pandas")
+    assert len(found.to_frame()) == len(rod.rows)
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    assert "error against run time" in found.plot().get_title(loc="left")
+    pyplot.close("all")
+
+
+def test_a_bench_knows_the_motion_without_linearisation():
+    found = hb.load(FOUR_BAR).bench(rpm=300, modes=1, case_limit=1, theory="nonlinear")
+    assert list(found) == ["system"] and found.to_dict()["theory"] == "nonlinear"
+
+
+@pytest.mark.parametrize(
+    "arguments, field",
+    [
+        ({"rpm": 300, "case_limit": 0}, "case_limit"),
+        ({"rpm": 300, "case_limit": float("nan")}, "case_limit"),
+        ({"rpm": 300, "case_limit": "long"}, "case_limit"),
+        ({"rpm": (300, 400, 50)}, "rpm"),
+        ({"rpm": 300, "rods": "none"}, "rods"),
+        ({"rpm": 300, "period": 2}, "period"),
+    ],
+)
+def test_a_bench_refuses_by_name(six_link, arguments, field):
+    with pytest.raises(hb.RequestError) as raised:
+        six_link.bench(**arguments)
+    assert raised.value.field == field and raised.value.found and raised.value.allowed
+
+
 @pytest.mark.parametrize(
     "arguments, field",
     [

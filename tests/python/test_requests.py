@@ -80,6 +80,26 @@ def test_what_is_not_looked_for_is_none_and_not_empty(six_link):
             six_link.map(**grid, **wrong)
 
 
+@pytest.mark.parametrize("field", ["only", "rods"])
+def test_an_empty_list_asks_for_nothing_and_is_refused(six_link, field):
+    with pytest.raises(hb.RequestError) as raised:
+        six_link.steady(rpm=300, **{field: []})
+    assert raised.value.field == field and raised.value.found == "[]" and "None" in raised.value.allowed
+
+
+def test_names_that_are_not_there_are_answered_with_those_that_are(steady):
+    for mapping, known in ((steady, "CD"), (steady.joints, "AB.0")):
+        with pytest.raises(KeyError, match="nope") as raised:
+            mapping["nope"]
+        assert known in str(raised.value)
+
+
+def test_a_page_that_cannot_be_written_names_its_file(steady, tmp_path):
+    with pytest.raises(OSError, match="^[^-]*none/page.html cannot be written") as raised:
+        steady.report(tmp_path / "none" / "page.html")
+    assert "--" not in str(raised.value)
+
+
 def test_unknown_arguments_are_type_errors(six_link):
     with pytest.raises(TypeError):
         six_link.steady(speed=300)

@@ -5,16 +5,10 @@
 #include <vector>
 
 #include "hb/analysis/tune/tune_problem.hpp"
-#include "tools/command/common_flags.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/tune_flags.hpp"
 
 namespace hb::tools {
-
-struct TuneFlags : CommonFlags {
-  std::string theory = "linear";
-  std::string minimise, maximise, over, algorithm, seed, analyses, speeds;
-  std::vector<std::string> vary, keep, tie, height;
-};
 
 struct AskedTune {
   TuneTask task;

@@ -1,30 +1,20 @@
-// The `hb` command: registers the subcommands and turns exceptions into sentences and exit codes.
+// The `hb` program: prepares the process and runs the command line, alone or as one of several processes.
 #include <fmt/core.h>
-#include <fmt/format.h>
 #include <unistd.h>
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <new>
 #include <string>
-#include <vector>
 
-#include "hb/analysis/linkage_analysis.hpp"
-#include "lib/scene/scene.hpp"
-#include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
-#include "tools/command/common_flags.hpp"
-#include "tools/command/version.hpp"
-#include "tools/output/printable.hpp"
+#include "tools/command/dispatch.hpp"
 #include "tools/output/standard_output.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/ranks.hpp"
@@ -34,10 +24,7 @@
 
 namespace {
 
-int say(int status, const std::string& what) {
-  fmt::print(stderr, "hb: {}\n", hb::tools::printable(what));
-  return status;
-}
+using hb::tools::say;
 
 // A result that did not reach its reader is not a success. A reader that has read enough (`| head`) is told nothing.
 int flush_output(int status) {
@@ -70,87 +57,6 @@ void prepare_process() {
   hb::tools::end_cleanly_on_signals();
 }
 
-std::string unknown_command(const CLI::App& app, const std::string& found) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  const std::string near = hb::nearest_name(found, names);
-  return fmt::format("found the command \"{}\"{}, allowed {}", found, near.empty() ? "" : " (" + near + " meant?)",
-                     fmt::join(names, ", "));
-}
-
-// "--rmp 300": names each flag that is none, with the nearest one.
-std::string unknown_flags(const CLI::App& command, const std::vector<std::string>& words) {
-  std::vector<std::string> names, sentences;
-  for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  for (const std::string& found : words) {
-    if (!found.starts_with("--")) continue;
-    const std::string flag = found.substr(0, found.find('='));
-    if (std::ranges::find(names, flag) != names.end()) continue;
-    const std::string near = hb::nearest_name(flag, names);
-    sentences.push_back(fmt::format("found the unknown flag {}{}", flag, near.empty() ? "" : " (" + near + " meant?)"));
-  }
-  return fmt::format("{}", fmt::join(sentences, ", "));
-}
-
-int run(int argc, char** argv) {
-  using namespace hb::tools;
-  CLI::App app{
-      "Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.\n"
-      "Exit status: 0 done, 1 disagreement found by a check or internal error, 2 wrong input or output that cannot be\n"
-      "written, 3 a tolerance asked for not reached, 4 data complete but pictures missing, 130 interrupted.",
-      "hb"};
-  app.require_subcommand(1);
-  app.set_version_flag("--version", version());
-  int status = exit_ok;
-  add_new_command(app, status);
-  add_scene_command(app, status);
-  add_steady_command(app, status);
-  add_sweep_command(app, status);
-  add_map_command(app, status);
-  add_check_command(app, status);
-  add_bench_command(app, status);
-  add_tune_command(app, status);
-  add_report_command(app, status);
-  try {
-    app.parse(argc, argv);
-    return status;
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    if (argc > 1 && app.get_subcommands().empty()) {
-      return say(exit_wrong_input, unknown_command(app, argv[1]));
-    }
-    constexpr int extras = static_cast<int>(CLI::ExitCodes::ExtrasError);
-    const auto chosen = app.get_subcommands();
-    const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
-    std::string what = error.get_exit_code() == extras && !chosen.empty()
-                           ? unknown_flags(*chosen.front(), {argv + 1, argv + argc})
-                           : "";
-    if (what.empty()) what = error.what();
-    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
-    return exit_wrong_input;
-  } catch (const hb::UnresolvedLinkage& error) {
-    return say(exit_not_reached, error.what());
-  } catch (const hb::SceneError& error) {
-    return say(exit_wrong_input, error.what());
-  } catch (const hb::RequestError& error) {
-    return say(exit_wrong_input, in_flags(error));
-  } catch (const UsageError& error) {
-    return say(exit_wrong_input, error.what());
-  } catch (const OutputError& error) {
-    return say(exit_wrong_input, error.what());
-  } catch (const ShareDone&) {
-    return exit_ok;
-  } catch (const OtherRankFailed&) {
-    return exit_failed;
-  } catch (const std::bad_alloc&) {
-    return say(exit_failed, "out of memory");
-  } catch (const std::exception& error) {
-    return say(exit_failed, fmt::format("internal error: {}", error.what()));
-  }
-}
-
 }  // namespace
 
 #ifdef HB_WITH_MPI
@@ -163,7 +69,7 @@ int main(int argc, char** argv) {
   if (!ranks.first() && (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr))) return 1;
   const std::string command = argc > 1 ? argv[1] : "";
   const bool shared = ranks.size() == 1 || command == "sweep" || command == "map";
-  const int status = shared ? flush_output(run(argc, argv))
+  const int status = shared ? flush_output(hb::tools::run(argc, argv))
                             : say(hb::tools::exit_wrong_input,
                                   fmt::format("found {} processes for \"{}\", allowed: several for sweep and map only",
                                               ranks.size(), command));
@@ -183,7 +89,7 @@ int main(int argc, char** argv) {
     execv(with_mpi.c_str(), argv);
     return say(hb::tools::exit_wrong_input, "found mpirun, but this hb was built without MPI");
   }
-  return flush_output(run(argc, argv));
+  return flush_output(hb::tools::run(argc, argv));
 }
 
 #endif

@@ -6,26 +6,27 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "tools/command/asked_map.hpp"
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
-#include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/map_flags.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/work/map_key.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
 
-struct MapFlags : CommonFlags {
-  BoundaryFlags boundaries;
-  std::string theory = "linear";
-  std::string x, y, damping_range, colour = "growth";
+struct MapCommandFlags : CommonFlags {
+  MapFlags map;
+  std::string theory = "linear", colour = "growth";
   bool resume = false, restart = false;
 };
 
@@ -36,14 +37,7 @@ MapColour colour_flag(const std::string& text) {
   throw UsageError(fmt::format("--colour: found \"{}\", allowed: growth, turn, tenfold", text));
 }
 
-std::string page_of(const AskedMap& map, const nlohmann::ordered_json& json, const SceneInput& input,
-                    const Provenance& origin, std::vector<PageText::Picture> pictures) {
-  ReportData data(map.document().scene);
-  data.add_map(json, input.source);
-  return data.page(page_text(origin, std::move(pictures)));
-}
-
-int run_map(const MapFlags& flags) {
+int run_map(const MapCommandFlags& flags) {
   const MapColour colour = colour_flag(flags.colour);
   require_linear(flags.theory, "stability without linearisation goes along one number: hb sweep --theory nonlinear");
   const SceneInput input = scene_input(flags.scene_file);
@@ -51,14 +45,15 @@ int run_map(const MapFlags& flags) {
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   const SharedWork geometry(out.threads, nullptr, {}, early_end(out.folder.has_value()));
-  AskedMap map(flags, flags.x, flags.y, flags.damping_range, flags.boundaries, input, geometry);
+  const MapTask task(SceneFamily(input.source, overrides(flags)), asked_map(flags, flags.map, input), geometry);
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "map", origin);
 
-  KeptRun run("map", out.folder, earlier, map.key(), out.threads);
-  if (!run.run([&](SharedWork& work) { map.compute(work); })) return stopped_status();
+  std::optional<Map> map;
+  KeptRun run("map", out.folder, earlier, map_key(task), out.threads);
+  if (!run.run([&](SharedWork& work) { map = task.compute(work); })) return stopped_status();
 
-  const MapDocument document = map.document();
+  const MapDocument document = document_of(*map);
   Delivery delivery;
   delivery.printed = out.json ? map_text(document) : map_summary(document);
   delivery.write_data = [&](OutputFolder& place) {
@@ -68,18 +63,17 @@ int run_map(const MapFlags& flags) {
   delivery.committed = [&] { run.delivered(); };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
-      return page_of(map, map_json(document), input, origin, std::move(pictures));
+      ReportData data(map->scene);
+      data.add_map(map_json(document), input.source);
+      return data.page(page_text(origin, std::move(pictures)));
     };
   // No tolerance of boundaries was asked for without the flag.
-  const bool reached = flags.boundaries.tolerance.empty() || boundary_points_not_reached(map.result()) == 0;
+  const bool reached = flags.map.boundary_tolerance.empty() || boundary_points_not_reached(*map) == 0;
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
                              ended_status(document.complete && reached ? exit_ok : exit_not_reached), delivery);
-  if (out.stats && !out.json) {
-    std::size_t samples = 0;
-    for (const StabilityMap& of_rod : map.result().maps) samples += of_rod.samples;
-    fmt::print(stderr, "\n  {}; exponents at {} places{}\n", map.evidence(), samples,
-               flags.boundaries.none ? "; boundaries skipped: not asked for" : "");
-  }
+  if (out.stats && !out.json)
+    fmt::print(stderr, "\n  {}{}\n", map->evidence,
+               flags.map.no_boundaries ? "; boundaries skipped: not asked for" : "");
   return status;
 }
 
@@ -88,23 +82,23 @@ int run_map(const MapFlags& flags) {
 void add_map_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "map", "stability over two parameters: growth rate on a grid, boundaries with their kind, resonance lines");
-  const auto flags = std::make_shared<MapFlags>();
+  const auto flags = std::make_shared<MapCommandFlags>();
   add_scene_flags(*command, *flags);
   add_linear_theory_flag(*command, flags->theory);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
   allow_growth_alone(*command, *flags);
-  command->add_flag("--no-boundaries", flags->boundaries.none, "the grid alone: no curves where the verdict changes");
+  command->add_flag("--no-boundaries", flags->map.no_boundaries, "the grid alone: no curves where the verdict changes");
   command
-      ->add_option("--boundary-tol", flags->boundaries.tolerance,
+      ->add_option("--boundary-tol", flags->map.boundary_tolerance,
                    "relative error of boundary points, 1e-14 to 0.01; default a tenth of --tol")
       ->type_name("T");
   add_html_flag(*command, *flags);
-  command->add_option("--x", flags->x, "first parameter, as in rpm=200:6000:100 (100 points)")
+  command->add_option("--x", flags->map.x, "first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");
-  command->add_option("--y", flags->y, "second parameter, as in AB.J=30:60:50 or *.J=30:60:50")
+  command->add_option("--y", flags->map.y, "second parameter, as in AB.J=30:60:50 or *.J=30:60:50")
       ->type_name("PATH=A:B:N|A:B:xN");
   command
-      ->add_option("--damping-range", flags->damping_range,
+      ->add_option("--damping-range", flags->map.damping_range,
                    "boundaries also with the internal damping (of a [hill] scene: the damping) times both factors")
       ->type_name("A:B");
   command

@@ -6,10 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hb/analysis/sweep_analysis.hpp"
-#include "tools/command/asked_map.hpp"
+#include "hb/analysis/analyses.hpp"
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
-#include "tools/command/common_flags.hpp"
+#include "tools/command/map_flags.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
@@ -25,12 +26,16 @@ struct ReportFlags : CommonFlags {
 };
 
 // The map asked for beside the sweep, whose speeds are not its own.
-std::optional<AskedMap> asked_map(const ReportFlags& flags, const SceneInput& input, const Work& work) {
+std::optional<MapTask> asked_map(const ReportFlags& flags, const SceneInput& input, const Work& work) {
   if (flags.x.empty() && flags.y.empty()) return std::nullopt;
   CommonFlags of_map = flags;
   of_map.rpm.clear();
   of_map.omega.clear();
-  return AskedMap(of_map, flags.x, flags.y, "", BoundaryFlags{}, input, work);
+  MapFlags map;
+  map.x = flags.x;
+  map.y = flags.y;
+  return std::optional<MapTask>(std::in_place, SceneFamily(input.source, overrides(flags)),
+                                asked_map(of_map, map, input), work);
 }
 
 int run_report(const ReportFlags& flags) {
@@ -38,33 +43,33 @@ int run_report(const ReportFlags& flags) {
   const SceneInput input = scene_input(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
   const Scene scene = input.source.with(set);
-  const Settings options = settings(flags, scene);
   const Output out = output(flags);
   if (!out.folder) throw UsageError("--out: not given, allowed: the page's file, as in --out report.html");
-  AxisAndSpeed asked = axis_of(flags, "", scene);
+  const SweepRequest request = asked_sweep(flags, "", scene);
   const SharedWork geometry(out.threads, nullptr, {}, time_is_up);
-  std::optional<AskedMap> map = asked_map(flags, input, geometry);
+  const std::optional<MapTask> task = asked_map(flags, input, geometry);
   OutputFile file(*out.folder);
 
-  const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
+  const std::shared_ptr<const SweepScene> along = sweep_scene(SceneFamily(input.source, set), request);
   // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
   std::optional<InterruptGuard> guard(std::in_place, false);
   SharedWork work(out.threads, nullptr, {}, time_is_up);
-  const SweepResult result = run_sweep(sweep_scene, work);
+  const SweepResult result = run_sweep(*along, work);
   ReportData data(scene);
-  data.add_sweep(sweep_scene, result, places_along(sweep_scene, work));
+  data.add_sweep(*along, result, places_along(*along, work));
   bool reached = result.shortfalls.empty();
-  if (map) {
-    map->compute(work);
-    reached = reached && map->document().complete;
-    data.add_map(map_json(map->document()), input.source);
+  std::optional<Map> map;
+  if (task) {
+    map = task->compute(work);
+    reached = reached && map->complete;
+    data.add_map(map_json(document_of(*map)), input.source);
   }
   guard.reset();
   begin_delivery();
   std::vector<PageText::Picture> still;
   if (out.plots) {
-    const std::optional<MapDocument> document = map ? std::optional(map->document()) : std::nullopt;
-    still = report_pictures(sweep_scene, result, document ? &*document : nullptr);
+    const std::optional<MapDocument> document = map ? std::optional(document_of(*map)) : std::nullopt;
+    still = report_pictures(*along, result, document ? &*document : nullptr);
   }
   file.commit(data.page(page_text(provenance(flags.line, input), std::move(still))));
   for (const std::string& sentence : result.shortfalls) fmt::print(stderr, "NOT REACHED: {}\n", sentence);

@@ -7,9 +7,11 @@
 #include <optional>
 
 #include "hb/analysis/scene_family.hpp"
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/json_output.hpp"

@@ -6,11 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hb/analysis/sweep_analysis.hpp"
+#include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
 #include "lib/scene/scene_reader.hpp"
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
-#include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
@@ -41,10 +42,9 @@ int run_sweep_command(const SweepFlags& flags) {
   const SceneInput input = scene_input(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
   const Scene scene = input.source.with(set);
-  Settings options = settings(flags, scene);
-  options.search = !flags.no_search;
+  SweepRequest request = asked_sweep(flags, flags.x, scene);
+  request.search = !flags.no_search;
   const Output out = output(flags);
-  AxisAndSpeed asked = axis_of(flags, flags.x, scene);
   const bool nonlinear = is_nonlinear(flags.theory);
   NonlinearSweepOptions branches_asked;
   branches_asked.turns = turns_of(flags.theory);
@@ -57,39 +57,40 @@ int run_sweep_command(const SweepFlags& flags) {
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "sweep", origin);
 
-  const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
+  const std::shared_ptr<const SweepScene> along = sweep_scene(SceneFamily(input.source, set), request);
+  const SweepScene& swept = *along;
   for (const std::string& file : flags.start)
-    branches_asked.starts.push_back(motion_from_json(read_text_file(file), file, sweep_scene));
-  if (nonlinear) require_nonlinear(sweep_scene, branches_asked);
+    branches_asked.starts.push_back(motion_from_json(read_text_file(file), file, swept));
+  if (nonlinear) require_nonlinear(swept, branches_asked);
   SweepResult result;
-  KeptRun run("sweep", out.folder, earlier, sweep_key(sweep_scene), out.threads);
-  if (!run.run([&](SharedWork& work) { result = run_sweep(sweep_scene, work); })) return stopped_status();
+  KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
+  if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
   std::optional<NonlinearSweep> branches;
   if (nonlinear) {
     const InterruptGuard guard(false);
-    branches = nonlinear_sweep(sweep_scene, branches_asked);
+    branches = nonlinear_sweep(swept, branches_asked);
     if (branches->stopped) say_time_limit(flags.time_limit, branches_asked.stop, branches->shortfalls);
   }
   nlohmann::ordered_json document =
-      out.json || folder ? sweep_json(sweep_scene, result, out.stats) : nlohmann::ordered_json();
-  if (branches && !document.is_null()) add_branches(document, sweep_scene, *branches);
+      out.json || folder ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
+  if (branches && !document.is_null()) add_branches(document, swept, *branches);
   Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : sweep_table(sweep_scene, result);
+  delivery.printed = out.json ? json_text(document) : sweep_table(swept, result);
   if (branches && !out.json)
     delivery.printed = "By the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
-                       branches_table(sweep_scene, *branches);
+                       branches_table(swept, *branches);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
-    std::vector<Figure> figures = sweep_files(sweep_scene, result, place);
+    std::vector<Figure> figures = sweep_files(swept, result, place);
     if (branches)
-      for (Figure& figure : branch_files(sweep_scene, result, *branches, place)) figures.push_back(std::move(figure));
+      for (Figure& figure : branch_files(swept, result, *branches, place)) figures.push_back(std::move(figure));
     return figures;
   };
   delivery.committed = [&] { run.delivered(); };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
-      ReportData data(sweep_scene.scene());
-      data.add_sweep(sweep_scene, result, places_along(sweep_scene, SharedWork(out.threads)));
+      ReportData data(swept.scene());
+      data.add_sweep(swept, result, places_along(swept, SharedWork(out.threads)));
       return data.page(page_text(origin, std::move(pictures)));
     };
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());

@@ -4,54 +4,47 @@
 
 #include <limits>
 
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/speed_flags.hpp"
 
 namespace hb::tools {
 namespace {
 
-void require_speeds(const std::string& flag, const Axis& axis, const Units& units) {
-  const double lowest = axis.kind == Axis::Kind::rpm ? speed_from_rpm(axis.values.front(), units) : axis.values.front();
-  if (!(lowest >= std::numeric_limits<double>::min())) {
-    throw UsageError(fmt::format("{}: found a range from {}, allowed: positive speeds", flag, axis.values.front()));
-  }
+void require_speeds(const std::string& flag, const Along& along, const Units& units) {
+  const double first = along.values.front(), lowest = in_rpm(along.path) ? speed_from_rpm(first, units) : first;
+  if (!(lowest >= std::numeric_limits<double>::min()))
+    throw UsageError(fmt::format("{}: found a range from {}, allowed: positive speeds", flag, first));
+}
+
+// --x PATH=RANGE.
+void set_named(const CommonFlags& flags, const std::string& x, const Scene& scene, SweepRequest& request) {
+  const NamedRange range = named_range("--x", x);
+  request.x = {range.path, range_by_step("--x", range.range)};
+  for (const Override& set : overrides(flags))
+    if (set.path == range.path)
+      throw UsageError(fmt::format("--set: found {} beside --x {}, allowed: one of the two", set.path, x));
+  if (!is_speed(range.path)) return set_speed(request, first_speed(flags, scene));
+  if (!flags.rpm.empty() || !flags.omega.empty())
+    throw UsageError(fmt::format("--{}: found {} beside --x {}, allowed: one of the two",
+                                 flags.rpm.empty() ? "omega" : "rpm", flags.rpm.empty() ? flags.omega : flags.rpm, x));
+  require_speeds("--x", request.x, scene.units);
 }
 
 }  // namespace
 
-AxisAndSpeed axis_of(const CommonFlags& flags, const std::string& x, const Scene& scene) {
-  Axis axis;
-  if (x.empty()) {
-    const SpeedRange range = several_speeds(flags, scene);
-    axis.kind = range.in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
-    axis.path = range.in_rpm ? "rpm" : "omega";
-    const std::string flag = "--" + axis.path;
-    axis.values = speed_values(range);
-    require_speeds(flag, axis, scene.units);
-    return {std::move(axis)};
+SweepRequest asked_sweep(const CommonFlags& flags, const std::string& x, const Scene& scene) {
+  SweepRequest request;
+  static_cast<Request&>(request) = asked_request(flags, scene);
+  if (!x.empty()) {
+    set_named(flags, x, scene, request);
+    return request;
   }
-  const NamedRange range = named_range("--x", x);
-  axis.path = range.path;
-  axis.values = range_by_step("--x", range.range);
-  for (const Override& set : overrides(flags)) {
-    if (set.path == axis.path) {
-      throw UsageError(fmt::format("--set: found {} beside --x {}, allowed: one of the two", set.path, x));
-    }
-  }
-  if (axis.path == "rpm" || axis.path == "omega") {
-    axis.kind = axis.path == "rpm" ? Axis::Kind::rpm : Axis::Kind::omega;
-    if (!flags.rpm.empty() || !flags.omega.empty()) {
-      throw UsageError(fmt::format("--{}: found {} beside --x {}, allowed: one of the two",
-                                   flags.rpm.empty() ? "omega" : "rpm", flags.rpm.empty() ? flags.omega : flags.rpm,
-                                   x));
-    }
-    require_speeds("--x", axis, scene.units);
-    return {std::move(axis)};
-  }
-  axis.kind = Axis::Kind::parameter;
-  const double speed = single_speed(flags, scene);
-  const auto [speeds, in_rpm] = first_speed(flags, scene);
-  return {std::move(axis), speed, in_rpm ? speeds.from : rpm_from_speed(speed, scene.units)};
+  const SpeedRange range = several_speeds(flags, scene);
+  request.x = {range.in_rpm ? "rpm" : "omega", speed_values(range)};
+  require_speeds("--" + request.x.path, request.x, scene.units);
+  return request;
 }
 
 }  // namespace hb::tools

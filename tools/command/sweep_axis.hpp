@@ -3,17 +3,13 @@
 
 #include <string>
 
-#include "hb/analysis/sweep_analysis.hpp"
+#include "hb/analysis/analyses.hpp"
 #include "tools/command/common_flags.hpp"
 
 namespace hb::tools {
 
-struct AxisAndSpeed {
-  Axis axis;
-  double speed = 0, rpm = 0;  // where that is not the axis
-};
-
-// --rpm or --omega as a range, or a scene number given as `x` ("AB.J=30:60:1") at the one speed; throws UsageError.
-[[nodiscard]] AxisAndSpeed axis_of(const CommonFlags& flags, const std::string& x, const Scene& scene);
+// All but --no-search: --rpm or --omega as a range, or a scene number given as `x` ("AB.J=30:60:1") at the one speed.
+// Throws UsageError.
+[[nodiscard]] SweepRequest asked_sweep(const CommonFlags& flags, const std::string& x, const Scene& scene);
 
 }  // namespace hb::tools

@@ -6,6 +6,7 @@
 
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
+#include "tools/command/flag_values.hpp"
 #include "tools/work/interrupts.hpp"
 
 namespace hb::tools {

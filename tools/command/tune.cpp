@@ -3,14 +3,17 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "tools/command/asked.hpp"
 #include "tools/command/asked_tune.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
@@ -19,15 +22,21 @@
 #include "tools/pictures/tune_pictures.hpp"
 #include "tools/report/design_page.hpp"
 #include "tools/work/interrupts.hpp"
+#include "tools/work/progress.hpp"
 #include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
 
-// Designs tried so far, on standard error.
-std::function<void(int, bool, double)> progress_on_terminal(const TuneFlags& flags) {
+// How long the search may take, and on a terminal the designs tried so far; on standard error.
+std::function<void(int, bool, double)> progress_of(const TuneFlags& flags, int most, int threads) {
   const double sign = flags.maximise.empty() ? 1 : -1;
-  return [sign](int evaluations, bool feasible, double goal) {
+  const bool shown = isatty(STDERR_FILENO) != 0;
+  const auto forecast = std::make_shared<Forecast>("the search", static_cast<std::size_t>(most), threads, true);
+  return [sign, shown, forecast, done = 0](int evaluations, bool feasible, double goal) mutable {
+    forecast->advance(static_cast<std::size_t>(std::max(0, evaluations - done)));
+    done = evaluations;
+    if (!shown) return;
     fmt::print(stderr, "\r\033[Ktune: {} designs, best {}{:.6g}", evaluations, feasible ? "" : "(conditions not met) ",
                sign * goal);
   };
@@ -41,7 +50,7 @@ int run_tune(const TuneFlags& flags) {
   const Scene& scene = asked.scene;
   const std::filesystem::path file = flags.scene_file;
   const Output out = output(flags);
-  if (isatty(STDERR_FILENO) != 0) task.options.progress = progress_on_terminal(flags);
+  task.options.progress = progress_of(flags, task.options.max_evaluations, out.threads);
 
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -65,7 +74,7 @@ int run_tune(const TuneFlags& flags) {
     return stopped_status();
   }
   const TuneResult& result = *found;
-  if (task.options.progress) fmt::print(stderr, "\r\033[K");
+  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
   task.settings.modes = result.num_modes;
 
   const nlohmann::ordered_json document = tune_json(task, result, scene, out.stats);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/output/theory_words.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -94,12 +95,19 @@ Json rod_json(const RodCheck& rod, double tolerance) {
   return json;
 }
 
+// Of the mechanism; null where nothing was said of it.
+Json verdict(const SpeedCheck& check) {
+  const std::optional<Verdict> worst = worst_of(check.verdicts);
+  return worst ? Json(to_string(*worst)) : Json();
+}
+
 Json single_json(const SceneModel& model, const SpeedCheck& check, const Settings& settings) {
   Json json;
   json["title"] = scene_name(model.scene);
   json["rpm"] = rpm_from_speed(check.speed, model.scene.units);
   json["omega"] = check.speed;
   json["agrees"] = check.agrees();
+  if (!check.verdicts.empty()) json["verdict"] = verdict(check);
   json["rods"] = Json::object();
   for (const RodCheck& rod : check.rods) {
     Json& entry = json["rods"][rod.name] = rod_json(rod, settings.tolerance);
@@ -126,6 +134,7 @@ Json range_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) 
   for (const SpeedCheck& check : checks) {
     json["rpm"].push_back(rpm_from_speed(check.speed, model.scene.units));
     json["omega"].push_back(check.speed);
+    if (!check.verdicts.empty()) json["verdict"].push_back(verdict(check));
     for (const RodCheck& rod : check.rods) {
       Json& entry = json["rods"][rod.name];
       entry["q_difference"].push_back(difference(rod, rod.q));

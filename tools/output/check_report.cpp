@@ -9,6 +9,7 @@
 #include "hb/analysis/accuracy.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/theory_words.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -77,6 +78,27 @@ void add_rod(Text& text, const RodCheck& rod, const Settings& settings, bool sta
   add(text, "  verdict                  {} and {}\n", to_string(rod.stability->verdict), to_string(shooting.verdict));
 }
 
+struct Agreement {
+  const char *brief, *sentence;
+};
+
+Agreement agreement(const std::vector<SpeedCheck>& checks) {
+  bool agree = true, complete = true, any = false;
+  for (const SpeedCheck& check : checks) {
+    agree = agree && check.agrees();
+    for (const RodCheck& rod : check.rods) {
+      const bool known = rod.compared() || rod.both_singular;
+      complete = complete && known;
+      any = any || known;
+    }
+  }
+  if (!agree) return {"DISAGREE", "The paths DISAGREE."};
+  if (complete) return {"agree", "The paths agree within the sum of their error bars."};
+  if (!any) return {"could not be compared", "Nothing could be compared."};
+  return {"agree where they could be compared",
+          "Not everything could be compared; what could agrees within the sum of the error bars."};
+}
+
 void add_times(Text& text, const std::vector<SpeedCheck>& checks) {
   double series = 0, shooting = 0, marching = 0;
   for (const SpeedCheck& check : checks) {
@@ -89,10 +111,16 @@ void add_times(Text& text, const std::vector<SpeedCheck>& checks) {
   add(text, "\n");
 }
 
+// "Six-link mechanism, 1500 rpm: stable (AB, CD); harmonic balance and time integration agree"
+std::string first_line(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+  const std::string verdict = check_verdict(checks);
+  return fmt::format("{}{}: {}{}harmonic balance and time integration {}\n", scene_name(model.scene),
+                     checks.size() == 1 ? ", " + speed_text(checks.front().speed, model.scene) : "", verdict,
+                     verdict.empty() ? "" : "; ", agreement(checks).brief);
+}
+
 void add_single(Text& text, const SceneModel& model, const SpeedCheck& check, const Settings& settings, bool stats) {
   const OutputUnits units = output_units(model.scene);
-  add(text, "{}, {}: harmonic balance against time integration\n", scene_name(model.scene),
-      speed_text(check.speed, model.scene));
   for (const RodCheck& rod : check.rods) add_rod(text, rod, settings, stats, units);
   if (check.joints) {
     add(text, "\njoints\n  {:<24} {:>10}  {:>10}\n", "", "difference", "allowed");
@@ -108,8 +136,7 @@ void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck
   const auto speed_column = [&](double speed) {
     return model.linkage() != nullptr ? rpm_from_speed(speed, model.scene.units) : speed;
   };
-  add(text, "{}: harmonic balance against time integration\n\n", scene_name(model.scene));
-  add(text, "{:>10}  {:<12} {:>10} {:>10} {:>10} {:>10}  {:<10} {:<18} {}\n",
+  add(text, "\n{:>10}  {:<12} {:>10} {:>10} {:>10} {:>10}  {:<10} {:<18} {}\n",
       model.linkage() != nullptr ? "rpm" : "omega", "rod", "q diff.", "allowed", "exp. diff.", "allowed", "verdict",
       "integrator", "agrees");
   const auto cells = [](const std::optional<Comparison>& c) {
@@ -137,14 +164,9 @@ void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck
 
 void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedCheck>& checks) {
   const OutputUnits units = output_units(model.scene);
-  bool agree = true, complete = true, any = false;
   for (const SpeedCheck& check : checks) {
     const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
-    agree = agree && check.agrees();
     for (const RodCheck& rod : check.rods) {
-      const bool known = rod.compared() || rod.both_singular;
-      complete = complete && known;
-      any = any || known;
       for (const Comparison& c : rod.comparisons())
         if (!c.agrees()) add(text, "DISAGREES: {}{}: {}\n", at, rod.name, differs(c, units));
       if (rod.opposite_verdicts())
@@ -163,18 +185,21 @@ void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedChe
       for (const std::string& sentence : theory_warnings(check.theory_rods, check.theory))
         add(text, "WARNING: {}{}\n", at, sentence);
   }
-  add(text, "{}\n",
-      !agree     ? "The paths DISAGREE."
-      : complete ? "The paths agree within the sum of their error bars."
-      : !any     ? "Nothing could be compared."
-                 : "Not everything could be compared; what could agrees within the sum of the error bars.");
+  add(text, "{}\n", agreement(checks).sentence);
 }
 
 }  // namespace
 
+std::string check_verdict(const std::vector<SpeedCheck>& checks) {
+  std::vector<NamedVerdicts> points;
+  for (const SpeedCheck& check : checks) points.push_back(check.verdicts);
+  return checks.size() == 1 ? mechanism_verdict(points.front()) : verdict_at_points(points, "speeds");
+}
+
 std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings,
                          bool stats) {
   Text text;
+  add(text, "{}", first_line(model, checks));
   if (checks.size() > 1)
     add_range(text, model, checks);
   else

@@ -8,7 +8,12 @@
 
 namespace hb::tools {
 
-// One speed in detail or a table of speeds, then what disagrees, what was not reached, and the verdict.
+// Of the mechanism, by harmonic balance, over all elastic links: "stable (AB, CD)", "UNSTABLE because of AB at 2 of 5
+// speeds"; empty where stability was not asked for.
+[[nodiscard]] std::string check_verdict(const std::vector<SpeedCheck>& checks);
+
+// The verdict and whether the paths agree; one speed in detail or a table of speeds, then what disagrees, what was not
+// reached.
 [[nodiscard]] std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks,
                                        const Settings& settings, bool stats);
 

@@ -7,6 +7,7 @@
 
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/json_parts.hpp"
+#include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/printable.hpp"
 #include "tools/output/theory_words.hpp"
@@ -141,7 +142,9 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     if (rod.shape) {
       entry["deflection"] = peak_json(rod.shape->deflection, units);
       entry["bending_moment"] = peak_json(rod.shape->bending_moment, units);
+      entry["static_deflection"] = static_json(model, result, r);
       add_stress(entry, *rod.stress);
+      add_stress_cycle(entry["stress"], model, result, r);
     }
     if (rod.stability) add_stability(entry, rod, result.speed);
   }
@@ -159,6 +162,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       json["joints_theory_error"] = or_null(result.theory->force);
       json["torque_theory_error"] = or_null(result.theory->torque);
     }
+    add_machine(json, model, result);
   } else if (!model.linkage() && settings.only.reactions) {
     json["joints"] = Json::object();
   }

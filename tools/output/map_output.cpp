@@ -194,6 +194,10 @@ double tenfold_time(const MapPoint& point) {
   return point.growth_rate > 0 ? std::numbers::ln10 / point.growth_rate : HUGE_VAL;
 }
 
+MapDocument document_of(const Map& map) {
+  return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries, map.complete};
+}
+
 std::string map_text(const MapDocument& document) {
   const MapResult& r = document.result;
   const StabilityMap& first = r.maps.front();

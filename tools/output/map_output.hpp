@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "hb/analysis/map_result.hpp"
+#include "hb/analysis/map_task.hpp"
 #include "tools/output/csv_output.hpp"
 
 namespace hb::tools {
@@ -18,6 +18,8 @@ struct MapDocument {
   bool boundaries = true;  // they were asked for
   bool complete = true;  // false: ended early
 };
+// Refers to the map.
+[[nodiscard]] MapDocument document_of(const Map& map);
 
 // "UNSTABLE at 19 % of the points because of AB", "stable at all points".
 [[nodiscard]] std::string map_verdict(const MapDocument& document);

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/output/output_units.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -91,10 +92,17 @@ void add_comparison(Text& text, const std::string& name, const Comparison& c, co
       c.agrees() ? "agrees" : "DISAGREES");
 }
 
+// Of the motion of all rods together.
+NamedVerdicts verdicts(const NonlinearCheck& check) {
+  if (!check.series.stability) return {};
+  return {{"all rods together", check.series.stability->verdict}};
+}
+
 void add_check(Text& text, const SceneModel& model, const NonlinearCheck& check, const Settings& settings) {
   const OutputUnits units = output_units(model.scene);
-  add(text, "{}, {}: motion without linearisation{}, harmonic balance against time integration\n",
-      scene_name(model.scene), speed_text(check.speed, model.scene),
+  const std::string verdict = mechanism_verdict(verdicts(check));
+  add(text, "{}, {}{}{}\nmotion without linearisation{}, harmonic balance against time integration\n",
+      scene_name(model.scene), speed_text(check.speed, model.scene), verdict.empty() ? "" : ": ", verdict,
       check.series.turns == 1 ? "" : fmt::format(", period of {} turns", check.series.turns));
   if (check.series.search == MotionSearch::found)
     add(text, "  harmonic balance  asked {:.1e}, error {:.1e}, {} harmonics, {:.3g} s\n", settings.tolerance,
@@ -140,6 +148,10 @@ Json nonlinear_check_json(const SceneModel& model, const std::vector<NonlinearCh
   json["rpm"] = each([&](const NonlinearCheck& c) { return Json(rpm_of(c.speed, units)); });
   json["omega"] = each([](const NonlinearCheck& c) { return Json(c.speed); });
   json["agrees"] = std::ranges::all_of(checks, &NonlinearCheck::agrees);
+  if (std::ranges::any_of(checks, [](const NonlinearCheck& c) { return c.series.stability.has_value(); }))
+    json["verdict"] = each([](const NonlinearCheck& c) {
+      return c.series.stability ? Json(to_string(c.series.stability->verdict)) : Json();
+    });
   json["rods"] = Json::object();
   for (std::size_t r = 0; r < names.size(); ++r) {
     if (one) {

@@ -92,13 +92,14 @@ void add_elastic(Text& text, const Body& body, const Units& units) {
         elastic.shear->coefficient);
   }
   const std::vector<double> omega = natural_frequencies(body, num_frequencies);
-  // lib/README.md (M9), rotary inertia included.
+  // lib/README.md (M9), rotary inertia included; (S5) with shear.
   const double m = elastic.density / elastic.youngs_modulus * k * k + body.mass / body.length / EJ;
+  const double first = elastic.shear ? omega.front() : k * k / std::sqrt(m);
   add(text,
       "           damping: internal {:.6g} {} (ratio {:.3g} of mode 1), external {:.6g} along and {:.6g} across {}/({} "
       "{})\n",
-      elastic.internal_damping, units.time, elastic.internal_damping * k * k / std::sqrt(m) / 2, elastic.damping_x,
-      elastic.damping_y, units.mass, units.length, units.time);
+      elastic.internal_damping, units.time, elastic.internal_damping * first / 2, elastic.damping_x, elastic.damping_y,
+      units.mass, units.length, units.time);
   std::vector<std::string> hertz, speeds;
   for (const double frequency : omega) {
     hertz.push_back(fmt::format("{:.6g}", frequency / (2 * std::numbers::pi * units.time_in_s)));

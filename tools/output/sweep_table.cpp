@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -89,6 +91,27 @@ void add_point(Text& text, const SweepScene& scene, const SweepResult& result, s
   add(text, "\n");
 }
 
+// The widest places; all of them where they are few.
+void add_not_excluded(Text& text, const SweepRod& rod, const std::string& unit) {
+  constexpr std::size_t most = 6;
+  std::vector<std::array<double, 2>> places = rod.not_excluded;
+  if (places.empty()) return;
+  add(text, "  bands or gaps not excluded\n");
+  double left_out = 0;
+  const std::size_t more = places.size() > most ? places.size() - most : 0;
+  if (more > 0) {
+    const auto width = [](const std::array<double, 2>& place) { return place[1] - place[0]; };
+    std::ranges::stable_sort(places, std::ranges::greater(), width);
+    for (std::size_t k = most; k < places.size(); ++k) left_out += width(places[k]);
+    places.resize(most);
+    std::ranges::sort(places);
+  }
+  for (const auto& [from, to] : places)
+    add(text, "    {:.12g} .. {:.12g}{}, width {:.2g}\n", from, to, unit, to - from);
+  if (more > 0)
+    add(text, "    and {} narrower places, together {:.2g}{} wide (--json and --out have all)\n", more, left_out, unit);
+}
+
 void add_bands(Text& text, const SweepScene& scene, const SweepRod& rod) {
   const OutputUnits units = output_units(scene.scene());
   const bool linkage = scene.first().linkage() != nullptr;
@@ -100,9 +123,7 @@ void add_bands(Text& text, const SweepScene& scene, const SweepRod& rod) {
         band.fastest_x, unit, band.open_from ? "before the sweep" : kind_words(band.kind_from, linkage),
         band.open_to ? "beyond the sweep" : kind_words(band.kind_to, linkage));
   }
-  if (!rod.not_excluded.empty()) add(text, "  bands or gaps not excluded\n");
-  for (const auto& [from, to] : rod.not_excluded)
-    add(text, "    {:.12g} .. {:.12g}{}, width {:.2g}\n", from, to, unit, to - from);
+  add_not_excluded(text, rod, unit);
 }
 
 void add_peaks(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r) {

@@ -45,9 +45,16 @@ NamedVerdicts worst_along(const SweepResult& result) {
   return verdicts;
 }
 
+// "7503.3 to 7948.02"; of a band narrower than six digits show its place alone.
+std::string span_text(double from, double to) {
+  const std::string first = fmt::format("{:.6g}", from), last = fmt::format("{:.6g}", to);
+  return first == last ? first : first + " to " + last;
+}
+
 // Of the points with an answer, how many have which verdict of all rods together.
 struct Counts {
   std::size_t answers = 0, undecided = 0, bounded = 0, unstable = 0;
+  std::size_t stable() const { return answers - undecided - bounded - unstable; }
 };
 
 Counts count_verdicts(const SweepResult& result) {
@@ -103,7 +110,7 @@ std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
   if (!result.computed.stability || result.rods.empty()) return "";
   const Counts n = count_verdicts(result);
   std::vector<std::string> bands;
-  for (const auto& [from, to] : unstable_anywhere(result)) bands.push_back(fmt::format("{:.6g} to {:.6g}", from, to));
+  for (const auto& [from, to] : unstable_anywhere(result)) bands.push_back(span_text(from, to));
   if (n.unstable == 0 && bands.empty()) {
     const std::size_t none = result.points.size() - n.answers;
     const std::string rest = none > 0 ? fmt::format("; no answer at {} points", none) : "";
@@ -126,7 +133,10 @@ std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
   }
   if (n.undecided > 0) where += fmt::format("; undecided at {} of {} points", n.undecided, n.answers);
   if (n.unstable + n.undecided < n.answers)
-    where += fmt::format("; {}stable {}", n.bounded > 0 ? "bounded or " : "",
+    where += fmt::format("; {} {}",
+                         n.bounded == 0    ? "stable"
+                         : n.stable() == 0 ? "bounded"
+                                           : "bounded or stable",
                          result.searched_bands ? "elsewhere" : "at the others");
   return mechanism_verdict(worst_along(result)) + where;
 }

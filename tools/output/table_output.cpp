@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "hb/analysis/nearest_resonance.hpp"
+#include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -68,6 +69,15 @@ void add_steady(Text& text, const SceneModel& model, std::size_t r, const SpeedR
   add_resonance(text, model, model.rods[r], rod, result.speed);
 }
 
+// One digit: "about 3 %", "about 20 %", "less than 0.1 %", "half or more".
+std::string rough_share(double share) {
+  const double percent = 100 * share;
+  if (!(percent < 50)) return "half or more";
+  if (percent < 0.1) return "less than 0.1 %";
+  return percent < 9.5 ? fmt::format("about {:.1g} %", percent)
+                       : fmt::format("about {:.0f} %", 10 * std::round(percent / 10));
+}
+
 void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size_t r) {
   if (!errors) {
     add(text, "  theory not judged: q was not computed\n");
@@ -81,8 +91,8 @@ void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size
   add(text, "  theory error      {:.1e} of the largest |q|, first nonlinear correction{}\n", *rod.q,
       beyond_theory(rod.q) ? "; BEYOND THE LINEAR THEORY" : "");
   if (rod.axial_share)
-    add(text, "    of it           {:.1g} would be taken away by axial elasticity, which it leaves out, estimated\n",
-        *rod.axial_share);
+    add(text, "    of it           {} would be changed by axial elasticity, which it leaves out; a rough estimate\n",
+        rough_share(*rod.axial_share));
 }
 
 // As many digits as the modes kept leave.
@@ -179,11 +189,13 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     if (rod.shape) {
       const double error = rod.modes_error.value_or(0) + (rod.steady ? rod.steady->error_bound : 0);
       add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units, error);
+      add(text, "{}", static_row(model, result, r));
       // The moment's series converges two powers of I more slowly.
       add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units,
                error * static_cast<double>(rod.num_modes * rod.num_modes));
     }
     if (rod.stress) add_stress(text, *rod.stress, rod, *model.linkage(), units);
+    add(text, "{}", stress_rows(model, result, r));
     if (rod.stability) add_stability(text, model.rods[r], rod, result.speed, scene, multipliers);
     add(text, "\n");
   }
@@ -196,6 +208,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     const bool unstable = std::any_of(result.rods.begin(), result.rods.end(), [](const RodResult& rod) {
       return rod.stability && rod.stability->verdict == Verdict::unstable;
     });
+    add(text, "{}", machine_rows(model, result));
     if (unstable) add(text, "  The elastic values contain rods whose periodic state is unstable.\n");
   }
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);

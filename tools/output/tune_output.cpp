@@ -22,10 +22,10 @@ double positive_degrees(double angle) {
   return degrees < 0 ? degrees + 360 : degrees;
 }
 
-std::string label(MetricKind kind) {
+std::string label(MetricKind kind, bool linkage) {
   switch (kind) {
     case MetricKind::deflection:
-      return "largest deflection";
+      return linkage ? "largest deflection" : "largest |q_i|";
     case MetricKind::stress:
       return "largest bending stress";
     case MetricKind::force:
@@ -50,8 +50,9 @@ std::string label(MetricKind kind) {
   return "";
 }
 
-std::string label(const Metric& metric) {
-  return label(metric.kind) + (metric.name.empty() ? "" : " " + metric.name) +
+std::string label(const Metric& metric, const Scene& scene) {
+  return label(metric.kind, std::holds_alternative<Linkage>(scene.model)) +
+         (metric.name.empty() ? "" : " " + metric.name) +
          (metric.kind == MetricKind::clearance ? fmt::format(" of orders 1..{}", metric.orders) : "");
 }
 
@@ -117,8 +118,8 @@ std::string changes_text(const TuneTask& task) {
 }
 
 // "1 % of the bound (0.02 mm)"
-std::string relaxation(const TuneCondition& condition, const Units& units) {
-  const std::string unit = unit_of(condition.keep.metric.kind, units);
+std::string relaxation(const TuneCondition& condition, const Scene& scene) {
+  const std::string unit = unit_of(condition.keep.metric.kind, scene);
   const char* what = condition.unit == condition.keep.bound ? "the bound"
                      : is_margin(condition.keep.metric)     ? "the margin at the start"
                                                             : "1";
@@ -126,7 +127,7 @@ std::string relaxation(const TuneCondition& condition, const Units& units) {
 }
 
 // "NOT MET: rocker, 0.061 +/- 2.2e-01; ...", with the best that this condition alone could have.
-std::string not_met_text(const TuneResult& result, const TuneCondition& condition, const Units& units) {
+std::string not_met_text(const TuneResult& result, const TuneCondition& condition, const Scene& scene) {
   const MetricKind kind = condition.keep.metric.kind;
   std::string text = fmt::format("NOT MET: {}{}{}", condition.where, condition.where.empty() ? "" : ", ",
                                  with_error(condition.value, condition.error));
@@ -135,7 +136,7 @@ std::string not_met_text(const TuneResult& result, const TuneCondition& conditio
                 ? "; it is met with the modes kept, but those left out may change it so far"
                 : "; the value meets the bound, but not with its error: more --modes may";
   if (result.design.status != DesignStatus::infeasible) return text;
-  const std::string unit = unit_of(kind, units);
+  const std::string unit = unit_of(kind, scene);
   text += fmt::format("; best of all designs tried {:.6g}{}{}", condition.best, unit.empty() ? "" : " ", unit);
   if (!condition.best_meets) return text + ", which does not meet it either";
   return text + (result.conditions.size() > 1 ? ", which meets it, but not together with the others" : "");
@@ -149,8 +150,8 @@ bool smooth(const TuneResult& result) {
   return result.sensitivity && result.slope_left_over <= largest_residual;
 }
 
-std::string bound_text(const Keep& keep, const Units& units) {
-  const std::string unit = unit_of(keep.metric.kind, units);
+std::string bound_text(const Keep& keep, const Scene& scene) {
+  const std::string unit = unit_of(keep.metric.kind, scene);
   return fmt::format("{} {:g}{}{}", keep.at_least ? ">=" : "<=", keep.bound, unit.empty() ? "" : " ", unit);
 }
 
@@ -170,6 +171,20 @@ std::string not_met(const TuneResult& result) {
   for (const TuneCondition& condition : result.conditions)
     if (!condition.met) names += (names.empty() ? "" : ", ") + condition.keep.text;
   return names;
+}
+
+// "Six-link mechanism: the design found is stable (AB, CD) over 300 to 3000 rpm; before: UNSTABLE because of AB"
+std::string first_line(const TuneTask& task, const TuneResult& result, const Scene& scene) {
+  const std::string after = mechanism_verdict(tune_verdicts(result.margins_after)),
+                    before = mechanism_verdict(tune_verdicts(result.margins_before));
+  std::string line = scene_name(scene);
+  if (!after.empty())
+    line += fmt::format(": the {} is {} {} {}",
+                        result.design.status == DesignStatus::infeasible ? "nearest design" : "design found", after,
+                        result.span_after.from == result.span_after.to ? "at" : "over",
+                        span_text(task, result.span_after, scene.units));
+  if (!before.empty()) line += fmt::format("; before: {}", before);
+  return line + "\n";
 }
 
 }  // namespace
@@ -193,10 +208,16 @@ const char* scene_file(const TuneResult& result) {
   return result.design.status == DesignStatus::infeasible ? nearest_file : tuned_file;
 }
 
+NamedVerdicts tune_verdicts(const std::vector<RodMargin>& margins) {
+  NamedVerdicts verdicts;
+  for (const RodMargin& rod : margins) verdicts.emplace_back(rod.rod, rod.verdict);
+  return verdicts;
+}
+
 std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const Units& units = scene.units;
-  std::string text =
-      fmt::format("{}\n{} {}", scene_name(scene), task.goal.maximise ? "maximise" : "minimise", task.goal.text);
+  std::string text = first_line(task, result, scene);
+  text += fmt::format("{} {}", task.goal.maximise ? "maximise" : "minimise", task.goal.text);
   text += result.span_after.from == result.span_after.to ? " at " : " over ";
   text += span_text(task, result.span_after, units);
   if (speeds_vary(task)) text += fmt::format(" (found; before: {})", span_text(task, result.span_before, units));
@@ -223,10 +244,10 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   bool confirmed = true, unstable_before = false, unstable_after = false;
   for (const TuneRow& row : result.rows) {
     const MetricKind kind = row.metric.kind;
-    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric),
+    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric, scene),
                         worst_text(row.before, row.before_confirmed, kind),
                         worst_text(row.after, row.after_confirmed, kind),
-                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, units));
+                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, scene));
     confirmed = confirmed && row.before_confirmed && row.after_confirmed;
     unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
     unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
@@ -244,17 +265,18 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   text += fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
   for (const TuneRow& row : result.rows) {
     const std::string before = place(task, row.before, units), after = place(task, row.after, units);
-    if (!before.empty() || !after.empty()) text += fmt::format("{:<36}{:<40}{}\n", label(row.metric), before, after);
+    if (!before.empty() || !after.empty())
+      text += fmt::format("{:<36}{:<40}{}\n", label(row.metric, scene), before, after);
   }
 
   if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
   for (const TuneCondition& condition : result.conditions) {
-    text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric), bound_text(condition.keep, units),
-                        !condition.met     ? not_met_text(result, condition, units)
+    text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric, scene), bound_text(condition.keep, scene),
+                        !condition.met     ? not_met_text(result, condition, scene)
                         : condition.active ? "active"
                                            : "met with room");
     if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
-      text += fmt::format(": relaxed by {}, the goal gains {:.3g}{}{} ({:.3g} %)", relaxation(condition, units),
+      text += fmt::format(": relaxed by {}, the goal gains {:.3g}{}{} ({:.3g} %)", relaxation(condition, scene),
                           gain(condition), result.goal_unit.empty() ? "" : " ", result.goal_unit,
                           100 * gain(condition) / std::abs(result.goal_after));
     text += "\n";
@@ -309,6 +331,10 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   json["status"] = status_word(result.design.status);
   json["verified"] = result.verified();
   json["modes"] = result.num_modes;
+  if (const std::optional<Verdict> verdict = worst_of(tune_verdicts(result.margins_after)))
+    json["verdict"] = to_string(*verdict);
+  if (const std::optional<Verdict> verdict = worst_of(tune_verdicts(result.margins_before)))
+    json["verdict_before"] = to_string(*verdict);
   const std::string problem = shortfall(result);
   json["shortfall"] = problem.empty() ? Json() : Json(problem);
   json["goal"] = {{"before", number(result.goal_before)},
@@ -341,7 +367,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   Json& metrics = json["metrics"] = Json::array();
   for (const TuneRow& row : result.rows) {
     metrics.push_back({{"metric", row.metric.text},
-                       {"unit", unit_of(row.metric.kind, units)},
+                       {"unit", unit_of(row.metric.kind, scene)},
                        {"before", metric_json(task, row.before, row.before_confirmed, units)},
                        {"after", metric_json(task, row.after, row.after_confirmed, units)}});
   }

@@ -7,6 +7,7 @@
 
 #include "hb/analysis/tune/tune_problem.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/verdict_words.hpp"
 
 namespace hb::tools {
 
@@ -23,6 +24,9 @@ inline constexpr const char *tuned_file = "tuned.toml", *nearest_file = "nearest
 // further files lead from `folder`.
 [[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
                                       const std::filesystem::path& scene_file, const std::filesystem::path& folder);
+
+// Of each elastic link over all speeds.
+[[nodiscard]] NamedVerdicts tune_verdicts(const std::vector<RodMargin>& margins);
 
 // Empty, or why the exit status is "not reached".
 [[nodiscard]] std::string shortfall(const TuneResult& result);

@@ -79,13 +79,6 @@ std::string join_names(const NamedVerdicts& verdicts, std::optional<Verdict> whi
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-std::optional<Verdict> worst_of(const NamedVerdicts& verdicts) {
-  std::optional<Verdict> result;
-  for (const auto& [name, verdict] : verdicts)
-    if (verdict) result = result ? worst(*result, *verdict) : *verdict;
-  return result;
-}
-
 }  // namespace
 
 FrequencyUnit frequency_unit(const Scene& scene) {
@@ -125,6 +118,38 @@ std::string verdict_sentence(const Stability& stability, double speed, const Sce
   }
   return fmt::format("undecided: the growth rate {:.3g} +/- {:.1e} 1/{} may be of either sign", growth,
                      stability.growth_error, time);
+}
+
+std::optional<Verdict> worst_of(const NamedVerdicts& verdicts) {
+  std::optional<Verdict> result;
+  for (const auto& [name, verdict] : verdicts)
+    if (verdict) result = result ? worst(*result, *verdict) : *verdict;
+  return result;
+}
+
+NamedVerdicts worst_of_each(const std::vector<NamedVerdicts>& points) {
+  NamedVerdicts all;
+  for (const NamedVerdicts& point : points)
+    for (const auto& [name, verdict] : point) {
+      const auto same = [&](const auto& entry) { return entry.first == name; };
+      const auto known = std::find_if(all.begin(), all.end(), same);
+      if (known == all.end())
+        all.emplace_back(name, verdict);
+      else if (verdict)
+        known->second = known->second ? worst(*known->second, *verdict) : *verdict;
+    }
+  return all;
+}
+
+std::string verdict_at_points(const std::vector<NamedVerdicts>& points, const std::string& what) {
+  const NamedVerdicts each = worst_of_each(points);
+  const std::optional<Verdict> verdict = worst_of(each);
+  if (!verdict) return "";
+  const auto count = std::count_if(points.begin(), points.end(),
+                                   [&](const NamedVerdicts& point) { return worst_of(point) == verdict; });
+  const auto total = static_cast<std::ptrdiff_t>(points.size());
+  return fmt::format("{} at {} {}", mechanism_verdict(each),
+                     count == total ? fmt::format("all {}", total) : fmt::format("{} of {}", count, total), what);
 }
 
 NamedVerdicts named_verdicts(const std::vector<RodResult>& rods) {
@@ -183,7 +208,7 @@ std::string exponents_rows(const Stability& stability, Eigen::Index unresolved, 
           "  {:>12}  {:>18}  {:>16}  {:>12}  {:>13}  {:>12.1e}\n", mark,
           fmt::format("{:.{}g}", re, trusted_digits(re, e.error)),
           fmt::format("{:.{}g}", e.frequency * unit.factor, std::min(7, trusted_digits(e.frequency, e.error))),
-          order_text(e.frequency / speed, slack), size > 0 ? fmt::format("{:.3g}", -re / size) : "", e.error);
+          order_text(e.frequency / speed, slack), size > 0 ? fmt::format("{:.3g}", -re / size + 0.0) : "", e.error);
     }
     if (shown.size() > max_exponents_shown)
       text += fmt::format("    ... {} more (--json has all)\n", shown.size() - max_exponents_shown);

@@ -29,6 +29,12 @@ using NamedVerdicts = std::vector<std::pair<std::string, std::optional<Verdict>>
 [[nodiscard]] NamedVerdicts named_verdicts(const std::vector<RodResult>& rods);
 // Of all together: "UNSTABLE because of AB", "stable (AB, CD)", and which were not looked at; empty where none was.
 [[nodiscard]] std::string mechanism_verdict(const NamedVerdicts& verdicts);
+// The worst of them; empty where none was looked at.
+[[nodiscard]] std::optional<Verdict> worst_of(const NamedVerdicts& verdicts);
+// Of each link the worst over several points, of which some may lack links; where some were looked at, those count.
+[[nodiscard]] NamedVerdicts worst_of_each(const std::vector<NamedVerdicts>& points);
+// Of several points: "UNSTABLE because of AB at 2 of 5 speeds"; `points` is what they are called.
+[[nodiscard]] std::string verdict_at_points(const std::vector<NamedVerdicts>& points, const std::string& what);
 // The same, short, for titles of pictures: "stable", "UNSTABLE because of AB", "stability undecided (AB)".
 [[nodiscard]] std::string title_verdict(const NamedVerdicts& verdicts);
 

@@ -7,9 +7,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "tools/output/check_report.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 #include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
@@ -53,14 +56,17 @@ Figure curves_figure(const SceneModel& model, const SpeedCheck& check, const Rod
   figure.name = file_name("check_" + rod.name);
   figure.height = 720;
   figure.commands = fmt::format(
-      "set multiplot layout 2,1 title {} margins char 13, char 24, char 4, char 3.5 spacing char 0, char 2\n"
-      "set xrange [0:360]\nset xtics 0,60,360\nset key outside right top\nset format x ''\nset format y '%g'\n"
+      "set multiplot layout 2,1 title {} margins char 13, char 24, char 4, char 4.5 spacing char 0, char 2\n"
+      "set xrange [0:360]\nset xtics 0,60,360\nset key outside right top Left reverse samplen 2\nset format x ''\nset "
+      "format y '%g'\n"
       "set ylabel 'q_1{}'\n"
       "plot '{}' using 1:2 with lines lt 1 title 'harmonic balance', '' using 1:3 every {} with points lt 2 pt 6 ps "
       "0.6 "
       "title 'shooting'\n",
-      quoted(fmt::format("{}, {}, {}: two independent paths ({})", scene_name(model.scene), rod.name,
-                         speed_text(check.speed, model.scene), to_string(rod.shooting.integrator))),
+      figure_title(
+          model.scene,
+          {model.linkage() ? rod.name : "", speed_text(check.speed, model.scene), title_verdict(check.verdicts)},
+          fmt::format("two independent paths: harmonic balance and {}", to_string(rod.shooting.integrator))),
       bracketed(output_units(model.scene).response), csv, every);
   figure.commands +=
       "set logscale y\nset format y '10^{%L}'\nset format x '%g'\nset xlabel 'crank angle [deg]'\n"
@@ -111,8 +117,8 @@ Figure range_figure(const SceneModel& model, const std::vector<SpeedCheck>& chec
   figure.name = "check";
   figure.commands = fmt::format(
       "set title {}\nset logscale y\nset format y '10^{{%L}}'\nset xlabel {}\n"
-      "set ylabel '|difference of q| / max |q|'\nset key outside right top\nplot ",
-      quoted(scene_name(model.scene) + ": harmonic balance against time integration"),
+      "set ylabel '|difference of q| / max |q|'\nset key outside right top Left reverse samplen 2\nplot ",
+      figure_title(model.scene, {check_verdict(checks)}, "harmonic balance against time integration"),
       quoted(model.linkage() != nullptr ? "crank speed [rpm]" : "omega [rad/" + model.scene.units.time + "]"));
   const std::vector<RodCheck>& rods = checks.front().rods;
   for (std::size_t r = 0; r < rods.size(); ++r)

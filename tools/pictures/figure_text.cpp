@@ -58,6 +58,13 @@ std::string scene_title(const SceneModel& model, const SpeedResult& result, cons
                    shown + (beyond.empty() ? "" : (shown.empty() ? "" : "\n") + literal(beyond)));
 }
 
+std::string figure_title(const Scene& scene, const std::vector<std::string>& parts, const std::string& shown) {
+  std::string bold = short_name(scene);
+  for (const std::string& part : parts)
+    if (!part.empty()) bold += ", " + part;
+  return two_lines(bold, shown);
+}
+
 std::string figure_name(const std::string& kind, const std::string& name) { return file_name(kind + "_" + name); }
 
 }  // namespace hb::tools

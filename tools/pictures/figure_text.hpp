@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
 
@@ -21,6 +22,10 @@ inline constexpr const char* turn_axis = "set xrange [0:360]\nset xtics 0,60,360
 [[nodiscard]] std::string scene_title(const SceneModel& model, const SpeedResult& result, const std::string& shown);
 // A quoted title, the first line in bold and literal; `shown` may have several lines.
 [[nodiscard]] std::string two_lines(const std::string& bold, const std::string& shown);
+
+// The same of the scene's short name and what stands behind it (rod, speed, verdict), of which some may be empty.
+[[nodiscard]] std::string figure_title(const Scene& scene, const std::vector<std::string>& parts,
+                                       const std::string& shown);
 
 // File name of a picture, without extension.
 [[nodiscard]] std::string figure_name(const std::string& kind, const std::string& name);

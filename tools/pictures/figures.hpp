@@ -22,6 +22,9 @@ namespace hb::tools {
 // Elastic beside rigid: one figure per dyad, one for the crank's pivot.
 [[nodiscard]] std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& result,
                                                 const std::string& csv);
+// As vectors over the turn, in the same groups.
+[[nodiscard]] std::vector<Figure> polar_figures(const SceneModel& model, const SpeedResult& result,
+                                                const std::string& csv);
 [[nodiscard]] Figure torque_figure(const SceneModel& model, const SpeedResult& result, const std::string& csv);
 // The mechanism in several poses with the paths of its joints.
 [[nodiscard]] Figure mechanism_figure(const Scene& scene, const CsvFile& csv);

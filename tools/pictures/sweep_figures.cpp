@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
@@ -22,14 +23,48 @@ constexpr const char* clean_up =
     "unset object\nunset arrow\nunset label\nunset logscale\nset xrange [*:*]\nset yrange [*:*]\nset format '%g'\n"
     "unset title\nunset xlabel\nunset ylabel\nset key default\nset rmargin -1\nset lmargin -1\n";
 
+constexpr const char* new_line = "'.\"\\n\".'";  // gnuplot reads \n only in double quotes
+
+// Breaks lines between sentences, at "; ", where they would be longer than the picture is wide.
+std::string wrapped(const std::string& shown) {
+  constexpr std::size_t longest = 78;
+  std::string text;
+  std::size_t length = 0;
+  for (std::size_t at = 0; at < shown.size();) {
+    const std::size_t line_end = shown.find(new_line, at), sentence_end = shown.find("; ", at);
+    const std::size_t end = std::min({line_end, sentence_end, shown.size()});
+    const std::string sentence = shown.substr(at, end - at);
+    if (length > 0) {
+      const bool fits = length + 2 + sentence.size() <= longest;
+      text += fits ? "; " : new_line;
+      length = fits ? length + 2 : 0;
+    }
+    text += sentence;
+    length += sentence.size();
+    if (end == shown.size()) break;
+    at = end + 2;
+    if (end != line_end) continue;
+    text += new_line;
+    length = 0;
+    at = end + std::string_view(new_line).size();
+  }
+  return text;
+}
+
+int count_lines(const std::string& text) {
+  int lines = 1;
+  for (std::size_t at = text.find(new_line); at != std::string::npos; at = text.find(new_line, at + 1)) ++lines;
+  return lines;
+}
+
 std::string title(const SweepScene& scene, const SweepResult& result, std::size_t rod, const std::string& shown) {
   const std::string subject = scene.first().linkage() ? ", " + result.rods[rod].name : "";
   std::string at;
   if (scene.axis().kind == Axis::Kind::parameter) at = " at " + speed_text(result.points.front().speed, scene.scene());
   const std::string verdict = sweep_title_verdict(result);
   return "set title '{/:Bold " +
-         literal(short_name(scene.scene()) + subject + at + (verdict.empty() ? "" : ", " + verdict)) + "}'.\"\\n\".'" +
-         shown + "'\n";
+         literal(short_name(scene.scene()) + subject + at + (verdict.empty() ? "" : ", " + verdict)) + "}" + new_line +
+         wrapped(shown) + "'\n";
 }
 
 std::string axis(const SweepScene& scene) {
@@ -111,8 +146,30 @@ std::vector<double> where_stable(const SweepResult& result, const CsvFile& csv, 
   return values.empty() ? finite(csv, column) : values;
 }
 
+// Without what is many times larger than nine tenths of all: sharp peaks would flatten the rest.
+std::vector<double> without_spikes(std::vector<double> values) {
+  if (values.empty()) return values;
+  constexpr double many = 4;
+  std::vector<double> sizes;
+  for (const double value : values) sizes.push_back(std::abs(value));
+  const auto ninth = sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), ninth, sizes.end());
+  const double limit = many * *ninth;
+  std::erase_if(values, [&](double value) { return std::abs(value) > limit; });
+  return values;
+}
+
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
+}
+
+// Of the order lines drawn: those at which a peak was found, and a few in any case.
+int highest_order(const SweepResult& result, std::size_t r) {
+  constexpr int fewest = 6, most = 24;
+  int highest = fewest;
+  for (const CriticalPoint& point : result.critical)
+    if (point.rod == r && point.mode >= 0) highest = std::max(highest, static_cast<int>(point.order));
+  return std::min(highest, most);
 }
 
 }  // namespace
@@ -149,10 +206,12 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   figure.width = 1060;
   figure.height = 640;
   std::string& text = figure.commands;
+  std::string notes =
+      (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") + shaded_note(result, r);
+  if (!notes.empty()) notes.erase(0, 2);
   text += title(scene, result, r,
                 "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
-                    (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") +
-                    shaded_note(result, r) + beyond_note(csv, columns));
+                    (notes.empty() ? "" : "'.\"\\n\".'" + notes) + beyond_note(csv, columns));
   text += axis(scene) + shaded(result, r);
   text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [{}]'\nunset key\nset rmargin 20\n", top,
                       literal(unit.name));
@@ -172,7 +231,7 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   };
   // Orders that leave the picture before its right end are labelled at the top, the others at the right.
   const double lowest = factor * from + constant;
-  const int most = std::min(24, static_cast<int>(std::ceil(top / std::max(fastest, 1e-300))) + 12);
+  const int most = highest_order(result, r);
   double last_label = HUGE_VAL;
   for (int half = 1; half <= 2 * most; ++half) {
     const bool whole = half % 2 == 0;
@@ -188,7 +247,7 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
       text += fmt::format("set label '{}' at {}, {} left offset 0.4, 0 textcolor rgb '#777777' font ',10'\n", name, to,
                           at_end);
     } else if (const double x = factor > 0 ? (top / order - constant) / factor : HUGE_VAL;
-               x < last_label - 0.035 * (to - from) && x > from) {
+               x < last_label - 0.045 * (to - from) && x > from) {
       last_label = x;
       text += fmt::format("set label '{}' at {}, {} center offset 0, 0.5 textcolor rgb '#777777' font ',10'\n", name, x,
                           top);
@@ -292,7 +351,7 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
   heading.pop_back();
   text += fmt::format(
       "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n", heading,
-      beyond_note(csv, columns).empty() ? 4.5 : 6);
+      1.5 + 1.5 * count_lines(heading));
   text += axis(scene) + shaded(result, r);
   const auto range = [&](int column) {
     const std::vector<double> values = where_stable(result, csv, column);
@@ -337,6 +396,8 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
                       columns.growth);
   const int shown = std::min(rod.num_modes, max_curves);
   for (int mode = 0; mode < shown; ++mode) {
+    const std::vector<double> own = finite(csv, columns.first_frequency + 2 * mode + 1);
+    if (own.empty() || *std::max_element(own.begin(), own.end()) < low - 0.35 * span) continue;  // below the picture
     text += fmt::format(
         ", {} title 'mode {}'",
         curve(csv.name, columns.first_frequency + 2 * mode + 1, columns, fmt::format("lt {}", mode + 1), 1.4),
@@ -364,6 +425,7 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
   for (const auto& [name, bodies] : groups) {
     std::string panels;
     int num_panels = 0;
+    bool cut = false;
     std::vector<std::string> components = result.joint_components;
     components.push_back("torque");
     for (std::size_t c = 0; c < components.size(); ++c) {
@@ -372,7 +434,8 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
       const int column = 2 + 4 * static_cast<int>(c);
       double low = 0, high = 0;
       for (int k = 0; k < 4; ++k) {
-        const std::vector<double> values = where_stable(result, csv, column + k);
+        const std::vector<double> all = where_stable(result, csv, column + k), values = without_spikes(all);
+        cut = cut || values.size() < all.size();
         if (values.empty()) continue;
         low = std::min(low, *std::min_element(values.begin(), values.end()));
         high = std::max(high, largest(values));
@@ -400,11 +463,15 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
     figure.width = 1000;
     figure.height = 130 + 230 * rows;
     figure.commands = fmt::format(
-        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'between smallest and largest force over the turn, "
-        "elastic beside rigid{}'\nset key at screen 0.99, screen 0.995 right top vertical samplen 3\nset format '%g'\n"
-        "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset xtics autofreq\nset ytics autofreq\n",
+        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'{}'\nset tmargin 2.2\nset key at graph 1, graph 1.02 "
+        "right bottom horizontal samplen "
+        "3\nset format '%g'\n"
+        "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset tmargin -1\nset xtics autofreq\nset ytics "
+        "autofreq\n",
         rows, literal(short_name(scene.scene()) + ", joints of " + name + (verdict.empty() ? "" : ", " + verdict)),
-        bands.empty() ? "" : "; shaded orange: unstable", axis(scene), bands, panels);
+        wrapped(fmt::format("between smallest and largest force over the turn, elastic beside rigid{}{}",
+                            cut ? "; sharp peaks cut off" : "", bands.empty() ? "" : "; shaded orange: unstable")),
+        axis(scene), bands, panels);
     figure.commands += clean_up;
     figures.push_back(std::move(figure));
   }

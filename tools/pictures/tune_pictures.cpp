@@ -11,7 +11,9 @@
 #include "tools/output/csv_output.hpp"
 #include "tools/output/map_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/tune_output.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 #include "tools/pictures/map_plot.hpp"
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/work/shared_work.hpp"
@@ -46,6 +48,13 @@ CsvFile curves_csv(const TuneTask& task, const DesignCurves& curves, const Scene
   return file;
 }
 
+// "stable, before UNSTABLE because of AB"
+std::string design_verdicts(const TuneResult& result) {
+  const std::string after = title_verdict(tune_verdicts(result.margins_after)),
+                    before = title_verdict(tune_verdicts(result.margins_before));
+  return after + (before.empty() || before == after ? "" : ", before " + before);
+}
+
 // Both designs over the speed: deflection above, growth rate below.
 Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const OutputUnits units = output_units(scene);
@@ -56,12 +65,13 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
   const double from = std::min(result.span_before.from, result.span_after.from) / task.speed_unit;
   const double to = std::max(result.span_before.to, result.span_after.to) / task.speed_unit;
   figure.commands = fmt::format(
-      "set multiplot layout 2,1 title {} margins char 14, char 22, char 4, char 3 spacing char 0, char 2\n"
-      "set xrange [{}:{}]\nset key outside right top\nset grid\nset logscale y\nunset xlabel\nset format y '%g'\nset "
+      "set multiplot layout 2,1 title {} margins char 14, char 22, char 4, char 4.5 spacing char 0, char 2\n"
+      "set xrange [{}:{}]\nset key outside right top Left reverse samplen 2\nset grid\nset logscale y\nunset "
+      "xlabel\nset format y '%g'\nset "
       "format x ''\n"
       "set ylabel 'largest deflection{}'\n",
-      quoted(fmt::format("{}: before (dashed) and {}", scene_name(scene), after_text(result))), from, to,
-      bracketed(units.response));
+      figure_title(scene, {design_verdicts(result)}, fmt::format("before (dashed) and {}", after_text(result))), from,
+      to, bracketed(units.response));
   std::string above, below;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     for (const bool after : {false, true}) {

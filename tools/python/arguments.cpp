@@ -167,8 +167,16 @@ Request read_request(const py::dict& arguments) {
     }
   }
   if (const auto tolerance = given(arguments, "tol")) request.tolerance = number("tol", *tolerance);
-  if (const auto rods = given(arguments, "rods")) request.rods = texts("rods", *rods);
-  if (const auto only = given(arguments, "only")) request.only = only_of(texts("only", *only));
+  if (const auto rods = given(arguments, "rods")) {
+    request.rods = texts("rods", *rods);
+    if (request.rods.empty()) throw RequestError("rods", shown(*rods), "names of elastic links, or None: all of them");
+  }
+  if (const auto only = given(arguments, "only")) {
+    const std::vector<std::string> names = texts("only", *only);
+    if (names.empty())
+      throw RequestError("only", shown(*only), "steady, stability, growth, verdict, reactions, shape, or None: all");
+    request.only = only_of(names);
+  }
   if (const auto search = given(arguments, "search")) request.search = flag("search", *search);
   if (const auto boundaries = given(arguments, "boundaries")) request.boundaries = flag("boundaries", *boundaries);
   if (const auto tolerance = given(arguments, "boundary_tol"))

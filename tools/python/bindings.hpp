@@ -13,6 +13,7 @@ void add_stability(py::module_& module);
 void add_steady(py::module_& module);
 void add_sweep(py::module_& module);
 void add_map(py::module_& module);
+void add_bench(py::module_& module);
 void add_check(py::module_& module);
 void add_tune(py::module_& module);
 void add_hill_system(py::module_& module);

@@ -59,18 +59,21 @@ std::shared_ptr<CheckCore> checked(const SceneCore& core, const py::dict& argume
   if (const auto limit = given(arguments, "case_limit")) request.case_limit = number("case_limit", *limit);
   if (const auto march = given(arguments, "march")) request.march = py::bool_(*march);
   const std::optional<int> turns = read_turns(arguments);
-  PythonWork work(read_threads(arguments), progress);
+  PythonWork work(arguments, progress);
   return work.run([&] {
     auto result = std::make_shared<CheckCore>();
     if (!turns) {
       result->linear = check(core.scene, request, work);
+      if (result->linear->speeds.empty()) throw Stopped();
       return result;
     }
     NonlinearOptions options;
     options.turns = *turns;
-    options.stop = [&work] { return work.stopped(); };
+    options.stop = work.stop();
     result->nonlinear = nonlinear_check(core.scene, request, options, work);
     if (work.stopped()) throw Stopped();
+    for (NonlinearCheck& check : result->nonlinear->speeds)
+      if (!check.not_compared.empty()) work.say_time_limit(check.shortfalls);
     return result;
   });
 }

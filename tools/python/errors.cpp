@@ -75,7 +75,10 @@ void add_errors(py::module_&) {
       const Refusal parts = refusal(message);
       set_request_error(message, parts.field, parts.found, parts.allowed);
     } catch (const tools::OutputError& error) {
-      PyErr_SetString(PyExc_OSError, error.what());
+      // "--out: PATH cannot be written: REASON" of the command line.
+      const std::string message = error.what();
+      const std::string flag = "--out: ";
+      PyErr_SetString(PyExc_OSError, message.substr(message.starts_with(flag) ? flag.size() : 0).c_str());
     }
   });
 }

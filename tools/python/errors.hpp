@@ -7,9 +7,6 @@
 
 namespace hb::python {
 
-// Ctrl-C, or an exception of a progress function, during long work: the Python error is kept by PythonWork.
-struct Stopped {};
-
 // A word of the command line as the name of an argument: "--tol" as "tol".
 [[nodiscard]] std::string as_argument(std::string text);
 

@@ -6,6 +6,7 @@
 #include "lib/fourier/periodic_samples.hpp"
 #include "lib/scene/scene_parts.hpp"
 #include "tools/python/arguments.hpp"
+#include "tools/python/python_work.hpp"
 #include "tools/python/stability.hpp"
 #include "tools/python/steady.hpp"
 #include "tools/python/tables.hpp"
@@ -103,7 +104,7 @@ std::shared_ptr<HillCore> hill_core(const py::object& mass, const py::object& da
   system.mass = matrix("mass", mass);
   const Eigen::Index size = system.mass.rows();
   if (size < 1 || system.mass.cols() != size)
-    throw RequestError("mass", fmt::format("a {} x {} matrix", size, system.mass.cols()), "a square matrix");
+    throw RequestError("mass", fmt::format("a {} x {} matrix", size, system.mass.cols()), "a square matrix of a row or more");
   system.damping = damping.is_none() ? Eigen::MatrixXd::Zero(size, size) : matrix("damping", damping);
   if (system.damping.rows() != size || system.damping.cols() != size)
     throw RequestError("damping", fmt::format("a {} x {} matrix", system.damping.rows(), system.damping.cols()),
@@ -114,20 +115,16 @@ std::shared_ptr<HillCore> hill_core(const py::object& mass, const py::object& da
     Scene scene = scene_of(system);
     return std::make_shared<HillCore>(HillCore{std::move(system), std::move(scene)});
   } catch (const std::invalid_argument& error) {
-    throw RequestError("mass", error.what(), "an invertible mass and finite numbers");
+    std::string found = error.what();
+    if (const std::string prefix = "HillSystem: "; found.starts_with(prefix)) found.erase(0, prefix.size());
+    throw RequestError("mass", found, "an invertible mass and finite numbers");
   }
 }
 
 std::shared_ptr<Answer> solved(const HillCore& core, const py::dict& arguments) {
   Request request = read_request(arguments);
   request.only = {.steady = true, .stability = false, .reactions = false, .shape = false};
-  const py::gil_scoped_release release;
-  SteadyResult found = steady(core.scene, request);
-  auto answer = std::make_shared<Answer>();
-  answer->model = std::move(found.model);
-  answer->settings = std::move(found.settings);
-  answer->result = std::move(static_cast<SpeedResult&>(found));
-  return answer;
+  return linear_answer(core.scene, request, arguments);
 }
 
 // The arguments by themselves: a call in a loop of thousands costs little more than the exponents.
@@ -148,9 +145,14 @@ StabilityView analysed(const HillCore& core, const py::object& omega, const py::
   {
     // Of one or two unknowns in microseconds: giving the lock away would take a good part of that.
     constexpr Eigen::Index small = 2;
-    std::optional<py::gil_scoped_release> release;
-    if (core.system.num_modes() > small) release.emplace();
-    *found = analyse_stability(core.system, speed, options);
+    const auto analyse = [&] {
+      *found = analyse_stability(core.system, speed, options);
+      return true;
+    };
+    if (core.system.num_modes() > small)
+      PythonWork().run(analyse);
+    else
+      analyse();
   }
   const Stability* stability = found.get();
   return {py::none(), stability, std::move(found)};

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/output/json_output.hpp"
+#include "tools/output/map_output.hpp"
 #include "tools/python/arguments.hpp"
 #include "tools/python/python_work.hpp"
 #include "tools/python/results.hpp"
@@ -29,7 +30,12 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, co
                        fmt::format("at most {} in all", max_points));
   if (!request.only.stability)
     throw RequestError("only", shown(*given(arguments, "only")), "stability, growth, verdict");
-  PythonWork work(read_threads(arguments), progress);
+  if (const auto range = given(arguments, "damping_range")) {
+    const std::vector<double> factors = numbers("damping_range", *range);
+    if (factors.size() != 2) throw RequestError("damping_range", shown(*range), "a pair (low, high) of factors");
+    request.damping_range = {factors[0], factors[1]};
+  }
+  PythonWork work(arguments, progress);
   return work.run([&] { return std::make_shared<Map>(map(core.source, request, work)); });
 }
 
@@ -37,9 +43,9 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, co
 
 void add_map(py::module_& module) {
   py::class_<Map, std::shared_ptr<Map>>(module, "Map")
-      .def("json", [](const Map& map) { return decoded(tools::map_text(document_of(map))); })
-      .def("words", [](const Map& map) { return decoded(tools::map_summary(document_of(map))); })
-      .def("table", [](const Map& map) { return table_of(tools::map_grid_csv(document_of(map))); })
+      .def("json", [](const Map& map) { return decoded(tools::map_text(tools::document_of(map))); })
+      .def("words", [](const Map& map) { return decoded(tools::map_summary(tools::document_of(map))); })
+      .def("table", [](const Map& map) { return table_of(tools::map_grid_csv(tools::document_of(map))); })
       .def_property_readonly("evidence", [](const Map& map) { return decoded(map.evidence); });
   module.def("map", &mapped, py::arg("scene"), py::arg("arguments"), py::arg("progress"));
 }

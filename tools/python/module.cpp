@@ -11,6 +11,7 @@ PYBIND11_MODULE(_core, module) {
   add_steady(module);
   add_sweep(module);
   add_map(module);
+  add_bench(module);
   add_check(module);
   add_tune(module);
   add_hill_system(module);

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/command/result_files.hpp"
+#include "tools/output/map_output.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/tune_output.hpp"
 #include "tools/python/arguments.hpp"
@@ -28,7 +29,7 @@ void write_page(const std::string& file, PythonWork& work, const std::function<s
 
 void steady_report(const SceneCore& core, const Answer& answer, const std::string& file, const std::string& call) {
   if (answer.nonlinear) throw RequestError("report", "a motion without linearisation", "results of the linear theory");
-  PythonWork work(1, py::none());
+  PythonWork work;
   write_page(file, work, [&] {
     ReportData data(answer.model->scene);
     data.add_speed({answer.model, answer.result, ""}, answer.settings);
@@ -40,7 +41,7 @@ void steady_report(const SceneCore& core, const Answer& answer, const std::strin
 void sweep_report(const SceneCore& core, const SweepCore& swept, const Map* map, const std::string& file,
                   const std::string& call, bool pictures, int threads) {
   const Sweep& sweep = swept.linear;
-  PythonWork work(threads, py::none());
+  PythonWork work(threads);
   write_page(file, work, [&] {
     ReportData data(sweep.scene->scene());
     data.add_sweep(*sweep.scene, sweep, places_along(*sweep.scene, work));
@@ -56,7 +57,7 @@ void sweep_report(const SceneCore& core, const SweepCore& swept, const Map* map,
 }
 
 void map_report(const SceneCore& core, const Map& map, const std::string& file, const std::string& call) {
-  PythonWork work(1, py::none());
+  PythonWork work;
   write_page(file, work, [&] {
     ReportData data(map.scene);
     data.add_map(map_json(document_of(map)), core.source);
@@ -65,7 +66,7 @@ void map_report(const SceneCore& core, const Map& map, const std::string& file, 
 }
 
 void tune_report(const SceneCore& core, const TuneCore& tune, const std::string& file, const std::string& call) {
-  PythonWork work(1, py::none());
+  PythonWork work;
   write_page(file, work, [&] {
     return design_page(tune.task, tune.result, tune.before, tune_json(tune.task, tune.result, tune.before, false), work,
                        page_text(core.provenance(call), {}));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/analyses.hpp"
 #include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
 #include "hb/analysis/tune/tune_problem.hpp"
-#include "tools/output/map_output.hpp"
 
 namespace hb::python {
 
@@ -17,10 +17,6 @@ struct SweepCore {
   Sweep linear;
   std::optional<NonlinearSweep> branches;
 };
-
-[[nodiscard]] inline tools::MapDocument document_of(const Map& map) {
-  return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries};
-}
 
 struct TuneCore {
   TuneTask task;

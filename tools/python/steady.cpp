@@ -123,25 +123,19 @@ tools::CsvFile table(const Answer& answer, const std::string& what) {
 }
 
 std::shared_ptr<Answer> linear(const SceneCore& core, const py::dict& arguments) {
-  const Request request = read_request(arguments);
-  const py::gil_scoped_release release;
-  SteadyResult found = steady(core.scene, request);
-  auto answer = std::make_shared<Answer>();
-  answer->model = std::move(found.model);
-  answer->settings = std::move(found.settings);
-  answer->result = std::move(static_cast<SpeedResult&>(found));
-  return answer;
+  return linear_answer(core.scene, read_request(arguments), arguments);
 }
 
 std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& arguments, int turns) {
   const Request request = read_request(arguments);
-  PythonWork work(1, py::none());
+  PythonWork work(arguments, py::none());
   NonlinearOptions options;
   options.turns = turns;
-  options.stop = [&work] { return work.stopped(); };
+  options.stop = work.stop();
   return work.run([&] {
     NonlinearSteady found = nonlinear_steady(core.scene, request, options);
     if (work.stopped()) throw Stopped();
+    work.say_time_limit(found.shortfalls);
     auto answer = std::make_shared<Answer>();
     answer->settings = std::move(found.settings);
     answer->model = std::move(found.model);
@@ -311,6 +305,17 @@ void add_force(py::module_& module) {
 }  // namespace
 
 RodView rod_of(const py::object& answer, std::size_t rod) { return {answer, answer.cast<const Answer*>(), rod}; }
+
+std::shared_ptr<Answer> linear_answer(const Scene& scene, const Request& request, const py::dict& arguments) {
+  PythonWork work(arguments, py::none());
+  constexpr bool whole = true;
+  SteadyResult found = work.run([&] { return steady(scene, request); }, whole);
+  auto answer = std::make_shared<Answer>();
+  answer->model = std::move(found.model);
+  answer->settings = std::move(found.settings);
+  answer->result = std::move(static_cast<SpeedResult&>(found));
+  return answer;
+}
 
 std::string Answer::json() const {
   return tools::json_text(nonlinear ? tools::nonlinear_json(*model, *nonlinear, settings, false)

@@ -30,6 +30,9 @@ struct RodView {
   const RodResult& result() const { return answer->result.rods[rod]; }
 };
 
+// By the linear theory; `arguments`: time_limit.
+[[nodiscard]] std::shared_ptr<Answer> linear_answer(const Scene& scene, const Request& request,
+                                                    const py::dict& arguments);
 [[nodiscard]] RodView rod_of(const py::object& answer, std::size_t rod);
 
 }  // namespace hb::python

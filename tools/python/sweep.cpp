@@ -43,14 +43,15 @@ std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& argument
   static_cast<Request&>(request) = read_request(rest);
   request.x = axis_of(core, arguments, request);
   const std::optional<int> turns = read_turns(arguments);
-  PythonWork work(read_threads(arguments), progress);
+  PythonWork work(arguments, progress);
   return work.run([&] {
     if (!turns) return std::make_shared<SweepCore>(SweepCore{sweep(core.source, request, work), std::nullopt});
     NonlinearSweepOptions options;
     options.turns = *turns;
-    options.stop = [&work] { return work.stopped(); };
+    options.stop = work.stop();
     NonlinearAlong found = nonlinear_sweep(core.source, request, options, work);
     if (work.stopped()) throw Stopped();
+    if (found.branches.stopped) work.say_time_limit(found.branches.shortfalls);
     return std::make_shared<SweepCore>(SweepCore{std::move(found.linear), std::move(found.branches)});
   });
 }

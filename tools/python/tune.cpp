@@ -97,7 +97,7 @@ tools::TuneFlags read_flags(const py::dict& arguments) {
 
 std::shared_ptr<TuneCore> tuned(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
   const tools::TuneFlags flags = read_flags(arguments);
-  PythonWork work(read_threads(arguments), py::none());
+  PythonWork work(arguments, py::none());
   return work.run([&] {
     tools::AskedTune asked = tools::asked_tune(flags, {core.name, core.text, core.folder, core.source});
     auto result =
@@ -109,8 +109,15 @@ std::shared_ptr<TuneCore> tuned(const SceneCore& core, const py::dict& arguments
       work.tell(progress, fmt::format("tune, best {}{:.6g}", feasible ? "" : "(conditions not met) ", sign * goal),
                 static_cast<std::size_t>(evaluations), static_cast<std::size_t>(most));
     };
-    result->result = tune(result->task, work);
+    result->task.options.stop = [&] { return work.late(); };
+    try {
+      result->result = tune(result->task, work);
+    } catch (const RequestError&) {  // no design yet
+      if (!work.late()) throw;
+      throw Stopped();
+    }
     result->task.options.progress = {};
+    result->task.options.stop = {};
     result->task.settings.modes = result->result.num_modes;
     return result;
   });

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <exception>
 #include <mutex>
 #include <system_error>
@@ -45,14 +47,39 @@ bool parallel_for(std::size_t count, int num_threads, const std::function<void(s
     }
   };
   {
+    std::size_t at_work = 0;
+    std::condition_variable one_less;
+    const auto help = [&] {
+      run();
+      const std::lock_guard lock(mutex);
+      --at_work;
+      one_less.notify_one();
+    };
     std::vector<std::jthread> threads;
     const std::size_t helpers = std::min<std::size_t>(static_cast<std::size_t>(num_threads), count) - 1;
     threads.reserve(helpers);
     try {
-      for (std::size_t t = 0; t < helpers; ++t) threads.emplace_back(run);
+      for (std::size_t t = 0; t < helpers; ++t) {
+        {
+          const std::lock_guard lock(mutex);
+          ++at_work;
+        }
+        threads.emplace_back(help);
+      }
     } catch (const std::system_error&) {  // no more threads to be had: those that are there do it
+      const std::lock_guard lock(mutex);
+      --at_work;
     }
     run();
+    // Who has nothing left to do here still looks whether the others are to end.
+    std::unique_lock lock(mutex);
+    while (at_work > 0) {
+      one_less.wait_for(lock, std::chrono::milliseconds(20));
+      if (!stop || ended) continue;
+      lock.unlock();
+      if (stop()) stopped = ended = true;
+      lock.lock();
+    }
   }
   if (error) std::rethrow_exception(error);
   return !stopped;

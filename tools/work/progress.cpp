@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <iterator>
+
 namespace hb::tools {
 namespace {
 
@@ -14,8 +16,8 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
-// A forecast after so many seconds, or never: by then parts of every kind have been seen.
-constexpr double first_look = 2, worth_saying = 10;
+// A forecast by the first parts, and one by which parts of every kind have been seen, after so many seconds.
+constexpr double looks[] = {0.3, 5}, worth_saying = 10;
 
 }  // namespace
 
@@ -40,19 +42,27 @@ void Progress::advance(std::size_t steps) {
              100.0 * static_cast<double>(done_) / static_cast<double>(total_), duration(left));
 }
 
-Forecast::Forecast(std::string what, std::size_t total, int num_threads)
-    : what_(std::move(what)), total_(total), num_threads_(num_threads), start_(std::chrono::steady_clock::now()) {}
+Forecast::Forecast(std::string what, std::size_t total, int num_threads, bool at_most)
+    : what_(std::move(what)),
+      total_(total),
+      num_threads_(num_threads),
+      at_most_(at_most),
+      start_(std::chrono::steady_clock::now()) {}
 
 void Forecast::advance(std::size_t steps) {
   const std::lock_guard lock(mutex_);
   done_ += steps;
+  if (looks_ == std::size(looks)) return;
   const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  if (said_ || spent < first_look || done_ == 0) return;
-  said_ = true;
-  const double left = spent * static_cast<double>(total_ - done_) / static_cast<double>(done_);
-  if (spent + left < worth_saying) return;
-  fmt::print(stderr, "hb: {} takes about {} ({} parts, {} {}); --threads and --time-limit change that\n", what_,
-             duration(spent + left), total_, num_threads_, num_threads_ == 1 ? "thread" : "threads");
+  if (spent < looks[looks_] || done_ == 0 || done_ >= total_) return;
+  while (looks_ < std::size(looks) && spent >= looks[looks_]) ++looks_;
+  const double all = spent * static_cast<double>(total_) / static_cast<double>(done_);
+  const bool news = said_ == 0 ? all >= worth_saying : all > 2 * said_ || all < said_ / 2;
+  if (!news) return;
+  fmt::print(stderr, "hb: {} takes {} {}{} ({} parts, {} {}); --threads and --time-limit change that\n", what_,
+             at_most_ ? "at most" : "about", duration(all), said_ > 0 ? ", as later parts show," : "", total_,
+             num_threads_, num_threads_ == 1 ? "thread" : "threads");
+  said_ = all;
 }
 
 }  // namespace hb::tools

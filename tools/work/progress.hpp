@@ -26,17 +26,21 @@ class Progress {
   std::mutex mutex_;
 };
 
-// Says once on standard error what a step will take, where that is more than ten seconds and it has just begun.
+// Says on standard error what a step will take, where that is more than ten seconds: by its first parts, and once more
+// where later ones show that it takes twice or half as long.
 class Forecast {
  public:
-  Forecast(std::string what, std::size_t total, int num_threads);
-  void advance(std::size_t steps);  // from any thread
+  // `at_most`: the step may end before all parts.
+  Forecast(std::string what, std::size_t total, int num_threads, bool at_most = false);
+  void advance(std::size_t steps = 1);  // from any thread
 
  private:
   std::string what_;
   std::size_t total_, done_ = 0;
   int num_threads_;
-  bool said_ = false;
+  bool at_most_;
+  std::size_t looks_ = 0;
+  double said_ = 0;  // seconds; 0: nothing
   std::chrono::steady_clock::time_point start_;
   std::mutex mutex_;
 };

@@ -6,6 +6,7 @@
 #include <exception>
 #include <stdexcept>
 
+#include "lib/stop_wish.hpp"
 #include "tools/command/command.hpp"
 #include "tools/output/folder_lock.hpp"
 #include "tools/work/parallel_for.hpp"
@@ -44,7 +45,24 @@ void split(const Part& numbers, const Parts& parts, std::size_t from, std::size_
 }  // namespace
 
 void SharedWork::for_each(std::size_t count, const std::function<void(std::size_t)>& task) const {
-  parallel_for(count, num_threads_, task);
+  parallel_for(count, num_threads_, [&](std::size_t k) {
+    if (early_)
+      compute_or_leave(task, k);
+    else
+      task(k);
+  });
+}
+
+// A part under way is given up where the work is to end; where it ends early, what takes its place says so.
+void SharedWork::compute_or_leave(const std::function<void(std::size_t)>& compute, std::size_t k) const {
+  if ((!stop_ && !early_) || ranks().size() > 1) return compute(k);  // of several processes all end together
+  try {
+    const StopWish wish([this] { return (stop_ && stop_()) || ends_early(); });
+    compute(k);
+  } catch (const Stopped&) {
+    if (!ends_early()) throw WorkStopped();
+    compute(k);
+  }
 }
 
 void SharedWork::step(const std::string& what, const Parts& parts) {
@@ -55,7 +73,7 @@ void SharedWork::step(const std::string& what, const Parts& parts) {
   const auto from = [&](std::size_t chunk) { return chunk * chunk_size; };
   const auto to = [&](std::size_t chunk) { return std::min(from(chunk) + chunk_size, count); };
   const auto compute = [&](std::size_t chunk) {
-    for (std::size_t k = from(chunk); k < to(chunk); ++k) parts.compute(k);
+    for (std::size_t k = from(chunk); k < to(chunk); ++k) compute_or_leave(parts.compute, k);
   };
   const auto keep = [&](std::size_t chunk) {
     if (kept_ != nullptr) kept_->store(step + chunk, joined(parts, from(chunk), to(chunk)));

@@ -159,7 +159,8 @@ void DesignAnalysis::find_instabilities() {
   for (const RequiredDecay& required : required_) {
     for (std::size_t r = 0; r < num_rods; ++r) {
       const RodModel& rod = model_.rods[r];
-      if (!rod.reported) continue;
+      // The verdict is the mechanism's; conditions are those of the rods asked for.
+      if (!rod.reported && &required != &required_.front()) continue;
       std::vector<StabilitySample> samples;
       for (std::size_t k = 0; k < num_nodes; ++k) {
         const double speed = nodes_[k]->speed;
@@ -366,6 +367,14 @@ MetricValue DesignAnalysis::value(const Metric& metric) {
     respond();
   }
   return worst(metric, curves);
+}
+
+std::vector<MetricValue> DesignAnalysis::margins() {
+  find_instabilities();
+  std::vector<MetricValue> result;
+  for (std::size_t r = 0; r < model_.rods.size(); ++r)
+    result.push_back(worst({MetricKind::margin, "", 1, "stable"}, {{MetricKind::margin, r, 1, model_.rods[r].name}}));
+  return result;
 }
 
 DesignCurves DesignAnalysis::curves() {

@@ -39,6 +39,8 @@ class DesignAnalysis {
 
   // Throws RequestError for a name that the scene does not have.
   [[nodiscard]] MetricValue value(const Metric& metric);
+  // Of every elastic link, asked for or not: the decay rate of its slowest disturbance, 1/time.
+  [[nodiscard]] std::vector<MetricValue> margins();
   [[nodiscard]] DesignCurves curves();
 
  private:

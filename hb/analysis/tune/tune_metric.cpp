@@ -194,10 +194,11 @@ bool is_margin(const Metric& metric) {
 
 bool depends_on_speed(MetricKind kind) { return kind != MetricKind::mass && kind != MetricKind::frequency; }
 
-std::string unit_of(MetricKind kind, const Units& units) {
+std::string unit_of(MetricKind kind, const Scene& scene) {
+  const Units& units = scene.units;
   switch (kind) {
     case MetricKind::deflection:
-      return units.length;
+      return std::holds_alternative<Linkage>(scene.model) ? units.length : "";
     case MetricKind::stress:
       return "MPa";
     case MetricKind::force:

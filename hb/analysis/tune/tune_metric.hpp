@@ -61,7 +61,7 @@ struct Keep {
 [[nodiscard]] bool better_large(MetricKind kind);
 [[nodiscard]] bool needs_forces(const Metric& metric);
 [[nodiscard]] bool is_margin(const Metric& metric);
-// Scene's length and mass; N, N m, MPa, Hz, rpm.
-[[nodiscard]] std::string unit_of(MetricKind kind, const Units& units);
+// Scene's length and mass; N, N m, MPa, Hz, rpm. The unknowns of a [hill] scene have no unit.
+[[nodiscard]] std::string unit_of(MetricKind kind, const Scene& scene);
 
 }  // namespace hb

@@ -229,6 +229,17 @@ class Tuner {
       best_[j] = task_.keeps[j].at_least ? std::max(best_[j], values[j]) : std::min(best_[j], values[j]);
   }
 
+  static std::vector<RodMargin> judged(std::vector<MetricValue> margins) {
+    std::vector<RodMargin> rods;
+    for (MetricValue& margin : margins) {
+      RodMargin& rod = rods.emplace_back(RodMargin{margin.where, std::move(margin), std::nullopt});
+      const double value = rod.margin.value, error = rod.margin.error;
+      if (!std::isnan(value))
+        rod.verdict = value > error ? Verdict::stable : value < -error ? Verdict::unstable : Verdict::undecided;
+    }
+    return rods;
+  }
+
   void report(DesignSpace& space, const DesignProblem& problem, TuneResult& result) {
     // Besides what was asked: deflection, margin and mass always.
     std::vector<Metric> shown;
@@ -252,6 +263,8 @@ class Tuner {
     report_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     for (std::size_t k = 0; k < shown.size(); ++k)
       result.rows.push_back({shown[k], before.values[k], after.values[k], before.confirmed[k], after.confirmed[k]});
+    result.margins_before = judged(std::move(before.margins));
+    result.margins_after = judged(std::move(after.margins));
     result.curves_before = std::move(before.curves);
     result.curves_after = std::move(after.curves);
     result.span_before = span_at(task_, result.start);
@@ -261,7 +274,7 @@ class Tuner {
         task_.goal.weighted ? aims_->goal(numbers_of(space.values(start_))) : result.rows.front().before.value;
     result.goal_after = aims_->goal(values_after);
     result.goal_error = task_.goal.weighted ? aims_->goal_error(confirmed_) : result.rows.front().after.error;
-    if (!task_.goal.weighted) result.goal_unit = unit_of(task_.goal.terms[0].metric.kind, scene.units);
+    if (!task_.goal.weighted) result.goal_unit = unit_of(task_.goal.terms[0].metric.kind, scene);
 
     constexpr double active = 1e-3;
     result.sensitivity = design_sensitivity(problem, result.design.x, active);

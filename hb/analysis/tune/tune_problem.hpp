@@ -64,6 +64,13 @@ struct TuneCondition {
   bool active = false;
 };
 
+// Whether every disturbance of a link dies out over all speeds, by its margin and the error of that.
+struct RodMargin {
+  std::string rod;
+  MetricValue margin;  // and the speed where it is least
+  std::optional<Verdict> verdict;  // empty: no margin
+};
+
 struct TuneResult {
   DesignResult design;
   std::vector<std::size_t> condition_of;  // of each of its conditions: the place in TuneTask::keeps
@@ -73,6 +80,7 @@ struct TuneResult {
   std::vector<std::string> worst_at_once;  // rods that hold the goal together, where it has a kink
   std::vector<std::string> without_effect;  // variables on which neither goal nor conditions depend
   std::vector<TuneRow> rows;
+  std::vector<RodMargin> margins_before, margins_after;  // of every elastic link, asked for or not
   std::vector<TuneCondition> conditions;
   std::optional<DesignSensitivity> sensitivity;
   double slope_left_over = 0;  // of the slopes of goal, conditions and bounds: 0 where they balance

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/bearing_load.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "lib/rod/rod_functional.hpp"
@@ -60,22 +61,6 @@ JointForces forces_of(const SceneModel& model, double speed, const std::vector<F
   for (std::size_t r = 0; r < q.size(); ++r) responses.push_back({model.rods[r].link, q[r]});
   return joint_forces(*model.linkage(), speed, responses, tolerance);
 }
-
-namespace {
-
-// Largest length of a force given by its components.
-Extremum largest_length(const FourierSeries& force) {
-  if (force.num_harmonics() < 0) return {};
-  if (force.num_components() == 1) return fourier::max_abs(force, 0);
-  // Its square has twice the harmonics.
-  const Eigen::MatrixXd samples = fourier::synthesise(force, 4 * force.num_harmonics() + 4);
-  const Eigen::MatrixXd square = samples.colwise().squaredNorm();
-  Extremum peak = fourier::range(fourier::analyse(square), 0).max;
-  peak.value = std::sqrt(std::max(0.0, peak.value));
-  return peak;
-}
-
-}  // namespace
 
 JointQuantities joint_quantities(const JointForces& forces) {
   JointQuantities result;

@@ -144,6 +144,9 @@ DesignSpace::Report DesignSpace::report(const std::vector<double>& x, const std:
     result.confirmed.push_back(std::abs(first.value - second.value) <= tolerance * std::abs(worst.value));
   }
   result.curves = fine.curves();
+  result.margins = fine.margins();
+  for (MetricValue& margin : result.margins)
+    complete(margin, scene, speeds, settings_, {MetricKind::margin, "", 1, "stable"});
   return result;
 }
 

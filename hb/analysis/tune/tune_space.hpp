@@ -50,6 +50,7 @@ class DesignSpace {
     std::vector<MetricValue> values;
     std::vector<bool> confirmed;  // both analyses agree to `tolerance`, relative
     DesignCurves curves;
+    std::vector<MetricValue> margins;  // of every elastic link, asked for or not
   };
   [[nodiscard]] Report report(const std::vector<double>& x, const std::vector<Metric>& metrics, int times,
                               double tolerance) const;

@@ -7,6 +7,7 @@
 
 #include "hb/engine/exponents/inexact_eigenvalues.hpp"
 #include "lib/dense.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -59,6 +60,7 @@ HillDeterminant::HillDeterminant(const ScaledSystem& system)
 }
 
 HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
+  end_if_wished();
   const auto E = [&](Index i, Index j, Index m) {
     const cplx c = K_.c(i + I_ * j, std::abs(m));
     return m >= 0 ? c : std::conj(c);
@@ -139,7 +141,8 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
   cplx second = 0;
   double trace = 0;
   for (Index m = -P_; m <= P_; ++m)
-    for (Index i = 0; i < I_; ++i)
+    for (Index i = 0; i < I_; ++i) {
+      end_if_wished();
       for (Index j = 0; j < I_; ++j) {
         const cplx product = E(i, j, m) * E(j, i, -m);
         if (product == 0.0) continue;
@@ -149,6 +152,7 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
         second -= 0.5 * product * sum;
         trace += product.real();
       }
+    }
   second -= trace / (3 * std::pow(double(far) + 0.5, 3));
 
   cplx sines = 0;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "lib/dense.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -47,6 +48,7 @@ class Window {
     dense::Lu<cplx> lu;
     double change = HUGE_VAL;
     for (int iteration = 0; iteration < 30; ++iteration) {
+      end_if_wished();
       lu.compute(matrix(s));
       const VectorXcd y = lu.solve(derivative(s, x));
       if (!y.allFinite()) {  // s hit the exponent to the last bit

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hb/engine/exponents/small_matrix.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -14,6 +15,7 @@ using Eigen::VectorXd;
 QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
   const Index n = maps.num_states(), N = maps.num_cells;
   constexpr int most_sweeps = 16;
+  constexpr Index often = 64;
   const double apart = std::log(10.0);
   QrSweep result{MatrixXd(n, n * N), {}, {}, MatrixXd(n, n * (N + 1))};
   MatrixXd Q = MatrixXd::Zero(n, n), start(n, n), next(n, n);
@@ -26,6 +28,7 @@ QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
     result.frames.leftCols(n) = Q;
     VectorXd logs = VectorXd::Zero(n);
     for (Index i = 0; i < N; ++i) {
+      if (i % often == 0) end_if_wished();
       multiply_columns(maps.cells, n * i, Q, next);
       orthogonalise(next, Q);
       result.R.middleCols(n * i, n) = next;
@@ -67,6 +70,7 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
       V.block(begin(b), 0, n - begin(b), sweep.ends[std::size_t(b)]).setZero();
       V.diagonal().segment(begin(b), width(b)).setOnes();
     }
+    end_if_wished();
     for (Index i = N - 1; i >= 0; --i) {
       const auto R = sweep.R.middleCols(n * i, n);
       W.setIdentity();

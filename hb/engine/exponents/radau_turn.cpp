@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lib/dense.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -237,6 +238,7 @@ struct Turn {
 
   // One cell, with pivots.
   void pivoted(Index n) {
+    end_if_wished();
     const auto& [c, A, A2] = radau();
     MatrixXd system(stages * m, stages * m), right(stages * m, 2 * m), alpha_i(m, m), beta_i(m, m);
     for (int i = 0; i < stages; ++i) {
@@ -277,6 +279,7 @@ struct Turn {
       return rows[static_cast<std::size_t>(row * width + column)];
     };
     for (Index first = 0; first < num_cells; first += lanes) {
+      end_if_wished();
       const auto load = [&](const MatrixXd& series, int stage, Index component) {
         return Lane(Eigen::Map<const Lane>(&series(stage * num_cells + first, component)));
       };

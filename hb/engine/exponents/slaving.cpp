@@ -10,6 +10,7 @@
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -331,6 +332,7 @@ class Iteration {
   //   x_F'  = P x_S + R x_S',             P = A' - C alpha,   R = A + C' - C beta
   //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
   void correction(const VectorXd& x, VectorXd& f) {
+    end_if_wished();
     const Index nm = n_ * m_;
     {
       auto spectrum = back_.spectrum();

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <complex>
 
+#include "lib/stop_wish.hpp"
+
 namespace hb::steady {
 
 namespace {
@@ -92,6 +94,7 @@ DirectInverse::DirectInverse(Operator& A) : A_(A) {
 
   Eigen::MatrixXcd Schur;  // what the block outside has taken from this one
   for (Index g = G; g-- > 0;) {
+    end_if_wished();
     const Index first = c_ + 1 + g * p_;
     // The innermost block couples to the last p harmonics of the core (c >= P; fewer where the core is shorter).
     const Index inner = g > 0 ? first - p_ : std::max<Index>(0, c_ + 1 - p_), width = first - inner;

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lib/stop_wish.hpp"
+
 namespace hb::steady {
 
 namespace {
@@ -79,6 +81,7 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
 }
 
 void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {
+  end_if_wished();
   const Eigen::Index I = system_->I, P = system_->P;
   ++num_products_;
   result.setZero(num_rows + 1, I);

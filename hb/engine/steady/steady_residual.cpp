@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "lib/stop_wish.hpp"
+
 namespace hb::steady {
 
 namespace {
@@ -108,6 +110,7 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
     // Sum over all harmonics of the rounding of C and of the low parts: charged to harmonic 0, where |D| is least.
     Real total = 0;
     for (Index j = 0; j < I; ++j) {
+      end_if_wished();
       // -M q'' - B q'
       for (Index k = 0; k <= H; ++k) {
         const auto at = static_cast<std::size_t>(k);

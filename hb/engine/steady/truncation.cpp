@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/stop_wish.hpp"
+
 namespace hb::steady {
 
 namespace {
@@ -25,6 +27,7 @@ Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index 
   double largest = 0;
   Index H = 0;  // last harmonic that mattered
   for (Index k = 0; k <= most; ++k) {
+    end_if_wished();
     Eigen::VectorXd response = Eigen::VectorXd::Zero(I);
     for (Index m = 1; m <= std::min(k, P_cut); ++m) response.noalias() += K.col(m).reshaped(I, I) * a.col(k - m);
     for (Index i = 0; i < I; ++i) {

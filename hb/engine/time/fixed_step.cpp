@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lib/dense.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -91,6 +92,7 @@ MarchingResult march_fixed_step(const TimeDomainSystem& system, FixedStep method
       else
         runge_kutta_step(equation, k * d, d, state);
       ++result.steps;
+      if (k % 256 == 255) end_if_wished();
       if (k % 256 == 255 && seconds() > time_limit) {
         result.status = ShootingStatus::time_limit;
         result.message = "stopped by the time limit";

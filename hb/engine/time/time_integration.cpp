@@ -10,6 +10,7 @@
 
 #include "hb/engine/time/sundials_session.hpp"
 #include "lib/dense.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -90,7 +91,7 @@ struct Problem {
 
 int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* data) {
   auto& problem = *static_cast<Problem*>(data);
-  if (std::chrono::steady_clock::now() > problem.deadline) {
+  if (std::chrono::steady_clock::now() > problem.deadline || stop_wished()) {
     problem.late = true;
     return -1;
   }
@@ -163,7 +164,12 @@ Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double toler
   trajectory.states.reserve(outputs.size());
   for (const double tau : outputs) {
     realtype reached = tau0;
-    const int flag = CVode(cvode, tau, sundials.y, &reached, CV_NORMAL);
+    int flag = 0;
+    {
+      const StopHeld held;
+      flag = CVode(cvode, tau, sundials.y, &reached, CV_NORMAL);
+    }
+    if (problem.late) end_if_wished();
     CVodeGetNumSteps(cvode, &trajectory.steps);
     if (flag < 0) {
       trajectory.status = problem.late ? IntegrationStatus::time_limit : IntegrationStatus::failed;
@@ -263,6 +269,7 @@ Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double
   for (const double end : outputs) {
     const double h = (end - start) / cells_between;
     for (int cell = 0; cell < cells_between; ++cell) {
+      end_if_wished();
       if (std::chrono::steady_clock::now() > deadline) {
         trajectory.status = IntegrationStatus::time_limit;
         trajectory.message = "time limit at crank angle " + std::to_string(start + cell * h) + " rad";

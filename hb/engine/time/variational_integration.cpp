@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "hb/engine/time/sundials_session.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -114,6 +115,7 @@ Trajectory integrate_variations(const NonlinearMotion& motion, Integrator method
   trajectory.states.reserve(outputs.size());
   for (const double tau : outputs) {
     realtype reached = tau0;
+    const StopHeld held;
     const int flag = CVode(cvode, tau, sundials.y, &reached, CV_NORMAL);
     CVodeGetNumSteps(cvode, &trajectory.steps);
     if (flag < 0) {

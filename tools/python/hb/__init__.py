@@ -9,6 +9,7 @@ Numbers are those of the command `hb`, to the last bit; units are the scene's.
 
 from ._core import Force, Rod, Stability
 from ._core import version as __version__
+from .bench import Bench, RodBench
 from .check import Check, RodCheck
 from .errors import Error, RequestError, SceneError, SceneProblem
 from .hill_system import HillSystem
@@ -19,6 +20,7 @@ from .sweep import CriticalPoint, Sweep, SweepRod
 from .tune import Tune
 
 __all__ = [
+    "Bench",
     "Boundary",
     "Check",
     "CriticalPoint",
@@ -28,6 +30,7 @@ __all__ = [
     "Map",
     "RequestError",
     "Rod",
+    "RodBench",
     "RodCheck",
     "RodMap",
     "Scene",

@@ -88,4 +88,6 @@ class RequestError(Error):
 def refused(field: str, found: object, allowed: str) -> RequestError:
     """The error of an argument, in the words of all others."""
     words = found if isinstance(found, str) else repr(found)
+    words = " ".join(words.split())
+    words = words if len(words) <= 80 else words[:80] + "..."
     return RequestError(f"{field}: found {words}, allowed: {allowed}", field, words, allowed)

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from .bench import Bench
     from .check import Check
     from .map import Map
     from .steady import Steady
@@ -127,6 +128,14 @@ def of_check(result: "Check") -> "pandas.DataFrame":
         for k, rpm in enumerate(document["rpm"] if several else [document["rpm"]]):
             rows.append({"rod": name, "rpm": rpm} | {key: entry[key][k] if several else entry[key] for key in keys if key in entry})
     return pandas.DataFrame(rows).set_index(["rod", "rpm"])
+
+
+def of_bench(result: "Bench") -> "pandas.DataFrame":
+    import pandas
+
+    rows = [{"rod": name} | row for name, rod in result.rods.items() for row in rod.rows]
+    columns = ["rod", "method", "asked", "harmonics_or_steps", "error", "seconds", "seconds_median"]
+    return pandas.DataFrame(rows, columns=columns)
 
 
 def require_kind(kind: str, allowed: tuple[str, ...]) -> None:

@@ -153,7 +153,7 @@ def _array(field: str, given: Any) -> "NDArray[Any]":
     except ValueError:
         array = numpy.asarray(None)
     if array.dtype.kind not in "iuf":
-        raise refused(field, given, "an array of numbers")
+        raise refused(field, repr(given), "an array of numbers")
     return numpy.array(array, dtype=float)  # a copy: what is given may change later
 
 
@@ -166,7 +166,11 @@ def _shaped(field: str, given: Any, shape: tuple[int, ...]) -> Any:
     if given is None:
         return None
     array = _array(field, given)
-    return array.reshape(shape) if array.ndim == 0 and max(shape) == 1 else array
+    if array.ndim == 0 and max(shape) == 1:
+        return array.reshape(shape)
+    if array.ndim != len(shape):
+        raise refused(field, f"an array of shape {array.shape}", f"shape {shape}, as mass has {shape[0]} rows")
+    return array
 
 
 def _terms(field: str, terms: Terms, shape: tuple[int, ...]) -> tuple[list[Any], list[Any]]:
@@ -189,7 +193,8 @@ def _terms(field: str, terms: Terms, shape: tuple[int, ...]) -> tuple[list[Any],
     for key, value in terms.items():
         harmonic, power = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
         if not (_is_integer(harmonic) and 0 <= harmonic <= _MOST_HARMONIC and _is_integer(power) and 0 <= power <= 2):
-            raise refused(f"{field} key", key, "a harmonic k, or (k, p) with a power p = 0, 1, 2 of Omega")
+            allowed = f"a harmonic k, 0 to {_MOST_HARMONIC}, or (k, p) with a power p = 0, 1, 2 of Omega"
+            raise refused(f"{field} key", repr(key), allowed)
         name = f"{field}[{key!r}]"
         cos, sin = value if isinstance(value, tuple) and len(value) == 2 else (value, None)
         cos, sin = _shaped(name, cos, shape), _shaped(name, sin, shape)

@@ -130,10 +130,17 @@ class Map(_Grid, Result):
         return {name: RodMap(name, entry) for name, entry in self._document["rods"].items()}
 
     @property
+    def damping(self) -> dict[float, list[Boundary]]:
+        """With damping_range: for each factor on the damping the boundaries of the worst link."""
+        entries = self._document.get("damping_range", [])
+        return {float(entry["factor"]): [Boundary(curve) for curve in entry["boundaries"]] for entry in entries}
+
+    @property
     def shortfalls(self) -> list[str]:
-        """What missed its tolerance."""
-        missed = self._document["boundary_points_not_reached"]
-        return [f"{missed} boundary points are known to less than 1e-10"] if missed else []
+        """What missed a boundary_tol asked for, or was not computed in time."""
+        notes = list(self._document.get("notes", []))
+        complete = self._document["status"] == "reached"
+        return notes if self._arguments.get("boundary_tol") is not None else notes[: 0 if complete else 1]
 
     def to_frame(self) -> "pandas.DataFrame":
         """The command's table map_grid.csv: a row for each place."""

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from ._core import Rod
+    from .bench import Bench
     from .check import Check
     from .map import Map
     from .scene import Scene
@@ -409,6 +410,25 @@ def check(result: "Check", ax: Optional["Axes"] = None) -> "Axes":
     ax.set(xlabel="crank speed [rpm]", ylabel="|difference of q| / max |q|")
     _title(ax, _name(result.scene), "harmonic balance against time integration")
     _legend(ax)
+    return ax
+
+
+def bench(result: "Bench", rod: Optional[str], ax: Optional["Axes"] = None) -> "Axes":
+    import numpy as np
+
+    name = next(iter(result)) if rod is None else rod
+    entry = result[name]
+    ax = _axes(ax)
+    methods: dict[str, list[tuple[float, float]]] = {}
+    for row in entry.rows:
+        error = np.nan if row["error"] is None else max(row["error"], 1e-16)
+        methods.setdefault(row["method"], []).append((row["seconds"], error))
+    for k, (method, points) in enumerate(methods.items()):
+        ax.loglog(*np.array(points).T, ".-", color=LINES[k] if k < 7 else "#888888", label=method)
+    ax.axhline(max(entry.reference_error, 1e-16), color="#888888", linestyle="--", label="error of the reference")
+    ax.set(xlabel="time of one solution [s]", ylabel="max |error of q| / max |q|", ylim=(1e-16, 10))
+    _title(ax, _name(result.scene), f"{name}: error against run time")
+    _legend(ax, loc="center left", bbox_to_anchor=(1, 0.5))
     return ax
 
 

@@ -14,6 +14,7 @@ from .progress import Progress, finish, teller
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .bench import Bench
     from .check import Check
     from .map import Map
     from .steady import Steady
@@ -131,12 +132,14 @@ class Scene:
         steady_method: Optional[str] = None,
         stability_method: Optional[str] = None,
         bound: Optional[str] = None,
+        time_limit: Optional[float] = None,
     ) -> "Steady":
         """The periodic steady state at one speed, its stability, joint forces and torque: hb.Steady.
 
         modes: Ritz terms per elastic link, 1 to 60, or "auto". tol: relative error wanted. rods: names of links to look
         at. only: of "steady", "stability", "growth", "verdict", "reactions", "shape". theory: "linear" or "nonlinear" (the motion
         without linearisation, all rods together), with period: motions of so many turns. bound: "estimated" or "proved".
+        time_limit: seconds; TimeoutError where there is no answer by then.
         """
         from .steady import Steady
 
@@ -152,6 +155,7 @@ class Scene:
             "steady_method": steady_method,
             "stability_method": stability_method,
             "bound": bound,
+            "time_limit": time_limit,
         }
         return Steady(self, arguments, _core.steady(self._core, arguments))
 
@@ -171,6 +175,7 @@ class Scene:
         steady_method: Optional[str] = None,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
+        time_limit: Optional[float] = None,
         progress: Progress = False,
     ) -> "Sweep":
         """Along the speed or any other number, with resonance peaks and unstable bands located: hb.Sweep.
@@ -179,7 +184,8 @@ class Scene:
         number of the scene instead, "AB.J=30:60:1" or ("AB.J", range), at one rpm or omega. theory: "nonlinear" adds the
         branches of the motion without linearisation, of up to `period` turns. search: False leaves out what lies
         between the points (bands, resonance peaks), as only="growth" or "verdict" does for bands. threads: 1 or more, or
-        "all"; the answer has the same bits. progress: True, or a function of (what, done, total).
+        "all"; the answer has the same bits. time_limit: seconds; the answer is then what is there, and `shortfalls` says
+        so. progress: True, or a function of (what, done, total).
         """
         from .sweep import Sweep
 
@@ -197,6 +203,7 @@ class Scene:
             "steady_method": steady_method,
             "stability_method": stability_method,
             "threads": threads,
+            "time_limit": time_limit,
         }
         return Sweep(self, arguments, _long(_core.sweep, self, arguments, progress))
 
@@ -211,16 +218,19 @@ class Scene:
         tol: Optional[float] = None,
         rods: Names = None,
         only: Names = None,
+        damping_range: Any = None,
         boundaries: bool = True,
         boundary_tol: Optional[float] = None,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
+        time_limit: Optional[float] = None,
         progress: Progress = False,
     ) -> "Map":
         """Stability over two numbers, one of which may be the speed: hb.Map.
 
         x, y: "PATH=FROM:TO:COUNT" as in "rpm=200:6000:117" or "*.J=20:200:61", or (path, range) with a range
-        (from, to, count) or an array of values. boundaries: False computes the grid alone. boundary_tol: relative error
+        (from, to, count) or an array of values. damping_range: a pair of factors on the damping; boundaries with either are
+        in `damping`. boundaries: False computes the grid alone. boundary_tol: relative error
         wanted of boundary points, 1e-14 to 0.01. only: "stability", "growth" or "verdict". Other arguments as in sweep().
         """
         from .map import Map
@@ -234,10 +244,12 @@ class Scene:
             "tol": tol,
             "rods": rods,
             "only": only,
+            "damping_range": damping_range,
             "boundaries": boundaries,
             "boundary_tol": boundary_tol,
             "stability_method": stability_method,
             "threads": threads,
+            "time_limit": time_limit,
         }
         return Map(self, arguments, _long(_core.map, self, arguments, progress))
 
@@ -256,6 +268,7 @@ class Scene:
         theory: str = "linear",
         period: Optional[int] = None,
         threads: Union[int, str] = 1,
+        time_limit: Optional[float] = None,
         progress: Progress = False,
     ) -> "Check":
         """The same by time integration on an independent path, at one speed or a range: hb.Check.
@@ -278,8 +291,42 @@ class Scene:
             "theory": theory,
             "period": period,
             "threads": threads,
+            "time_limit": time_limit,
         }
         return Check(self, arguments, _long(_core.check, self, arguments, progress))
+
+    def bench(
+        self,
+        *,
+        rpm: Speed = None,
+        omega: Speed = None,
+        modes: Modes = None,
+        rods: Names = None,
+        steady_method: Optional[str] = None,
+        case_limit: Optional[float] = None,
+        theory: str = "linear",
+        period: Optional[int] = None,
+        time_limit: Optional[float] = None,
+        progress: Progress = False,
+    ) -> "Bench":
+        """Error against run time of the periodic state at one speed, for every method: hb.Bench.
+
+        Every method runs on one thread at its own list of tolerances. case_limit: seconds for each case (5).
+        """
+        from .bench import Bench
+
+        arguments = {
+            "rpm": rpm,
+            "omega": omega,
+            "modes": modes,
+            "rods": rods,
+            "steady_method": steady_method,
+            "case_limit": case_limit,
+            "theory": theory,
+            "period": period,
+            "time_limit": time_limit,
+        }
+        return Bench(self, arguments, _long(_core.bench, self, arguments, progress))
 
     def tune(
         self,
@@ -301,6 +348,7 @@ class Scene:
         analyses: Optional[int] = None,
         speeds: Optional[int] = None,
         threads: Union[int, str] = 1,
+        time_limit: Optional[float] = None,
         progress: Progress = False,
     ) -> "Tune":
         """A design: numbers of the scene that are best by a goal under conditions, worst over the speeds: hb.Tune.
@@ -330,6 +378,7 @@ class Scene:
             "analyses": analyses,
             "speeds": speeds,
             "threads": threads,
+            "time_limit": time_limit,
         }
         return Tune(self, arguments, _long(_core.tune, self, arguments, progress))
 

@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from .scene import Scene
 
 
+class _Forces(dict[str, Force]):
+    def __missing__(self, name: object) -> Force:
+        raise KeyError(f"{name}: no joint here; there are {', '.join(self) or 'none'}")
+
+
 class Steady:
     """The periodic motion at one speed: responses and stability of the elastic links, forces and torque.
 
@@ -30,7 +35,7 @@ class Steady:
         self._answer = answer
         answer.origin = (_answer, (scene, arguments))
         self._rods: dict[str, Rod] = answer.rods()
-        self._joints: dict[str, Force] = answer.joints()
+        self._joints = _Forces(answer.joints())
         self._document: Optional[dict[str, Any]] = None
 
     @property

@@ -1,25 +1,53 @@
-// Branches of nonlinear motions over the speed: along their arc, so that folds stay folds.
-const branchCurves = (rod, component) => ((report.sweep && report.sweep.branches) || []).map((branch) => {
-  const own = branch.rods && branch.rods[rod];
-  const x = report.axis.kind === "omega" ? branch.omega : branch.rpm;
-  return {x, y: own && own.max_abs ? own.max_abs.map((q) => (q ? q[component] : NaN)) : [], verdict: branch.verdict || []};
-}).filter((branch) => branch.y.length > 1);
+// Branches of motions without linearisation over the axis: along their arc, so that folds stay folds.
+const nonlinear = (report.sweep && report.sweep.nonlinear) || null;
+const allBranches = () => (nonlinear ? nonlinear.branches : []).map((branch) => ({
+  ...branch, x: doubles(branch.x), verdicts: [...branch.verdict].map((letter) => verdictNames[letter] || "undecided"),
+  growth: floats(branch.growth_rate),
+}));
 
-// Solid where stable, dashed elsewhere; each piece has the verdict of both its ends.
+// Columns of one rod's component, or of the growth of all rods together.
+const peakBranches = (rod, component) => allBranches().map((branch) => ({...branch, y: floats(branch.rods[rod][component])}));
+const growthBranches = () => allBranches().map((branch) => ({...branch, y: branch.growth}));
+
+// Solid where stable, dashed elsewhere; a piece whose ends differ counts as undecided.
 const drawBranches = (branches) => (pen, area, chart) => {
-  for (const branch of branches) {
-    for (let k = 1; k < branch.x.length; ++k) {
-      if (!(branch.y[k - 1] > 0 && branch.y[k] > 0)) continue;
-      const same = branch.verdict[k - 1] === branch.verdict[k] ? branch.verdict[k] : "undecided";
-      pen.strokeStyle = colours[same] || colours.ink;
-      pen.setLineDash(same === "stable" || same === "bounded" ? [] : [5, 4]);
-      pen.lineWidth = 2.2;
+  pen.lineJoin = "round";
+  for (const {x, y, verdicts} of branches) {
+    const at = (k) => [chart.toDomXCoord(x[k]), chart.toDomYCoord(y[k])];
+    for (let k = 1; k < x.length;) {
+      const kind = verdicts[k - 1] === verdicts[k] ? verdicts[k] : "undecided";
+      pen.strokeStyle = colours[kind] || colours.ink;
+      pen.setLineDash(kind === "stable" || kind === "bounded" ? [] : [6, 4]);
+      pen.lineWidth = 2.4;
       pen.beginPath();
-      pen.moveTo(chart.toDomXCoord(branch.x[k - 1]), chart.toDomYCoord(branch.y[k - 1]));
-      pen.lineTo(chart.toDomXCoord(branch.x[k]), chart.toDomYCoord(branch.y[k]));
+      pen.moveTo(...at(k - 1));
+      // One line for all pieces of a kind: dashes run on.
+      do pen.lineTo(...at(k++)); while (k < x.length && kind === (verdicts[k - 1] === verdicts[k] ? verdicts[k] : "undecided"));
       pen.stroke();
     }
   }
   pen.setLineDash([]);
 };
-const branchLegend = (branches) => (branches.length === 0 ? [] : [{text: "branch, stable (q₁)", colour: "stable"}, {text: "branch, unstable", colour: "unstable", dashed: true}]);
+// Folds as dots, other bifurcations as circles.
+const drawEvents = (yOf) => (pen, area, chart) => {
+  for (const [events, hollow] of nonlinear ? [[nonlinear.folds, false], [nonlinear.bifurcations, true]] : []) {
+    for (const event of events) {
+      const y = yOf(event);
+      if (!Number.isFinite(y)) continue;
+      pen.beginPath();
+      pen.arc(chart.toDomXCoord(event.x), chart.toDomYCoord(y), 4, 0, 2 * Math.PI);
+      pen.fillStyle = hollow ? colours.card : colours.ink;
+      pen.strokeStyle = colours.ink;
+      pen.lineWidth = 1.5;
+      pen.fill();
+      pen.stroke();
+    }
+  }
+};
+const branchLegend = () => (nonlinear ? [{text: "stable motion", colour: "stable"}, {text: "unstable motion", colour: "unstable", dashed: true},
+  ...(nonlinear.branches.some((b) => b.verdict.includes("?")) ? [{text: "undecided", colour: "undecided", dashed: true}] : [])] : []);
+const branchWords = () => {
+  if (!nonlinear) return "";
+  const marks = [nonlinear.folds.length ? "dots: folds, where a motion turns back in speed" : "", nonlinear.bifurcations.length ? "circles: other bifurcations" : ""].filter(Boolean);
+  return `Coloured: motions without linearisation along ${nonlinear.branches.length === 1 ? "their branch" : `${nonlinear.branches.length} branches`}${marks.length ? "; " + marks.join("; ") : ""}. Grey: the linear theory.`;
+};

@@ -58,6 +58,8 @@ const points = {
   omega: doubles(report.points.omega),
 };
 const isLinkage = report.kind === "linkage";
+// Motions without linearisation, where they were asked for; a single speed may have none.
+const isNonlinear = report.theory === "nonlinear";
 const isSpeedAxis = report.axis.kind !== "parameter";
 const rods = report.rods;
 
@@ -89,6 +91,7 @@ const place = (() => {
       const shape = shapes[entry.shape];
       value = {
         problem: entry.problem || "",
+        lacking: entry.lacking || "",
         numbers: shape === undefined ? null : filled(shape, () => numbers[at++]),
         curves: entry.curves || null,
         motion: entry.motion,
@@ -101,7 +104,6 @@ const place = (() => {
 const isKept = (index) => !report.points.kept || report.points.kept.includes(index);
 
 const verdictNames = {s: "stable", b: "bounded", u: "unstable", "?": "undecided", "-": ""};
-const verdictOf = (rod, index) => {
-  const letters = report.verdicts[rod];
-  return letters ? verdictNames[letters[index]] : "";
-};
+// Of one link; of all together where they have one verdict only.
+const lettersOf = (rod) => report.verdicts[rod] || report.verdicts[""] || "";
+const verdictOf = (rod, index) => verdictNames[lettersOf(rod)[index]] || "";

@@ -1,4 +1,9 @@
 // Joint forces and torque along the speed: smallest and largest over the turn, elastic beside rigid.
+// Of the kept points, "1" where a link lies beyond the linear theory.
+const beyondMarks = () => {
+  const kept = report.points.kept || Array.from({length: points.count}, (_, k) => k);
+  return kept.map((k) => (rods.some((rod) => isBeyondAt(k, rod.name)) ? "1" : "0")).join("");
+};
 const setUpForceRange = () => {
   const host = document.getElementById("force-range"), sweep = report.sweep;
   if (!sweep || !sweep.joints || Object.keys(sweep.joints).length === 0 || points.count < 2 || !report.along) return;
@@ -11,7 +16,7 @@ const setUpForceRange = () => {
   const chart = element("div", {class: "chart"});
   host.append(element("div", {class: "card"}, element("h4", {}, "Forces along the speed"),
     element("div", {class: "toolbar"}, element("label", {}, "smallest and largest over the turn of ", select)), chart,
-    legend([{text: "elastic", colour: "elastic"}, {text: "rigid", colour: "rigid", dashed: true}])));
+    legend([{text: isNonlinear ? "elastic, linear theory" : "elastic", colour: "elastic"}, {text: "rigid", colour: "ink", dashed: true}, ...(beyondMarks().includes("1") && !isNonlinear ? [{text: "elastic beyond linear theory", colour: "rigid", dashed: true}] : [])])));
   const values = (range, end, factor) => Float64Array.from(floats(range[end])).map((v) => v * factor);
   const x = doubles(sweep.forces_x), kept = report.points.kept;
   let shown = null;
@@ -20,8 +25,9 @@ const setUpForceRange = () => {
     const columns = [];
     for (const end of ["min", "max"]) {
       const words = end === "min" ? "smallest" : "largest";
-      if (rigid) columns.push({label: `rigid ${words}`, values: values(rigid, end, unit.factor), colour: "rigid", dash: [5, 4], width: 1.3});
-      columns.push({label: words, values: values(elastic, end, unit.factor), colour: "elastic"});
+      const all = values(elastic, end, unit.factor), marks = beyondMarks();
+      columns.push(...splitByMarks(marks, words, all, "elastic", 2));
+      if (rigid) columns.push({label: `rigid ${words}`, values: values(rigid, end, unit.factor), colour: "ink", dash: [2, 4], width: 1.3});
     }
     // Resonance spikes would flatten all that is valid: the picture holds the stable speeds, zooming out shows the rest.
     const stable = [];

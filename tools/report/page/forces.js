@@ -43,11 +43,16 @@ const elasticBesideRigid = (series, component, factor) => {
   const scaled = (c) => samplesOf(c, count).map((v) => v * factor);
   const curves = [];
   const beyond = rods.some((rod) => isBeyond(rod.name));
-  if (series.rigid) curves.push({name: "rigid", values: scaled(series.rigid[component]), colour: colours.rigid, dash: [5, 4]});
-  curves.push({name: "elastic", values: scaled(series.elastic[component]), colour: beyond ? colours.ink : colours.elastic, dash: beyond ? [2, 3] : [], note: beyond ? "beyond the linear theory" : ""});
+  const elastic = scaled(series.elastic[component]);
+  curves.push({name: "elastic", values: elastic, colour: beyond ? colours.rigid : colours.elastic, dash: beyond ? [6, 4] : [], width: 2, note: beyond ? "elastic: beyond the linear theory" : ""});
+  if (series.rigid) {
+    const rigid = scaled(series.rigid[component]), most = Math.max(...elastic.map((v, k) => Math.abs(v - rigid[k])));
+    curves.push({name: "rigid", values: rigid, colour: colours.ink, dash: [2, 4], width: 1.3});
+    curves[0].below = `elastic − rigid: at most ${short(most, 3)}`;
+  }
   return curves;
 };
-const besideLegend = () => legend([{text: "elastic", colour: "elastic"}, {text: "rigid", colour: "rigid", dashed: true}]);
+const besideLegend = () => legend([{text: "elastic", colour: "elastic"}, {text: "rigid", colour: "ink", dashed: true}, {text: ""}]);
 
 class PolarPlot {
   constructor(host, joint) {
@@ -71,8 +76,9 @@ class PolarPlot {
       xLabel: withUnit("along", units.force.name), yLabel: withUnit("across", units.force.name)});
     area.clipped(() => {
       area.rule([0, 0], [area.y0, area.y1], colours.rule);
-      if (rigid) area.line(rigid[0], rigid[1], {colour: colours.rigid, dash: [5, 4]});
-      area.line(elastic[0], elastic[1], {colour: colours.elastic});
+      const beyond = rods.some((rod) => isBeyond(rod.name));
+      area.line(elastic[0], elastic[1], beyond ? {colour: colours.rigid, dash: [6, 4], width: 2} : {colour: colours.elastic, width: 2});
+      if (rigid) area.line(rigid[0], rigid[1], {colour: colours.ink, dash: [2, 4], width: 1.3});
       area.line([elastic[0][0] * 0, elastic[0][0]], [0, elastic[1][0]], {colour: colours.ghost, width: 1});
     });
     let most = 0;

@@ -45,7 +45,7 @@ const units = (() => {
     response: isLinkage ? u.length : "",
     force: {factor: u.force_in_newton || 1, name: isLinkage ? "N" : ""},
     moment: {factor: u.torque_in_newton_metre || 1, name: "N m"},
-    hertz: 1 / (2 * Math.PI * (u.time_in_s || 1)),
+    frequency: u.frequency || {factor: 1 / (2 * Math.PI * (u.time_in_s || 1)), name: "Hz"},
     degrees: u.angle === "deg" ? 1 : 180 / Math.PI,
   };
 })();

@@ -7,7 +7,7 @@ const showSpeed = () => {
   else if (report.axis.kind === "omega" && known) axis.textContent = `Ω = ${short(points.omega[state.index], 8)} rad/${units.time}`;
   const words = [];
   for (const rod of rods) {
-    const verdict = verdictOf(rod.name, state.index) || (known && report.verdicts[""] ? verdictOf("", state.index) : ""), mark = document.getElementById("verdict-" + rod.name);
+    const verdict = known ? verdictOf(rod.name, state.index) : "", mark = document.getElementById("verdict-" + rod.name);
     if (!mark) continue;
     mark.textContent = verdict || "–";
     mark.dataset.verdict = verdict;
@@ -38,11 +38,18 @@ document.addEventListener("keydown", (event) => {
 });
 
 const start = () => {
+  if (!report.map) document.querySelector("nav a[href='#map-section']").hidden = true;
+  if (isNonlinear) document.querySelector(".badges").append(element("span", {class: "badge note-badge"}, "all links together, without linearisation"));
   if (!isLinkage) {
     document.documentElement.classList.add("no-linkage");
+    document.querySelector("#mechanism-section > h2").textContent = "At this speed";
+    document.querySelector("nav a[href='#mechanism-section']").textContent = "Numbers";
+    document.querySelector(".skip").textContent = "Skip to the numbers";
     document.querySelector("#rods > h2").textContent = "The system at this speed";
     document.querySelector("nav a[href='#rods']").textContent = "System";
   }
+  // The number that the slider goes by stands first.
+  if (report.axis.kind !== "rpm") document.getElementById("controls").classList.add("by-axis");
   readFragment();
   slider.value = String(state.index);
   document.getElementById("announce").remove();
@@ -66,6 +73,7 @@ const start = () => {
   // Paper is white: colours of the light scheme, sizes of the page, and everything drawn, in sight or not.
   const onPaper = (on) => {
     document.documentElement.classList.toggle("printing", on);
+    for (const more of document.querySelectorAll("#notes details")) more.open = on;
     recolour();
     for (const chart of charts) chart.onPaper(on);
     drawNow();

@@ -229,6 +229,7 @@ class MapPlot {
 const setUpMap = () => {
   const canvas = document.getElementById("map");
   if (!canvas || !report.map) {
+    document.getElementById("map-views").classList.add("empty-card");
     document.getElementById("map-views").append(element("p", {class: "missing"}, "This page holds no map: hb report with --x and --y, or hb map, computes one."));
     return;
   }
@@ -236,9 +237,9 @@ const setUpMap = () => {
   new MapPlot(canvas);
   const kinds = [...new Set(map.boundaries.map((curve) => curve.kind))];
   canvas.parentNode.append(
-    element("p", {class: "caption"}, kinds.map((kind) => `${kind === "-1" ? "Solid" : kind === "+1" ? "Long dashes" : "Dots"}: ${kindWords[kind] || kind}. `).join("") +
+    element("p", {class: "caption"}, isNonlinear ? "By the linear theory. " : "", kinds.map((kind) => `${kind === "-1" ? "Solid" : kind === "+1" ? "Long dashes" : "Dots"}: ${kindWords[kind] || kind}. `).join("") +
       "Blue: disturbances die out, red: they grow; every cell is one computed point. Light grey: undecided, green: bounded, dark grey: no system. " +
-      "A click moves the cross-hair and takes the speed along; drag to zoom, double click for the whole." + (map.words ? " " + map.words : "")));
+      (map.words ? map.words + " " : ""), element("span", {class: "hint"}, "A click moves the cross-hair and takes the speed along; drag to zoom, double click for the whole.")));
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `Stability map over ${map.x.label} and ${map.y.label}: ${map.counts ? Object.entries(map.counts).filter(([, n]) => n > 0).map(([name, n]) => `${n} ${name}`).join(", ") : ""}; arrow keys move the cross-hair`);
 };

@@ -37,18 +37,37 @@ const reach = (motion) => {
   return motion.box;
 };
 
+// Bodies with their joints in the plane; joint 1 of a bent link stands where its chord ends.
+const posesAt = (motion, angle) => motionAt(motion, angle).map((pose) => {
+  const q = motion.turns && pose.body.elastic ? coordinatesAt(pose.body.name, angle) : null;
+  const chord = q ? alongChord(q, pose.body.length, 40) : null;
+  const joints = pose.body.points.map((point, p) => pose.at(chord && p === 1 ? [chord[40], 0] : point.at));
+  return {...pose, chord, joints};
+});
+
+// The design before stands behind where its bodies are elsewhere.
+let otherBefore;
+const hasOtherBefore = () => {
+  if (otherBefore !== undefined) return otherBefore;
+  const before = report.design && report.motions[report.design.before_motion];
+  const ends = (motion) => [0.3, 2.1, 4.4].flatMap((angle) => motionAt(motion, angle).flatMap((pose) => pose.body.points.flatMap((p) => pose.at(p.at))));
+  const here = before ? ends(report.motions[0]) : [], there = before ? ends(before) : [], size = Math.max(1e-300, ...here.map(Math.abs));
+  return (otherBefore = there.some((v, k) => Math.abs(v - here[k]) > 1e-3 * size));
+};
+
 const drawMechanism = () => {
   const canvas = mechanismCanvas, box = sizeOf(canvas), pen = cleanPen(canvas, box);
   const motion = motionHere();
   if (!motion) {
     const why = isLinkage ? whyEmpty("mechanism") : "A [hill] scene is a system of equations: it has no mechanism to draw.";
     pen.fillStyle = colours.muted;
-    pen.textAlign = "center";
-    pen.fillText(why, box.width / 2, box.height / 2, box.width - 20);
+    pen.textAlign = isLinkage ? "center" : "left";
+    pen.textBaseline = "middle";
+    pen.fillText(why, isLinkage ? box.width / 2 : 2, box.height / 2, box.width - 20);
     canvas.setAttribute("aria-label", why);
     return;
   }
-  const {low, high} = reach(motion);
+  const paths = motion.rigid || motion, {low, high} = reach(paths);
   const margin = 34, width = high[0] - low[0] || 1, height = high[1] - low[1] || 1;
   const scale = Math.min((box.width - 2 * margin) / width, (box.height - 2 * margin) / height);
   const at = (z) => [box.width / 2 + scale * (z[0] - (low[0] + high[0]) / 2), box.height / 2 - scale * (z[1] - (low[1] + high[1]) / 2)];
@@ -66,10 +85,10 @@ const drawMechanism = () => {
     const far = 2 * (width + height), [dx, dy] = [Math.cos(guide.direction), Math.sin(guide.direction)];
     stroke([[guide.at[0] - far * dx, guide.at[1] - far * dy], [guide.at[0] + far * dx, guide.at[1] + far * dy]], colours.ghost, 1, [5, 4]);
   }
-  motion.bodies.forEach((body, b) => body.points.forEach((point, p) => { if (!point.fixed) stroke(motion.paths[b][p], colours.ghost, 1); }));
+  motion.bodies.forEach((body, b) => body.points.forEach((point, p) => { if (!point.fixed) stroke(paths.paths[b][p], colours.ghost, 1); }));
   const clippedRods = [], beyondRods = [];
   const drawBody = (pose, ghost) => {
-    const {body} = pose, zs = body.points.map((point) => pose.at(point.at));
+    const {body} = pose, zs = pose.joints;
     if (body.slider) {
       const a = 10 / scale, c = 6.5 / scale;
       const corners = [[-a, -c], [a, -c], [a, c], [-a, c], [-a, -c]].map(pose.at);
@@ -83,12 +102,10 @@ const drawMechanism = () => {
       const q = coordinatesAt(body.name, state.angle);
       if (q) {
         const most = 0.4 * body.length;
-        let cut = false;
-        const shape = Array.from({length: 41}, (_, k) => {
-          const w = state.magnification * deflection(q, k / 40);
-          if (!(Math.abs(w) <= most)) cut = true;
-          return pose.at([(body.length * k) / 40, Math.max(-most, Math.min(most, w || 0))]);
-        });
+        // A vibration too large for the picture is drawn as large as there is room: its shape stays.
+        const shares = Array.from({length: 41}, (_, k) => deflection(q, k / 40)), largest = Math.max(...shares.map(Math.abs));
+        const cut = state.magnification * largest > most, factor = cut ? most / largest : state.magnification;
+        const shape = shares.map((w, k) => pose.at([pose.chord ? pose.chord[k] : (body.length * k) / 40, factor * w]));
         if (cut) clippedRods.push(body.name);
         const beyond = isBeyond(body.name);
         if (beyond) beyondRods.push(body.name);
@@ -99,13 +116,13 @@ const drawMechanism = () => {
     stroke(zs.slice(0, 2), colour, ghost ? 1 : body.elastic ? 2.6 : 4);
     for (const z of zs.slice(2)) { stroke([zs[0], z], colour, ghost ? 1 : 4); stroke([zs[1], z], colour, ghost ? 1 : 2); }
   };
-  if (report.design && report.design.before_motion !== undefined)
-    for (const pose of motionAt(report.motions[report.design.before_motion], state.angle)) drawBody(pose, true);
-  const poses = motionAt(motion, state.angle);
+  if (hasOtherBefore())
+    for (const pose of posesAt(report.motions[report.design.before_motion], state.angle)) drawBody(pose, true);
+  const poses = posesAt(motion, state.angle);
   for (const pose of poses) drawBody(pose, false);
   for (const pose of poses) {
-    pose.body.points.forEach((point) => {
-      const [x, y] = at(pose.at(point.at));
+    pose.body.points.forEach((point, p) => {
+      const [x, y] = at(pose.joints[p]);
       pen.fillStyle = colours.card;
       pen.strokeStyle = colours.body;
       pen.lineWidth = 1.6;
@@ -116,25 +133,30 @@ const drawMechanism = () => {
       pen.beginPath(); pen.arc(x, y, 3.6, 0, 2 * Math.PI); pen.fill(); pen.stroke();
     });
     // The link's name beside its middle.
-    const joints = pose.body.points, [a, b] = [pose.at(joints[0].at), pose.at(joints[Math.min(1, joints.length - 1)].at)];
+    const [a, b] = [pose.joints[0], pose.joints[Math.min(1, pose.joints.length - 1)]];
     const [ax, ay] = at(a), [bx, by] = at(b), length = Math.hypot(bx - ax, by - ay);
     const [nx, ny] = length > 1 ? [(by - ay) / length, -(bx - ax) / length] : [0, -1.6];
     pen.fillStyle = pose.body.elastic ? colours.rod : colours.muted;
     pen.textAlign = "center"; pen.textBaseline = "middle";
     const half = pen.measureText(pose.body.name).width / 2;
-    pen.fillText(pose.body.name, (ax + bx) / 2 + nx * (10 + half), (ay + by) / 2 + ny * 12);
+    // A halo keeps it legible on what it crosses.
+    pen.strokeStyle = colours.card; pen.lineWidth = 4; pen.lineJoin = "round";
+    const [tx, ty] = [(ax + bx) / 2 + nx * (10 + half), (ay + by) / 2 + ny * 12];
+    pen.strokeText(pose.body.name, tx, ty);
+    pen.fillText(pose.body.name, tx, ty);
   }
   const note = document.getElementById("mechanism-note");
   const elastic = motion.bodies.some((body) => body.elastic);
   const words = !elastic ? "No elastic link." : clippedRods.length
-    ? `Vibration of ${clippedRods.join(", ")} is larger than drawn: cut at 0.4 of the link's length.`
-    : `Vibration drawn ${short(state.magnification)} times larger; dashed: the rigid link.`;
+    ? `${clippedRods.join(", ")}: too large a vibration for this magnification, drawn with 0.4 of the link's length at most.`
+    : `${state.magnification === 1 ? "Drawn to scale" : `Vibration drawn ${short(state.magnification)} times larger`}; dashed: ${motion.rigid ? "the chord" : "the rigid link"}.`;
   const theory = beyondRods.length ? ` Beyond the linear theory: ${beyondRods.join(", ")}, drawn grey and dashed.` : "";
-  const more = theory + (report.design && report.design.before_motion !== undefined ? " Light: the design before." : "");
+  const more = theory + (hasOtherBefore() ? " Light: the design before." : "");
   if (note.textContent !== words + more) note.textContent = words + more;
 };
 
 const setUpMechanism = () => {
+  if (rods.length > 1) document.getElementById("mechanism-section").classList.add("several");
   if (!isLinkage || !(report.motions || []).length) {
     document.getElementById("mechanism-controls").remove();
     addView(mechanismCanvas, drawMechanism, drawMechanism);

@@ -2,7 +2,7 @@
 // frames.
 const motionAt = (motion, angle) => motion.bodies.map((body, k) => {
   const series = motionSeries(motion, k);
-  const [x, y, ex, ey] = series.map((component) => valueAt(component, angle));
+  const [x, y, ex, ey] = series.map((component) => valueAt(component, angle / (motion.turns || 1)));
   return {
     body, origin: [x, y], direction: [ex, ey],
     at: (p) => [x + ex * p[0] - ey * p[1], y + ey * p[0] + ex * p[1]],
@@ -14,10 +14,17 @@ const motionSeries = (motion, k) => {
 };
 
 // Motion of the chosen point: one for all where only the speed differs.
-const motionHere = () => {
+const rigidMotionHere = () => {
   const here = place(state.index);
   if (here && here.motion !== undefined && here.motion !== null) return report.motions[here.motion];
   return here && here.problem ? null : (report.motions || [])[0] || null;
+};
+// With frames of its own where the mechanism moves as its bent links let it: series over as many turns as the motion has.
+const motionHere = () => {
+  const rigid = rigidMotionHere(), here = place(state.index), frames = here && here.curves && here.curves.frames;
+  if (!rigid || !frames) return rigid;
+  if (!here.bentMotion) here.bentMotion = {...rigid, series: null, turns: turns(), rigid, bodies: rigid.bodies.map((body, k) => ({...body, frame: frames[k]}))};
+  return here.bentMotion;
 };
 
 // Shape of one rod: w(x) = sum q_i sin(i pi x/l), to the left of joint 0 -> joint 1 positive.
@@ -25,6 +32,17 @@ const deflection = (q, share) => {
   let w = 0;
   for (let i = 0; i < q.length; ++i) w += q[i] * Math.sin((i + 1) * Math.PI * share);
   return w;
+};
+
+// Places along the chord of an inextensible rod: each piece dx of the rod covers sqrt(1 - w'^2) dx of it.
+const alongChord = (q, length, pieces) => {
+  const places = [0];
+  for (let k = 0; k < pieces; ++k) {
+    let slope = 0;
+    for (let i = 0; i < q.length; ++i) slope += ((q[i] * (i + 1) * Math.PI) / length) * Math.cos(((i + 1) * Math.PI * (k + 0.5)) / pieces);
+    places.push(places[k] + (length / pieces) * Math.sqrt(Math.max(0, 1 - slope * slope)));
+  }
+  return places;
 };
 
 // Ritz coordinates of a rod at the chosen speed as series; null where there is no periodic motion.
@@ -37,16 +55,22 @@ const responseOf = (name) => {
   }
   return responseCache.of[name];
 };
+// The linear answer, where the motion shown is another one.
+const linearResponseOf = (name) => {
+  const here = place(state.index), curves = here && here.curves && here.curves.rods[name];
+  return curves && curves.linear ? seriesOf(curves.linear) : null;
+};
 const coordinatesAt = (name, angle) => {
   const q = responseOf(name);
   return q ? q.map((component) => valueAt(component, angle / turns())) : null;
 };
 
 // The rod's answer at the chosen speed lies beyond the linear theory: drawn dashed and grey.
-const isBeyond = (name) => {
-  const here = place(state.index), own = here && here.numbers && here.numbers.rods && here.numbers.rods[name];
+const isBeyondAt = (index, name) => {
+  const here = place(index), own = here && here.numbers && here.numbers.rods && here.numbers.rods[name];
   return !!own && (own.theory === "beyond" || own.theory_error > 0.05);
 };
+const isBeyond = (name) => isBeyondAt(state.index, name);
 
 // Why a plot of this speed is empty.
 const whyEmpty = (what) => {

@@ -17,22 +17,38 @@ const pace = (growth, verdict, omega) => {
   return `disturbances ${verdict === "stable" ? "are halved" : "grow tenfold"} in ${short(time, 3)} ${units.time} (${short(turnsOf, 3)} turns)`;
 };
 
+// Of all links together, where the motion is without linearisation.
+const systemRows = (numbers) => {
+  if (numbers.theory !== "nonlinear") return [];
+  const system = numbers.system, rows = [element("tr", {}, element("th", {colspan: 2, class: "words", scope: "colgroup"}, "All links together, without linearisation"))];
+  const add = (name, ...cells) => rows.push(element("tr", {}, element("td", {}, name), ...cells));
+  if (system && system.verdict) {
+    add("verdict", element("td", {}, verdictMark(system.verdict)));
+    add("growth rate", cell(system.growth_rate, {unit: units.rate, error: system.exponent_error, path: "system.growth_rate"}));
+    const words = pace(system.growth_rate, system.verdict, numbers.omega);
+    if (words) rows.push(element("tr", {}, element("td", {colspan: 2, class: "words error"}, words)));
+  }
+  if (numbers.period > 1) add("period", element("td", {}, `${numbers.period} turns`));
+  for (const other of numbers.other_motions || []) rows.push(element("tr", {}, element("td", {colspan: 2, class: "words"}, `Another motion at this speed${other.verdict ? ", " + other.verdict : ""}: max |q₁| ${peakWords(other.rods)}`)));
+  return rows;
+};
+
 const rodRows = (rod, numbers) => {
   const own = numbers.rods && numbers.rods[rod.name], rows = [];
   const path = (key) => `rods.${rod.name}.${key}`;
   const add = (name, ...cells) => rows.push(element("tr", {}, element("td", {}, name), ...cells));
   if (!own) return [element("tr", {}, element("td", {colspan: 2, class: "words"}, `${rod.name}: not reported`))];
-  const stability = own.growth_rate !== undefined ? own : numbers.system && numbers.system.growth_rate !== undefined ? numbers.system : null;
+  const stability = own.growth_rate !== undefined ? own : null;
   rows.push(element("tr", {}, element("th", {colspan: 2, class: "words", scope: "colgroup"}, isLinkage ? rod.name : "system")));
   if (stability) {
-    add(stability === own ? "verdict" : "verdict, all rods together", element("td", {}, verdictMark(stability.verdict)));
+    add("verdict", element("td", {}, verdictMark(stability.verdict)));
     add("growth rate", cell(stability.growth_rate, {unit: units.rate, error: stability.exponent_error, path: path("growth_rate")}));
     const words = pace(stability.growth_rate, stability.verdict, numbers.omega);
     if (words) rows.push(element("tr", {}, element("td", {colspan: 2, class: "words error"}, words)));
   }
   if (own.status && own.status !== "converged") add("periodic motion", element("td", {}, own.status === "singular" ? "none: a multiplier is +1" : own.status));
   const q = own.q && own.q.max_abs ? own.q.max_abs : own.max_abs;
-  (q || []).slice(0, 6).forEach((value, i) => add(`max |q${subscript(i + 1)}|`, cell(value, {unit: units.response, relative: own.error_bound === null ? undefined : own.error_bound * (i === 0 ? 1 : Math.max(...q) / Math.max(value, 1e-300)), path: path(`q.max_abs.${i}`)})));
+  (q || []).slice(0, 3).forEach((value, i) => add(`max |q${subscript(i + 1)}|`, cell(value, {unit: units.response, relative: own.error_bound === null ? undefined : own.error_bound * (i === 0 ? 1 : Math.max(...q) / Math.max(value, 1e-300)), path: path(`q.max_abs.${i}`)})));
   const named = {deflection: ["largest deflection", units.length, 1], bending_moment: ["largest bending moment", units.moment.name, units.moment.factor]};
   for (const [key, [name, unit, factor]] of Object.entries(named)) {
     const peak = own[key];
@@ -50,6 +66,10 @@ const rodRows = (rod, numbers) => {
     const beyond = own.theory === "beyond" || own.theory_error > 0.05;
     add("error of linear theory", own.theory_error === null ? element("td", {}, beyond ? "beyond the theory" : "not judged") : cell(own.theory_error, {digits: 2, path: path("theory_error")}));
     if (beyond) rows.push(element("tr", {class: "marked"}, element("td", {colspan: 2, class: "words"}, "Beyond the linear theory: the numbers are the linear model's alone.")));
+  }
+  if (numbers.theory === "nonlinear") {
+    const linear = linearResponseOf(rod.name);
+    if (linear) add("max |q₁| by the linear theory", cell(Math.max(...samplesOf(linear[0], samplesNeeded(linear)).map(Math.abs)), {unit: units.response, digits: 4}));
   }
   if (own.modes !== undefined) add(isLinkage ? "modes, harmonics" : "unknowns, harmonics", element("td", {}, `${own.modes}, ${own.harmonics === undefined ? "–" : own.harmonics}`));
   return rows;
@@ -77,7 +97,7 @@ const sparseRows = () => {
   const rows = [];
   for (const rod of rods) {
     rows.push(element("tr", {}, element("th", {colspan: 2, class: "words"}, rod.name)), element("tr", {}, element("td", {}, "verdict"), element("td", {}, verdictMark(verdictOf(rod.name, state.index)))));
-    const known = report.growth && report.growth[rod.name];
+    const known = knownGrowth(rod.name);
     if (known) rows.push(element("tr", {}, element("td", {}, "growth rate"), cell(doubles(known.rate)[state.index], {unit: units.rate, error: doubles(known.error)[state.index]})));
   }
   return rows;
@@ -90,11 +110,12 @@ const showNumbers = () => {
   const here = place(state.index);
   if (here && here.problem) { host.append(element("p", {class: "missing"}, here.problem)); return; }
   const numbers = here && here.numbers;
-  const rows = numbers ? rods.flatMap((rod) => rodRows(rod, numbers)) : sparseRows();
-  host.append(element("div", {class: "scroll"}, element("table", {}, element("tbody", {}, rows))));
+  // A table for each link, side by side where there is room.
+  const tables = numbers ? [systemRows(numbers), ...rods.map((rod) => rodRows(rod, numbers))] : [sparseRows()];
+  host.append(element("div", {class: "number-tables"}, tables.filter((rows) => rows.length > 0).map((rows) => element("div", {class: "scroll"}, element("table", {}, element("tbody", {}, rows))))));
   if (!numbers) { host.append(element("p", {class: "caption"}, whyEmpty("numbers"))); return; }
   const joints = jointTable(numbers);
   if (joints) host.append(joints);
-  const warned = [...(numbers.notes || []), ...(numbers.warnings || [])];
+  const warned = [...(here.lacking ? [here.lacking] : []), ...(numbers.notes || []), ...(numbers.warnings || [])];
   if (warned.length) host.append(element("div", {class: "note warning"}, warned.map((w) => element("p", {}, w))));
 };

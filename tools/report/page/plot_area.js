@@ -64,7 +64,10 @@ class PlotArea {
     pen.textAlign = "right"; pen.textBaseline = "middle";
     for (const v of yTicks) pen.fillText(tickText(v, yTicks), this.left - 6, this.y(v));
     pen.textAlign = "center"; pen.textBaseline = "top";
-    for (const v of ticks) pen.fillText(tickText(v, ticks), Math.min(this.x(v), this.width - 12), this.bottom + 5);
+    for (const v of ticks) {
+      const text = tickText(v, ticks);
+      pen.fillText(text, Math.min(this.x(v), this.width - 1 - pen.measureText(text).width / 2), this.bottom + 5);
+    }
     if (xLabel) pen.fillText(xLabel, (this.left + this.right) / 2, this.height - 15);
     pen.textAlign = "left";
     if (yLabel) pen.fillText(yLabel, 2, 3);
@@ -113,12 +116,12 @@ class PlotArea {
     pen.arc(this.x(x), this.y(y), size, 0, 2 * Math.PI);
     if (hollow) { pen.strokeStyle = colour; pen.lineWidth = 1.4; pen.stroke(); } else { pen.fillStyle = colour; pen.fill(); }
   }
-  // In the upper right corner, on what is drawn.
+  // Above the frame, at its right.
   note(text) {
     const pen = this.pen;
     pen.textAlign = "right"; pen.textBaseline = "top";
     pen.fillStyle = colours.unstable;
-    pen.fillText(text, this.right - 6, this.top + 5);
+    pen.fillText(text, this.right, 3, 0.5 * this.width);
   }
   words(text) {
     this.begin({x: [0, 1], y: [0, 1], xTicks: []});
@@ -154,7 +157,7 @@ class PlotArea {
 
 // Colours by their names in the style sheet.
 const legend = (items) => element("div", {class: "legend"}, items.map(({text, colour, dashed, box}) =>
-  element("span", {}, element("i", {class: box ? "box" : dashed ? "dashed" : "", style: box ? `background:var(--${colour})` : `border-top-color:var(--${colour})`}), text)));
+  !colour ? element("span", {class: "said"}, text) : element("span", {}, element("i", {class: box ? "box" : dashed ? "dashed" : "", style: box ? `background:var(--${colour})` : `border-top-color:var(--${colour})`}), text)));
 const rangeOf = (lists) => {
   let low = Infinity, high = -Infinity;
   for (const list of lists) for (const v of list) { if (v < low) low = v; if (v > high) high = v; }

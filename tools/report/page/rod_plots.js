@@ -3,7 +3,13 @@ const responseCurves = (rod) => () => {
   const q = responseOf(rod.name);
   if (!q) return whyEmpty("response");
   const count = samplesNeeded(q), beyond = isBeyond(rod.name);
-  return q.slice(0, 7).map((component, i) => ({name: "q" + subscript(i + 1), values: samplesOf(component, count), colour: beyond ? colours.rigid : modeColour(i), dash: beyond ? [6, 4] : [], note: beyond ? "beyond the linear theory" : ""}));
+  const curves = q.slice(0, 7).map((component, i) => ({name: "q" + subscript(i + 1), values: samplesOf(component, count), colour: beyond ? colours.rigid : modeColour(i), dash: beyond ? [6, 4] : [], note: beyond ? "beyond the linear theory" : ""}));
+  const linear = linearResponseOf(rod.name);
+  if (!linear || turns() > 1) return curves;
+  // Beside what the mechanism does; where the linear answer is many times as large it would flatten that.
+  const values = samplesOf(linear[0], count), largest = Math.max(...curves[0].values.map(Math.abs));
+  const fits = Math.max(...values.map(Math.abs)) <= 4 * largest;
+  return [...(fits ? [{name: "linear q₁", values, colour: colours.rigid, dash: [5, 4]}] : []), ...curves.map((c) => ({...c, note: fits ? "" : "linear theory: out of the picture"}))];
 };
 
 // Smallest and largest w over the turn at each place.
@@ -88,6 +94,12 @@ class MomentPlot {
   }
 }
 
+// What exponents are folded by: the frequency of the motion, Omega/T.
+const foldOf = (index) => {
+  const here = place(index);
+  return points.omega[index] / ((here && here.numbers && here.numbers.period) || 1);
+};
+
 // Exponents over the unit of growth; imaginary parts in turns of the crank, folded: an exponent is known up to
 // multiples of i Omega.
 class ExponentPlane {
@@ -111,19 +123,19 @@ class ExponentPlane {
   everywhere() {
     if (this.others) return this.others;
     this.others = [];
-    const leading = [];
     for (let k = 0; k < points.count; ++k) {
       const known = this.known(k);
-      if (known && known.exponents.length) leading.push(Math.max(...known.exponents.map(([re]) => re)));
-      if (known) for (const [re, im] of known.exponents) if (Number.isFinite(re)) this.others.push([re, im / points.omega[k]]);
+      if (known) for (const [re, im] of known.exponents) if (Number.isFinite(re)) this.others.push([re, im / foldOf(k)]);
     }
     const growth = this.others.map(([re]) => re).sort((a, b) => a - b);
     this.low = growth[Math.floor(0.02 * growth.length)];
     this.high = Math.max(growth[growth.length - 1], 0);
-    // The leading exponents of all speeds and zero, with room: the same picture at every speed.
-    const slowest = Math.min(0, ...leading), fastest = Math.max(0, ...leading), room = 0.3 * (fastest - slowest || 1);
-    this.close = [slowest - room, fastest + room];
     return this.others;
+  }
+  // The leading exponent and zero with room, in round steps: the picture changes rarely from speed to speed.
+  static around(leading) {
+    const size = Math.abs(leading) || 1, power = Math.pow(10, Math.floor(Math.log10(size))), step = [2, 5, 10].find((m) => 1.25 * size <= m * power) || 20;
+    return leading > 0 ? [-0.5 * step * power, step * power] : [-step * power, 0.5 * step * power];
   }
   draw() {
     const area = this.area, known = this.known(state.index);
@@ -131,10 +143,10 @@ class ExponentPlane {
     if (!known) { area.words(whyEmpty("exponents")); return; }
     const all = this.everywhere(), errors = known.exponent_errors || [];
     const leading = Math.max(...known.exponents.map(([re]) => re));
-    const x = this.near ? this.close
+    const x = this.near ? ExponentPlane.around(leading)
       : [Math.min(this.low, ...known.exponents.map(([re]) => re)), Math.max(this.high, 0.04 * Math.abs(this.low), leading)];
     const pad = 0.04 * (x[1] - x[0]);
-    area.begin({x: [x[0] - pad, x[1] + pad], y: [-0.5, 0.5], xLabel: withUnit("Re λ", units.rate), yLabel: "Im λ / Ω"});
+    area.begin({x: [x[0] - pad, x[1] + pad], y: [-0.5, 0.5], xLabel: withUnit("Re λ", units.rate), yLabel: turns() === 1 ? "Im λ / Ω" : `Im λ / (Ω/${turns()})`});
     area.clipped(() => {
       const pen = area.pen;
       if (area.x1 > 0) { pen.fillStyle = colours["unstable-band"]; pen.fillRect(area.x(0), area.top, area.right - area.x(0), area.bottom - area.top); }
@@ -146,12 +158,12 @@ class ExponentPlane {
         this.shown.push(value);
         const radius = Number.isFinite(errors[k]) ? Math.abs(area.x(errors[k]) - area.x(0)) : 0;
         const colour = re === leading ? colours[known.verdict] || colours.accent : colours.ink;
-        if (radius > 5) area.dot(re, im / points.omega[state.index], {colour, size: radius, hollow: true});
-        area.dot(re, im / points.omega[state.index], {colour, size: re === leading ? 5.5 : 4});
+        if (radius > 5) area.dot(re, im / foldOf(state.index), {colour, size: radius, hollow: true});
+        area.dot(re, im / foldOf(state.index), {colour, size: re === leading ? 5.5 : 4});
       });
       for (const other of known.exponents_uncertain || []) {
         const [re, im] = other.exponent;
-        area.dot(re, im / points.omega[state.index], {colour: colours.undecided, size: 5, hollow: true});
+        area.dot(re, im / foldOf(state.index), {colour: colours.undecided, size: 5, hollow: true});
         this.shown.push({re, im, error: other.error});
       }
     });
@@ -161,11 +173,11 @@ class ExponentPlane {
     const area = this.area;
     let best = null, distance = 25;
     for (const value of this.shown || []) {
-      const d = Math.hypot(area.x(value.re) - area.x(x), area.y(value.im / points.omega[state.index]) - area.y(y));
+      const d = Math.hypot(area.x(value.re) - area.x(x), area.y(value.im / foldOf(state.index)) - area.y(y));
       if (d < distance) { distance = d; best = value; }
     }
     if (!best) return "";
-    return `λ = ${short(best.re, 6)} ${best.im < 0 ? "−" : "+"} ${short(Math.abs(best.im), 6)} i  ± ${errorText(best.error)} ${units.rate}; per turn × ${short(Math.exp((2 * Math.PI * best.re) / points.omega[state.index]), 3)}`;
+    return `λ = ${short(best.re, 6)} ${best.im < 0 ? "−" : "+"} ${short(Math.abs(best.im), 6)} i  ± ${errorText(best.error)} ${units.rate}; per ${turns() === 1 ? "turn" : `${turns()} turns`} × ${short(Math.exp((2 * Math.PI * best.re) / foldOf(state.index)), 3)}`;
   }
 }
 

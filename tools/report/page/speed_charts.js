@@ -2,13 +2,32 @@
 // takes a click to the nearest computed speed.
 const charts = [];
 
+const nearestRow = (x, at) => {
+  let best = 0;
+  for (let k = 1; k < x.length; ++k) if (Math.abs(x[k] - at) < Math.abs(x[best] - at)) best = k;
+  return best;
+};
+
+// 1, 2, 5 of each decade, or decades alone, or every so many of them, as there is room.
+const logTicks = (low, high, pixels) => {
+  const decades = Math.log10(high / low), room = Math.max(2, pixels / 34);
+  const steps = 3 * decades <= room ? [1, 2, 5] : [1], every = Math.max(1, Math.ceil(decades / room));
+  const ticks = [];
+  for (let e = Math.floor(Math.log10(low)); e <= Math.ceil(Math.log10(high)); ++e) {
+    if (e % every !== 0) continue;
+    for (const m of steps) { const v = m * Math.pow(10, e); if (v >= low && v <= high) ticks.push({v, label: short(v, 3)}); }
+  }
+  return ticks;
+};
+
 class SpeedChart {
-  // columns: [{label, values (one per row), colour, dash, dots}], over the rows' x.
+  // columns: [{label, values (one per row; NaN: none there, null: not asked there), colour, dash, dots}], over the
+  // rows' x.
   constructor(host, {label, x, columns, yLabel, logscale = false, yRange = null, bands = [], under = () => {}, over = () => {}, labels = () => {}}) {
     this.host = host;
     this.x = x;
     this.under = under;
-    const rows = Array.from(x, (v, k) => [v, ...columns.map((c) => { const y = c.values[k]; return Number.isFinite(y) && (!logscale || y > 0) ? y : null; })]);
+    const rows = Array.from(x, (v, k) => [v, ...columns.map((c) => { const y = c.values[k]; return y === null || (Number.isFinite(y) && (!logscale || y > 0)) ? y : NaN; })]);
     const series = {};
     columns.forEach((c) => { series[c.label] = {color: `var(--${c.colour})`, strokePattern: c.dash || null, strokeWidth: c.width || 1.6, drawPoints: !!c.dots, pointSize: 2.4}; });
     this.columns = columns;
@@ -21,11 +40,11 @@ class SpeedChart {
       labels: ["x", ...columns.map((c) => c.label)],
       series: this.inColours(series),
       xlabel: withUnit(report.axis.label, report.axis.unit), ylabel: yLabel,
-      logscale, valueRange: yRange, dateWindow: state.zoom ? [...state.zoom] : null, connectSeparatedPoints: false,
+      logscale, valueRange: yRange, dateWindow: state.zoom ? [...state.zoom] : null, connectSeparatedPoints: true,
       legend: "onmouseover", labelsSeparateLines: false, highlightCircleSize: 3.5, xRangePad: 4, yRangePad: logscale ? 0 : 8,
       axisLabelFontSize: 12, gridLineColor: colours.grid, axisLineColor: colours.rule,
-      axes: {x: {pixelsPerLabel: 64, axisLabelFormatter: (v) => short(v, 5), valueFormatter: (v) => `${report.axis.symbol || "x"} ${short(v, 7)}`},
-        y: {axisLabelWidth: 64, axisLabelFormatter: (v) => short(v, 4), valueFormatter: (v) => short(v, 5)}},
+      axes: {x: {pixelsPerLabel: 50, axisLabelFormatter: (v) => short(v, 5), valueFormatter: (v) => `${report.axis.symbol || "x"} ${short(v, 7)}`},
+        y: {axisLabelWidth: 64, ...(logscale ? {ticker: logTicks} : {}), axisLabelFormatter: (v) => short(v, 4), valueFormatter: (v) => short(v, 5)}},
       underlayCallback: (pen, area, chart) => {
         pen.save();
         pen.beginPath();
@@ -41,7 +60,7 @@ class SpeedChart {
       },
       drawCallback: (chart) => { this.chart = chart; this.place(); labels(chart, this.host); },
       zoomCallback: (from, to) => shareZoom(this, from, to),
-      highlightCallback: (event, at, found, row) => { for (const other of charts) if (other !== this && other.x === this.x) other.chart.setSelection(row); },
+      highlightCallback: (event, at, found, row) => { for (const other of charts) if (other !== this) other.chart.setSelection(other.x === this.x ? row : nearestRow(other.x, at)); },
       unhighlightCallback: () => { for (const other of charts) if (other !== this && other.chart.getSelection() !== -1) other.chart.clearSelection(); },
       // Mouse only: touches scroll the page, and a tap is a click.
       interactionModel: {
@@ -113,15 +132,15 @@ const shareZoom = (from, low, high) => {
   writeFragment();
 };
 
-// Values split in two curves: where linear theory holds, and beyond it, drawn grey and dashed.
-const splitByTheory = (rod, label, values, colour) => {
-  const along = report.along.rods[rod], beyond = along.beyond;
-  if (!beyond || !/1/.test(beyond)) return [{label, values, colour}];
+// Values split in two curves: where linear theory holds, and beyond it ("1" of `marks`), drawn grey and dashed.
+const splitByMarks = (marks, label, values, colour, width) => {
+  if (!marks || !marks.includes("1")) return [{label, values, colour, width}];
   const inside = new Float64Array(values.length).fill(NaN), outside = new Float64Array(values.length).fill(NaN);
   for (let k = 0; k < values.length; ++k) {
-    if (beyond[k] === "1") outside[k] = values[k]; else inside[k] = values[k];
+    if (marks[k] === "1") outside[k] = values[k]; else inside[k] = values[k];
     // Both ends of the piece between a good and a bad point belong to the dashed curve.
-    if (beyond[k] !== "1" && (beyond[k - 1] === "1" || beyond[k + 1] === "1")) outside[k] = values[k];
+    if (marks[k] !== "1" && (marks[k - 1] === "1" || marks[k + 1] === "1")) outside[k] = values[k];
   }
-  return [{label, values: inside, colour}, {label: label + " beyond linear theory", values: outside, colour: "rigid", dash: [4, 3]}];
+  return [{label, values: inside, colour, width}, {label: label + " beyond linear theory", values: outside, colour: "rigid", dash: [4, 3]}];
 };
+const splitByTheory = (rod, label, values, colour) => splitByMarks(report.along.rods[rod].beyond, label, values, colour);

@@ -13,7 +13,13 @@ class TurnPlot {
   draw() {
     const area = this.area, curves = this.curves();
     this.shown = typeof curves === "string" ? [] : curves;
-    if (this.shown.length === 0) { this.cursor.hidden = true; area.words(curves); return; }
+    if (this.shown.length === 0) {
+      const said = area.host.parentNode.querySelector(".said");
+      if (said) said.textContent = "";
+      this.cursor.hidden = true;
+      area.words(curves);
+      return;
+    }
     this.cursor.hidden = false;
     const end = 360 * turns(), step = end <= 360 ? (sizeOf(area.host).width < 420 ? 90 : 45) : 90 * turns();
     const ticks = [];
@@ -25,8 +31,13 @@ class TurnPlot {
         area.line(Array.from(curve.values, (_, j) => (end * j) / n), curve.values, curve);
       }
     });
+    // What the curves say together, in the legend below.
+    const said = area.host.parentNode.querySelector(".said"), below = this.shown.map((c) => c.below).find(Boolean);
+    if (said) said.textContent = below ? `${below} ${this.unit}` : "";
     const note = this.shown.map((c) => c.note).find(Boolean);
     if (note) area.note(note);
+    const names = area.host.parentNode.querySelector(".legend");
+    if (names && !said) names.classList.toggle("greyed", this.shown.every((c) => c.colour === colours.rigid));
     area.describe(`${this.label}: ` + this.shown.map((c) => { const [a, b] = rangeOf([c.values]); return `${c.name} from ${short(a)} to ${short(b)} ${this.unit}`; }).join("; "));
     this.move();
   }

@@ -2,7 +2,8 @@
 // bands with their computed ends. Between ticks nothing is said.
 const setUpStrip = () => {
   const host = document.getElementById("strip");
-  const rows = rods.filter((rod) => report.verdicts[rod.name]);
+  const together = isNonlinear && report.verdicts[""];
+  const rows = together ? [{name: "all links together", key: ""}] : rods.filter((rod) => report.verdicts[rod.name]).map((rod) => ({name: rod.name, key: rod.name}));
   if (points.count === 0 || rows.length === 0) { host.remove(); return; }
   const height = rows.length > 3 ? 7 : 10;
   host.style.height = rows.length * (height + 3) + "px";
@@ -19,8 +20,8 @@ const setUpStrip = () => {
       pen.fillStyle = colours.grid;
       pen.fillRect(0, top, box.width, height);
       pen.fillStyle = colours["unstable-band"];
-      for (const band of bandsOf(rod.name)) pen.fillRect(xOf(band.from) * box.width, top, Math.max(1, (xOf(band.to) - xOf(band.from)) * box.width), height);
-      const letters = report.verdicts[rod.name];
+      for (const band of bandsOf(rod.key)) pen.fillRect(xOf(band.from) * box.width, top, Math.max(1, (xOf(band.to) - xOf(band.from)) * box.width), height);
+      const letters = report.verdicts[rod.key];
       for (let k = 0; k < points.count; ++k) {
         pen.fillStyle = colours[verdictNames[letters[k]] || "none"];
         pen.fillRect(xOf(points.x[k]) * box.width - wide / 2, top, wide, height);
@@ -34,7 +35,7 @@ const setUpStrip = () => {
   });
   const words = rows.map((rod) => {
     const counts = {};
-    for (const letter of report.verdicts[rod.name]) counts[verdictNames[letter] || "no answer"] = (counts[verdictNames[letter] || "no answer"] || 0) + 1;
+    for (const letter of report.verdicts[rod.key]) counts[verdictNames[letter] || "no answer"] = (counts[verdictNames[letter] || "no answer"] || 0) + 1;
     return `${rod.name}: ` + Object.entries(counts).map(([name, n]) => `${n} ${name}`).join(", ");
   });
   host.setAttribute("aria-label", "Verdicts of the computed speeds. " + words.join("; "));

@@ -1,0 +1,101 @@
+#include "hb/analysis/map_task.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+namespace hb {
+namespace {
+
+PlaneAxis plane_axis(const Along& along) {
+  const PlaneAxis::Role role = in_rpm(along.path)     ? PlaneAxis::Role::rpm
+                               : is_speed(along.path) ? PlaneAxis::Role::omega
+                                                      : PlaneAxis::Role::scene_number;
+  return {role, along.path, along.values.front(), along.values.back()};
+}
+
+void require_axes(const SceneFamily& family, const MapRequest& request) {
+  const Along &x = request.x, &y = request.y;
+  if (x.values.empty()) throw RequestError("x", "no values", "at least two");
+  if (y.values.empty()) throw RequestError("y", "no values", "at least two");
+  if ((is_speed(x.path) && is_speed(y.path)) || same_number(family, x.path, y.path))
+    throw RequestError("y", y.path, "two different parameters",
+                       fmt::format("found {} beside @x {}, allowed: two different parameters", y.path, x.path));
+  for (const Along* axis : {&x, &y}) {
+    const char* field = axis == &x ? "x" : "y";
+    if (is_speed(axis->path)) {
+      require_no_speed(request, field, *axis);
+    } else if (axis->path.starts_with("analysis.")) {
+      throw RequestError(field, axis->path, "rpm, omega or a number of the model");
+    }
+  }
+}
+
+// All damping times a factor.
+SceneFamily with_damping(const SceneFamily& family, const MapRequest& request, double factor) {
+  Numbers numbers;
+  for (const std::string& path : family.damping_paths()) {
+    for (const Along* axis : {&request.x, &request.y})
+      if (same_number(family, path, axis->path))
+        throw RequestError("damping_range", "beside " + axis->path, "parameters other than the damping");
+    numbers.push_back({path, factor * family.value(path)});
+  }
+  if (numbers.empty())
+    throw RequestError("damping_range", "no damping in the scene", "a scene that gives damping",
+                       "the scene gives no damping to multiply");
+  return family.with(numbers);
+}
+
+}  // namespace
+
+MapTask::MapTask(const SceneFamily& family, const MapRequest& request, const Work& geometry) : request_(request) {
+  require_axes(family, request);
+  if (!request.only.stability) throw RequestError("only", "no stability", "stability");
+  const Scene scene = some_scene(family, {&request.x, &request.y});
+  require_values("x", request.x, scene.units);
+  require_values("y", request.y, scene.units);
+  settings_ = settings_of(request, scene);
+  if (const auto& range = request.damping_range) {
+    const auto [low, high] = *range;
+    if (!(low >= 0 && low < high && high < HUGE_VAL))
+      throw RequestError("damping_range", fmt::format("\"{}:{}\"", low, high),
+                         "LOW:HIGH with 0 <= LOW < HIGH, factors on the damping");
+    if (!request.boundaries) throw RequestError("damping_range", "a map without boundaries", "a map with boundaries");
+    for (const double factor : *range) damped_.push_back(with_damping(family, request, factor));
+  }
+  x_axis_ = plane_axis(request.x);
+  y_axis_ = plane_axis(request.y);
+  options_.rods = settings_.rods;
+  options_.work = &geometry;
+  if (!is_speed(request.x.path) && !is_speed(request.y.path)) options_.speed = speed_of(request, scene).omega;
+  options_.num_modes = plane_modes(family, x_axis_, y_axis_, options_.speed, settings_);
+  plane_.emplace(family, x_axis_, y_axis_, options_);
+}
+
+Map MapTask::compute(Work& work) const {
+  const std::vector<double>&x = request_.x.values, &y = request_.y.values;
+  MapOptions search = map_options(settings_);
+  search.parts = work.of("stability map, this step");
+  Map map{compute_map(*plane_, x_axis_, x, y_axis_, y, search),
+          plane_->scene(),
+          settings_,
+          static_cast<int>(options_.num_modes),
+          search.search.tolerance,
+          {},
+          true};
+  for (std::size_t end = 0; end < damped_.size(); ++end) {
+    const ScenePlane damped(damped_[end], x_axis_, y_axis_, options_);
+    MapOptions curves = search;
+    curves.curves_only = true;
+    std::vector<StabilityMap> maps;
+    for (std::size_t r = 0; r < damped.rods().size(); ++r) maps.push_back(rod_map(damped, r, x, y, curves));
+    map.damping.push_back({(*request_.damping_range)[end], worst_boundaries(damped, maps, search)});
+  }
+  std::size_t samples = 0;
+  for (const StabilityMap& rod : map.maps) samples += rod.samples;
+  map.evidence = fmt::format("{}; exponents at {} places", plane_->evidence(), samples);
+  map.complete = !work.ends_early();
+  return map;
+}
+
+}  // namespace hb

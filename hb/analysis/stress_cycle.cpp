@@ -1,0 +1,151 @@
+#include "hb/analysis/stress_cycle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace hb {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+// f_2, f_3, f_4 at one speed, README of lib (M4).
+FourierSeries axial_series(const RodCoefficients& rod, double speed) {
+  Index H = 0;
+  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
+  FourierSeries sum(3, H);
+  double power = 1;
+  for (const FourierSeries& f : rod.f) {
+    if (f.num_harmonics() >= 0) sum.c.leftCols(f.c.cols()) += power * f.c.middleRows(2, 3);
+    power *= speed;
+  }
+  return sum;
+}
+
+// Stresses over the turn at places x: of N/F and of M e/J, a row for each place.
+struct Field {
+  MatrixXd axial, bending;
+};
+
+class Stresses {
+ public:
+  Stresses(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q, Index num_samples)
+      : link_(link), rod_(rod), speed_(speed), q_(q), num_samples_(num_samples) {
+    axial_ = fourier::synthesise(axial_series(rod, speed), num_samples);
+  }
+
+  Field at(const Eigen::VectorXd& x) const {
+    const Elastic& elastic = *link_.elastic;
+    const double EJ = elastic.youngs_modulus * elastic.second_moment;
+    Field field;
+    field.axial.resize(x.size(), num_samples_);
+    for (Index i = 0; i < x.size(); ++i)
+      field.axial.row(i) =
+          EJ / elastic.area * (axial_.row(2) + x(i) * axial_.row(1) - 0.5 * x(i) * x(i) * axial_.row(0));
+    field.bending = elastic.section_height / 2 / elastic.second_moment *
+                    rod_field(link_, rod_, speed_, q_, x, num_samples_).bending_moment;
+    return field;
+  }
+  // Over the turn at one place and fibre.
+  Range range(double x, int side) const {
+    const Field field = at(Eigen::VectorXd::Constant(1, x));
+    return fourier::range(fourier::analyse(field.axial + side * field.bending), 0);
+  }
+
+ private:
+  const Body& link_;
+  const RodCoefficients& rod_;
+  double speed_;
+  const FourierSeries& q_;
+  Index num_samples_;
+  MatrixXd axial_;  // f_2, f_3, f_4
+};
+
+// The largest value of a smooth function between a and b by golden sections.
+double largest_between(double a, double b, const std::function<double(double)>& value) {
+  constexpr int steps = 24;  // to 1e-5 of the distance
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  double c = b - golden * (b - a), d = a + golden * (b - a), at_c = value(c), at_d = value(d);
+  for (int k = 0; k < steps; ++k) {
+    if (at_c > at_d) {
+      b = d, d = c, at_d = at_c;
+      at_c = value(c = b - golden * (b - a));
+    } else {
+      a = c, c = d, at_c = at_d;
+      at_d = value(d = a + golden * (b - a));
+    }
+  }
+  return at_c > at_d ? c : d;
+}
+
+double magnitude(const Range& range) { return std::max(range.max.value, -range.min.value); }
+double amplitude(const Range& range) { return (range.max.value - range.min.value) / 2; }
+
+struct Place {
+  double x = 0;
+  int side = 1;
+};
+
+// Where `measure` of the turn's range is largest: on a grid, then between its neighbours.
+Place worst_place(const Stresses& stresses, double length, Index points, const MatrixXd (&by_side)[2],
+                  double (*measure)(const Range&)) {
+  double most = -1;
+  Index best = 0;
+  int side = 1;
+  for (int s = 0; s < 2; ++s)
+    for (Index i = 0; i < points; ++i) {
+      const Range rough{{by_side[s].row(i).minCoeff(), 0}, {by_side[s].row(i).maxCoeff(), 0}};
+      if (!(measure(rough) > most)) continue;
+      most = measure(rough);
+      best = i;
+      side = s == 0 ? 1 : -1;
+    }
+  const auto x_of = [&](Index i) {
+    return length * static_cast<double>(std::clamp<Index>(i, 0, points - 1)) / static_cast<double>(points - 1);
+  };
+  const auto value = [&](double x) { return measure(stresses.range(x, side)); };
+  const double inside = largest_between(x_of(best - 1), x_of(best + 1), value);
+  return {value(inside) > value(x_of(best)) ? inside : x_of(best), side};
+}
+
+}  // namespace
+
+StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                         const FourierSeries& more_modes, double error_bound) {
+  const Elastic& elastic = *link.elastic;
+  const double e = elastic.section_height / 2;
+  Index H = std::max({q.num_harmonics(), more_modes.num_harmonics(), Index{8}});
+  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
+  const Index N = fourier::fast_length(4 * H + 4), points = 8 * q.num_components() + 17;
+  const Stresses stresses(link, rod, speed, q, N);
+  const Eigen::VectorXd grid = Eigen::VectorXd::LinSpaced(points, 0, link.length);
+  const Field field = stresses.at(grid);
+  const MatrixXd by_side[2] = {field.axial + field.bending, field.axial - field.bending};
+
+  StressCycle cycle;
+  const Place largest = worst_place(stresses, link.length, points, by_side, magnitude);
+  const Range there = stresses.range(largest.x, largest.side);
+  const Extremum& peak = there.max.value >= -there.min.value ? there.max : there.min;
+  cycle.max_abs = std::abs(peak.value);
+  cycle.crank_angle = peak.crank_angle;
+  cycle.x = largest.x;
+  cycle.side = largest.side;
+  const Place widest = worst_place(stresses, link.length, points, by_side, amplitude);
+  const Range turn = stresses.range(widest.x, widest.side);
+  cycle.amplitude = amplitude(turn);
+  cycle.mean = (turn.max.value + turn.min.value) / 2;
+  cycle.amplitude_x = widest.x;
+  cycle.amplitude_side = widest.side;
+
+  // |error of q_i| <= bound max |q|: in w'' sum of i^2 times that. The cut: twice what more modes change.
+  const auto I = static_cast<double>(q.num_components());
+  cycle.error = error_bound * I * (I + 1) * (2 * I + 1) / 6 * field.bending.cwiseAbs().maxCoeff();
+  if (more_modes.c.size() > 0) {
+    const MatrixXd finer = rod_field(link, rod, speed, more_modes, grid, N).bending_moment;
+    cycle.error += 2 * (e / elastic.second_moment * finer - field.bending).cwiseAbs().maxCoeff();
+  }
+  return cycle;
+}
+
+}  // namespace hb

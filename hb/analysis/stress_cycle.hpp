@@ -1,0 +1,27 @@
+// What a cross-section carries over a turn: axial and bending stress together, at the outer fibres of the section.
+#pragma once
+
+#include "lib/linkage/linkage.hpp"
+#include "lib/rod/rod.hpp"
+
+namespace hb {
+
+// sigma(x, tau) = N/F + side M e/J with N the axial force of the rigid mechanism, M the bending moment, e half of the
+// section's height and side = +1 or -1 the fibre. Stresses mass/(length time^2), tension positive.
+struct StressCycle {
+  double max_abs = 0;  // of all places, fibres and crank angles
+  double x = 0, crank_angle = 0;  // where, from joint 0; rad
+  int side = 1;
+  // Of the place and fibre with the largest amplitude: half of largest minus smallest, and half of their sum.
+  double amplitude = 0, mean = 0;
+  double amplitude_x = 0;
+  int amplitude_side = 1;
+  double error = 0;  // of each of these stresses, an estimate: modes and harmonics left out
+};
+
+// `more_modes`: the response with more modes, or empty: then the error is that of `error_bound` alone, which is
+// relative to the largest |q|. Needs elastic.section_height.
+[[nodiscard]] StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed,
+                                       const FourierSeries& q, const FourierSeries& more_modes, double error_bound);
+
+}  // namespace hb

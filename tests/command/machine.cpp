@@ -1,0 +1,127 @@
+// What `hb steady` says for a machine's design beside joint forces: document, table, files and pictures agree.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class Machine : public CommandTest {
+ protected:
+  Json document(const std::string& arguments) const {
+    const CommandResult result = hb("steady " + arguments + " --json");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out, nullptr, false);
+  }
+  // Largest and smallest number of a column of a CSV file.
+  std::pair<double, double> column(const fs::path& file, const std::string& name) const {
+    std::istringstream lines(read(file));
+    std::string line;
+    std::size_t place = std::string::npos;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    while (std::getline(lines, line)) {
+      if (line.starts_with("#")) continue;
+      std::istringstream cells(line);
+      std::string cell;
+      for (std::size_t k = 0; std::getline(cells, cell, ','); ++k) {
+        if (place == std::string::npos && cell == name) place = k;
+        if (place == k && cell != name) low = std::min(low, std::stod(cell)), high = std::max(high, std::stod(cell));
+      }
+    }
+    EXPECT_NE(place, std::string::npos) << name;
+    return {low, high};
+  }
+};
+
+const std::string crank_with_flywheel = " --rpm 2500 --modes 2";
+
+TEST_F(Machine, TheDocumentHasBearingsFrameDriveAndSliders) {
+  const Json found = document(scene("slider_crank") + crank_with_flywheel);
+  for (const auto& [name, joint] : found["joints"].items()) {
+    const Json& bearing = found["bearings"][name];
+    double component = 0;
+    for (const char* c : {"x", "y", "n"})
+      if (joint.contains(c))
+        component = std::max({component, joint[c]["max"].get<double>(), -joint[c]["min"].get<double>()});
+    EXPECT_GE(bearing["max"].get<double>(), (1 - 1e-12) * component) << name;
+    EXPECT_LE(bearing["max"].get<double>(), std::sqrt(2.0) * component * (1 + 1e-12)) << name;
+    EXPECT_LE(bearing["mean"].get<double>(), bearing["rms"].get<double>()) << name;
+    EXPECT_LE(bearing["rms"].get<double>(), bearing["max"].get<double>()) << name;
+  }
+  const double omega = found["omega"];
+  EXPECT_NEAR(found["power"]["mean"].get<double>(), omega * found["torque"]["mean"].get<double>(), 1e-9);
+  EXPECT_GT(found["torque"]["rms"].get<double>(), std::abs(found["torque"]["mean"].get<double>()));
+  const double energy = found["flywheel"]["energy_fluctuation"], inertia = found["flywheel"]["inertia"];
+  // The crank of the scene: a mass of 1.2 kg 8 mm off the pivot, without inertia of its own.
+  EXPECT_NEAR(inertia, 1.2 * 64, 1e-9);
+  EXPECT_NEAR(found["flywheel"]["speed_fluctuation"].get<double>(), energy / (inertia * omega * omega), 1e-12);
+  const Json heavy = document(scene("slider_crank") + crank_with_flywheel + " --set crank.inertia=5000");
+  EXPECT_NEAR(heavy["flywheel"]["inertia"].get<double>(), 5076.8, 1e-6);
+  EXPECT_NEAR(heavy["flywheel"]["energy_fluctuation"].get<double>(), energy, 1e-9 * energy);
+  const Json& piston = found["sliders"]["piston"];
+  EXPECT_NEAR(piston["position"]["max"].get<double>() - piston["position"]["min"].get<double>(), 80, 0.2);
+  EXPECT_GT(found["frame"]["max"].get<double>(), 0);
+  EXPECT_GE(found["frame"]["force_error"].get<double>(), 0);
+  EXPECT_LT(found["frame"]["force_error"].get<double>(), 0.01 * found["frame"]["max"].get<double>());
+  EXPECT_GT(found["rods"]["rod"]["static_deflection"]["max_abs"].get<double>(), 0);
+  // Only where forces and shapes were asked for.
+  const Json little = document(scene("slider_crank") + crank_with_flywheel + " --only stability");
+  for (const char* key : {"bearings", "frame", "power", "flywheel", "sliders"})
+    EXPECT_FALSE(little.contains(key)) << key;
+  EXPECT_FALSE(little["rods"]["rod"].contains("static_deflection"));
+}
+
+TEST_F(Machine, StressIsThatOfBothTogetherWhereASectionIsGiven) {
+  const Json with = document(scene("slider_crank_units") + " --rpm 3000 --modes 3")["rods"]["rod"]["stress"];
+  const double both = with["axial"].get<double>() + with["bending"].get<double>();
+  EXPECT_LE(with["max_abs"].get<double>(), both * (1 + 1e-9));
+  EXPECT_GE(with["max_abs"].get<double>(), std::max(with["axial"].get<double>(), 0.5 * with["bending"].get<double>()));
+  EXPECT_LE(std::abs(with["mean"].get<double>()) + with["amplitude"].get<double>(),
+            with["max_abs"].get<double>() * (1 + 1e-6));
+  EXPECT_GE(with["error"].get<double>(), 0);
+  EXPECT_FALSE(document(scene("slider_crank") + crank_with_flywheel)["rods"]["rod"]["stress"].contains("max_abs"));
+}
+
+TEST_F(Machine, TableFilesAndDocumentAgree) {
+  const CommandResult result = hb("steady " + scene("slider_crank") + crank_with_flywheel + " --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"largest resultant [N]", "shaking force on the frame", "shaking moment", "mean", "rms", " W",
+                           "flywheel", "piston: stroke 80.0", "  at rest  "})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+  const Json found = Json::parse(read(folder_ / "out/steady.json"));
+  const double newton = found["units"]["force_in_newton"];
+  const auto [low, high] = column(folder_ / "out/frame_forces.csv", "x [N]");
+  EXPECT_NEAR(low, newton * found["frame"]["x"]["min"].get<double>(), 1e-3 * (high - low));
+  EXPECT_NEAR(high, newton * found["frame"]["x"]["max"].get<double>(), 1e-3 * (high - low));
+  const auto [slow, fast] = column(folder_ / "out/slider_piston.csv", "velocity [mm/s]");
+  EXPECT_NEAR(fast, found["sliders"]["piston"]["velocity"]["max"].get<double>(), 1e-3 * fast);
+  EXPECT_LT(slow, 0);
+  for (const char* picture : {"polar_rod", "polar_crank"})
+    EXPECT_GT(fs::file_size(folder_ / "out" / (std::string(picture) + ".svg")), 5000u) << picture;
+}
+
+// One peak of 1e16 N beside a limit of stability left a flat line of all other speeds.
+TEST_F(Machine, SharpPeaksDoNotFlattenTheForcesOfASweep) {
+  const CommandResult result = hb("sweep " + scene("six_link") + " --rpm 1500:2000:50 --modes 1 --rods AB --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::istringstream script(read(folder_ / "out/sweep.gp"));
+  std::string line;
+  bool forces = false;
+  int ranges = 0;
+  while (std::getline(script, line)) {
+    forces = forces || line.find("joints of") != std::string::npos;
+    if (!forces || !line.starts_with("set yrange [") || line.find('*') != std::string::npos) continue;
+    const double top = std::stod(line.substr(line.find(':') + 1));
+    EXPECT_LT(std::abs(top), 1e5) << line;
+    ++ranges;
+  }
+  EXPECT_GE(ranges, 8);
+}
+
+}  // namespace

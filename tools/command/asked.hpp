@@ -1,0 +1,26 @@
+// What the common flags ask for beside a scene's [analysis]: flags win.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hb/analysis/request.hpp"
+#include "lib/scene/scene.hpp"
+#include "tools/command/common_flags.hpp"
+
+namespace hb::tools {
+
+// A refused request in the words of the command line: fields as flags.
+[[nodiscard]] std::string in_flags(const RequestError& error);
+
+// --set as overrides; throws UsageError unless each is PATH=VALUE.
+[[nodiscard]] std::vector<Override> overrides(const CommonFlags& flags);
+
+// Flags over [analysis]; throws UsageError naming the flag, the value found and what is allowed.
+[[nodiscard]] Settings settings(const CommonFlags& flags, const Scene& scene);
+// The same as a request, which settings_of turns back into them; without a speed.
+[[nodiscard]] Request asked_request(const CommonFlags& flags, const Scene& scene);
+struct SpeedRange;
+void set_speed(Request& request, const SpeedRange& speed);  // the first of the range
+
+}  // namespace hb::tools

@@ -1,0 +1,110 @@
+#include "tools/command/dispatch.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <new>
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "lib/scene/scene_keys.hpp"
+#include "tools/command/asked.hpp"
+#include "tools/command/command.hpp"
+#include "tools/command/version.hpp"
+#include "tools/output/printable.hpp"
+#include "tools/work/ranks.hpp"
+
+namespace hb::tools {
+namespace {
+
+std::string unknown_command(const CLI::App& app, const std::string& found) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  const std::string near = nearest_name(found, names);
+  return fmt::format("found the command \"{}\"{}, allowed {}", found, near.empty() ? "" : " (" + near + " meant?)",
+                     fmt::join(names, ", "));
+}
+
+// "--rmp 300": names each flag that is none, with the nearest one.
+std::string unknown_flags(const CLI::App& command, const std::vector<std::string>& words) {
+  std::vector<std::string> names, sentences;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& found : words) {
+    if (!found.starts_with("--")) continue;
+    const std::string flag = found.substr(0, found.find('='));
+    if (std::ranges::find(names, flag) != names.end()) continue;
+    const std::string near = nearest_name(flag, names);
+    sentences.push_back(fmt::format("found the unknown flag {}{}", flag, near.empty() ? "" : " (" + near + " meant?)"));
+  }
+  return fmt::format("{}", fmt::join(sentences, ", "));
+}
+
+}  // namespace
+
+int say(int status, const std::string& what) {
+  fmt::print(stderr, "hb: {}\n", printable(what));
+  return status;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.\n"
+      "Exit status: 0 done, 1 disagreement found by a check or internal error, 2 wrong input or output that cannot be\n"
+      "written, 3 a tolerance asked for not reached, 4 data complete but pictures missing, 130 interrupted.",
+      "hb"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", version());
+  int status = exit_ok;
+  add_new_command(app, status);
+  add_scene_command(app, status);
+  add_steady_command(app, status);
+  add_sweep_command(app, status);
+  add_map_command(app, status);
+  add_check_command(app, status);
+  add_bench_command(app, status);
+  add_tune_command(app, status);
+  add_report_command(app, status);
+  try {
+    app.parse(argc, argv);
+    return status;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    if (argc > 1 && app.get_subcommands().empty()) {
+      return say(exit_wrong_input, unknown_command(app, argv[1]));
+    }
+    constexpr int extras = static_cast<int>(CLI::ExitCodes::ExtrasError);
+    const auto chosen = app.get_subcommands();
+    const std::string command = chosen.empty() ? "hb" : "hb " + chosen.front()->get_name();
+    std::string what = error.get_exit_code() == extras && !chosen.empty()
+                           ? unknown_flags(*chosen.front(), {argv + 1, argv + argc})
+                           : "";
+    if (what.empty()) what = error.what();
+    fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
+    return exit_wrong_input;
+  } catch (const UnresolvedLinkage& error) {
+    return say(exit_not_reached, error.what());
+  } catch (const SceneError& error) {
+    return say(exit_wrong_input, error.what());
+  } catch (const RequestError& error) {
+    return say(exit_wrong_input, in_flags(error));
+  } catch (const UsageError& error) {
+    return say(exit_wrong_input, error.what());
+  } catch (const OutputError& error) {
+    return say(exit_wrong_input, error.what());
+  } catch (const ShareDone&) {
+    return exit_ok;
+  } catch (const OtherRankFailed&) {
+    return exit_failed;
+  } catch (const std::bad_alloc&) {
+    return say(exit_failed, "out of memory");
+  } catch (const std::exception& error) {
+    return say(exit_failed, fmt::format("internal error: {}", error.what()));
+  }
+}
+
+}  // namespace hb::tools

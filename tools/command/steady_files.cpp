@@ -1,0 +1,53 @@
+#include "tools/command/steady_files.hpp"
+
+#include "tools/output/csv_output.hpp"
+#include "tools/output/machine_output.hpp"
+#include "tools/pictures/figures.hpp"
+
+namespace hb::tools {
+
+std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, bool machine,
+                                 OutputFolder& folder) {
+  std::vector<Figure> figures;
+  const auto write = [&](const CsvFile& file) { folder.write(file.name, csv_text(file)); };
+  for (const RodResult& rod : result.rods) {
+    if (!rod.reported) continue;
+    const bool solved = rod.steady && rod.steady->status != SteadyStatus::singular;
+    if (solved && result.computed.steady) {
+      const CsvFile response = response_csv(model, result, rod), spectrum = fourier_csv(model, result, rod);
+      write(response);
+      write(spectrum);
+      figures.push_back(response_figure(model, result, rod, response.name));
+      figures.push_back(phase_figure(model, result, rod, response.name));
+      figures.push_back(spectrum_figure(model, result, rod, spectrum.name));
+    }
+    if (rod.shape) {
+      const CsvFile deflection = deflection_csv(model, result, rod), moment = bending_moment_csv(model, result, rod);
+      write(deflection);
+      write(moment);
+      figures.push_back(shape_figure(model, result, rod, deflection, false));
+      figures.push_back(shape_figure(model, result, rod, moment, true));
+    }
+    if (rod.stability) write(exponents_csv(model, result, rod));
+  }
+  if (result.forces) {
+    const CsvFile forces = forces_csv(model, result), torque = torque_csv(model, result);
+    write(forces);
+    write(torque);
+    for (Figure& figure : force_figures(model, result, forces.name)) figures.push_back(std::move(figure));
+    for (Figure& figure : polar_figures(model, result, forces.name)) figures.push_back(std::move(figure));
+    figures.push_back(torque_figure(model, result, torque.name));
+    if (machine) {
+      write(frame_csv(model, result));
+      for (const CsvFile& slider : slider_csvs(model, result)) write(slider);
+    }
+  }
+  if (model.linkage()) {
+    const CsvFile mechanism = mechanism_csv(model.scene);
+    write(mechanism);
+    figures.push_back(mechanism_figure(model.scene, mechanism));
+  }
+  return figures;
+}
+
+}  // namespace hb::tools

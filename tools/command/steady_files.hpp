@@ -1,0 +1,16 @@
+// The CSV files of one speed, and what is drawn of them.
+#pragma once
+
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/pictures/gnuplot.hpp"
+
+namespace hb::tools {
+
+// `machine`: also what the frame feels and the sliders do, of the linear theory.
+[[nodiscard]] std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, bool machine,
+                                               OutputFolder& folder);
+
+}  // namespace hb::tools

@@ -1,0 +1,293 @@
+#include "tools/output/machine_output.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hb/analysis/bearing_load.hpp"
+#include "hb/analysis/drive.hpp"
+#include "hb/analysis/frame_forces.hpp"
+#include "hb/analysis/slider_motion.hpp"
+#include "hb/analysis/static_deflection.hpp"
+#include "hb/analysis/stress_cycle.hpp"
+#include "tools/output/json_parts.hpp"
+#include "tools/output/output_folder.hpp"
+#include "tools/output/output_units.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Eigen::Index;
+
+FrameForces frame_of(const SceneModel& model, const SpeedResult& result) {
+  std::vector<LinkResponse> responses;
+  for (const RodResult& rod : result.rods) responses.push_back({rod.link, rod.steady->q});
+  return frame_forces(*model.linkage(), result.speed, responses);
+}
+
+// x and y of the force without the moment.
+FourierSeries force_of(const FourierSeries& frame) { return FourierSeries(Eigen::MatrixXcd(frame.c.topRows(2))); }
+
+// Errors of what is a sum over joints: each pivot and guide has that of a joint force, at most that far from the crank.
+struct FrameErrors {
+  double force = 0, moment = 0;
+};
+
+FrameErrors frame_errors(const SceneModel& model, const SpeedResult& result, double largest_force) {
+  if (!result.force_errors) return {};
+  const Linkage& linkage = *model.linkage();
+  const ForceErrors& errors = *result.force_errors;
+  const double each = (errors.force + errors.force_cut) * largest_force;
+  double arm = 0;
+  for (const Dyad& dyad : linkage.dyads) {
+    const auto* rocker = std::get_if<Rocker>(&dyad.closing);
+    const std::complex<double> place = rocker ? rocker->pivot : std::get<Slider>(dyad.closing).guide;
+    arm = std::max(arm, std::abs(place - linkage.crank.pivot) + dyad.coupler.length + linkage.crank.body.length);
+  }
+  const double torque = fourier::max_abs(result.forces->torque, 0).value * (errors.torque + errors.torque_cut);
+  const double joints = 1 + static_cast<double>(linkage.dyads.size());
+  return {std::sqrt(2.0) * joints * each, std::sqrt(2.0) * joints * each * arm + torque};
+}
+
+double largest_bearing(const std::vector<BearingLoad>& loads) {
+  double largest = 0;
+  for (const BearingLoad& load : loads) largest = std::max(largest, load.elastic.value);
+  return largest;
+}
+
+// About its pivot: what the torque's fluctuation accelerates.
+double crank_inertia(const Linkage& linkage) {
+  const Body& crank = linkage.crank.body;
+  return crank.inertia + crank.mass * std::norm(crank.com);
+}
+
+double watt(const Units& units) { return units.torque_in_newton_metre() / units.time_in_s; }
+
+std::string range_of(const FourierSeries& series, Index component, double factor, int digits) {
+  const Range range = fourier::range(series, component);
+  return fmt::format("{:.{}g} .. {:.{}g}", range.min.value * factor, digits, range.max.value * factor, digits);
+}
+
+Eigen::VectorXd turn_angles(Index N) { return Eigen::VectorXd::LinSpaced(N + 1, 0, 360); }
+
+// Samples over a closed turn, a column each.
+Eigen::MatrixXd closed(const FourierSeries& series, Index N) {
+  Eigen::MatrixXd rows(N + 1, series.num_components());
+  rows.topRows(N) = fourier::synthesise(series, N).transpose();
+  rows.row(N) = rows.row(0);
+  return rows;
+}
+
+Index samples_for(Index harmonics) { return 360 * ((6 * std::max<Index>(harmonics, 1) + 359) / 360); }
+
+const RodCoefficients& coefficients_of(const SceneModel& model, std::size_t rod) {
+  return model.coefficients.rods[static_cast<std::size_t>(model.rods[rod].coefficients)];
+}
+
+std::optional<StaticDeflection> at_rest(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  return static_deflection(*body_at(*model.linkage(), result.rods[rod].link), coefficients_of(model, rod),
+                           result.rods[rod].num_modes);
+}
+
+// Empty where the scene gives no section.
+std::optional<StressCycle> cycle_of(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const RodResult& entry = result.rods[rod];
+  if (!entry.stress || !entry.stress->height_known) return std::nullopt;
+  return stress_cycle(*body_at(*model.linkage(), entry.link), coefficients_of(model, rod), result.speed,
+                      entry.steady->q, entry.more_modes, entry.steady->error_bound);
+}
+
+}  // namespace
+
+std::string stress_rows(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const std::optional<StressCycle> cycle = cycle_of(model, result, rod);
+  if (!cycle) return "";
+  const OutputUnits units = output_units(model.scene);
+  // w to the left with w'' > 0 pulls at the right.
+  const auto fibre = [](int side) { return side > 0 ? "right" : "left"; };
+  return fmt::format(
+      "  together          {:.3g} MPa at x = {:.4g} {}, crank angle {:.2f} deg, {} side; error {:.1e} MPa\n"
+      "  stress cycle      mean {:.3g} MPa, amplitude {:.3g} MPa at x = {:.4g} {}, {} side\n",
+      cycle->max_abs * units.megapascal, cycle->x, units.length, cycle->crank_angle * degrees_per_radian,
+      fibre(cycle->side), cycle->error * units.megapascal, cycle->mean * units.megapascal,
+      cycle->amplitude * units.megapascal, cycle->amplitude_x, units.length, fibre(cycle->amplitude_side));
+}
+
+void add_stress_cycle(Json& stress, const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const std::optional<StressCycle> cycle = cycle_of(model, result, rod);
+  if (!cycle) return;
+  stress["max_abs"] = cycle->max_abs;
+  stress["x"] = cycle->x;
+  stress["crank_angle"] = scene_angle(cycle->crank_angle, model.scene.units);
+  stress["side"] = cycle->side;
+  stress["mean"] = cycle->mean;
+  stress["amplitude"] = cycle->amplitude;
+  stress["amplitude_x"] = cycle->amplitude_x;
+  stress["amplitude_side"] = cycle->amplitude_side;
+  stress["error"] = cycle->error;
+}
+
+std::string static_row(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  if (!model.linkage() || !result.rods[rod].shape) return "";
+  const OutputUnits units = output_units(model.scene);
+  const std::optional<StaticDeflection> found = at_rest(model, result, rod);
+  if (!found) return "  at rest           no value: its load at rest is beyond its buckling load\n";
+  const double value = found->peak.max_abs;
+  return fmt::format(
+      "  at rest           {:.{}g} {} at x = {:.4g} {}, crank angle {:.2f} deg: under gravity and applied "
+      "forces alone\n",
+      value, std::min(6, trusted_digits(value, found->error)), units.length, found->peak.x, units.length,
+      found->peak.crank_angle * degrees_per_radian);
+}
+
+std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
+  if (!result.forces) return "";
+  const OutputUnits units = output_units(model.scene);
+  const Units& scene = model.scene.units;
+  const Linkage& linkage = *model.linkage();
+  std::string text = fmt::format("\n  {:<22}  {:>12}  {:>12}  {:>12}  {:>12}\n", "largest resultant [N]", "rigid",
+                                 "elastic", "at [deg]", "mean");
+  for (const BearingLoad& load : bearing_loads(*result.forces))
+    text += fmt::format("  {:<22}  {:>12.6g}  {:>12.6g}  {:>12.2f}  {:>12.6g}\n", load.joint,
+                        load.rigid.value * units.force, load.elastic.value * units.force,
+                        load.elastic.crank_angle * degrees_per_radian, load.mean * units.force);
+  const FrameForces frame = frame_of(model, result);
+  const Extremum shaking = largest_length(force_of(frame.elastic)), rigid = largest_length(force_of(frame.rigid));
+  text += fmt::format(
+      "  shaking force on the frame: x {} N, y {} N, resultant up to {:.6g} N at {:.2f} deg (rigid {:.6g} N)\n"
+      "  shaking moment about the crank's pivot: {} N m (rigid {} N m)\n",
+      range_of(frame.elastic, 0, units.force, 6), range_of(frame.elastic, 1, units.force, 6),
+      shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
+      range_of(frame.elastic, 2, units.moment, 6), range_of(frame.rigid, 2, units.moment, 6));
+  const Drive drive = drive_of(result.forces->torque, result.speed);
+  text += fmt::format(
+      "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
+      drive.mean * units.moment, drive.rms * units.moment, drive.mean_power * watt(scene),
+      drive.rms_power * watt(scene), drive.smallest_power * watt(scene), drive.largest_power * watt(scene));
+  text += fmt::format("  energy that a flywheel takes up and gives back: {:.6g} J a turn",
+                      drive.energy_fluctuation * units.moment);
+  if (const double inertia = crank_inertia(linkage); inertia > 0) {
+    const double fluctuation = speed_fluctuation(drive, inertia, result.speed);
+    text += fmt::format("; with the crank's inertia the speed would fluctuate by {:.3g} %{}", 100 * fluctuation,
+                        fluctuation > 0.1 ? ", more than this estimate is good for" : "");
+  }
+  text += "\n";
+  for (const SliderMotion& slider : slider_motions(linkage, result.speed)) {
+    const Range position = fourier::range(slider.position, 0);
+    text += fmt::format("  {}: stroke {:.6g} {} ({:.6g} .. {:.6g}), velocity {} {}/{}, acceleration {} {}/{}^2\n",
+                        slider.name, position.max.value - position.min.value, units.length, position.min.value,
+                        position.max.value, range_of(slider.velocity(), 0, 1, 6), units.length, units.time,
+                        range_of(slider.acceleration(), 0, 1, 6), units.length, units.time);
+  }
+  return text;
+}
+
+Json static_json(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const std::optional<StaticDeflection> found = at_rest(model, result, rod);
+  if (!found) return nullptr;
+  Json json = peak_json(found->peak, model.scene.units);
+  json["error"] = found->error;
+  return json;
+}
+
+void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
+  if (!result.forces) return;
+  const Units& units = model.scene.units;
+  const Linkage& linkage = *model.linkage();
+  const std::vector<BearingLoad> loads = bearing_loads(*result.forces);
+  Json bearings = Json::object();
+  for (const BearingLoad& load : loads)
+    bearings[load.joint] = {{"max", load.elastic.value},
+                            {"crank_angle", scene_angle(load.elastic.crank_angle, units)},
+                            {"mean", load.mean},
+                            {"rms", load.rms},
+                            {"max_rigid", load.rigid.value},
+                            {"crank_angle_rigid", scene_angle(load.rigid.crank_angle, units)}};
+  document["bearings"] = std::move(bearings);
+
+  const FrameForces frame = frame_of(model, result);
+  const FrameErrors errors = frame_errors(model, result, largest_bearing(loads));
+  Json on_frame;
+  const char* const names[] = {"x", "y", "moment"};
+  for (Index c = 0; c < 3; ++c) {
+    on_frame[names[c]] = range_json(frame.elastic, c);
+    on_frame[std::string(names[c]) + "_rigid"] = range_json(frame.rigid, c);
+  }
+  const Extremum largest = largest_length(force_of(frame.elastic)), rigid = largest_length(force_of(frame.rigid));
+  on_frame["max"] = largest.value;
+  on_frame["crank_angle"] = scene_angle(largest.crank_angle, units);
+  on_frame["max_rigid"] = rigid.value;
+  if (result.force_errors) {
+    on_frame["force_error"] = errors.force;
+    on_frame["moment_error"] = errors.moment;
+  }
+  document["frame"] = std::move(on_frame);
+
+  const Drive drive = drive_of(result.forces->torque, result.speed),
+              drive_rigid = drive_of(result.forces->torque_rigid, result.speed);
+  document["torque"]["mean"] = drive.mean;
+  document["torque"]["rms"] = drive.rms;
+  document["torque"]["rigid"]["mean"] = drive_rigid.mean;
+  document["torque"]["rigid"]["rms"] = drive_rigid.rms;
+  document["power"] = {{"min", drive.smallest_power},
+                       {"max", drive.largest_power},
+                       {"mean", drive.mean_power},
+                       {"rms", drive.rms_power}};
+  const double inertia = crank_inertia(linkage);
+  document["flywheel"] = {
+      {"energy_fluctuation", drive.energy_fluctuation},
+      {"inertia", inertia},
+      {"speed_fluctuation", inertia > 0 ? Json(speed_fluctuation(drive, inertia, result.speed)) : Json()}};
+
+  Json sliders = Json::object();
+  for (const SliderMotion& slider : slider_motions(linkage, result.speed))
+    sliders[slider.name] = {{"position", range_json(slider.position, 0)},
+                            {"velocity", range_json(slider.velocity(), 0)},
+                            {"acceleration", range_json(slider.acceleration(), 0)}};
+  if (!sliders.empty()) document["sliders"] = std::move(sliders);
+}
+
+CsvFile frame_csv(const SceneModel& model, const SpeedResult& result) {
+  const OutputUnits units = output_units(model.scene);
+  const FrameForces frame = frame_of(model, result);
+  const Index N = samples_for(std::max(frame.elastic.num_harmonics(), frame.rigid.num_harmonics()));
+  CsvFile file;
+  file.name = "frame_forces.csv";
+  file.comment = {fmt::format("{}, {}: shaking force and moment on the frame over one turn, elastic beside rigid",
+                              scene_name(model.scene), speed_text(result.speed, model.scene)),
+                  "global axes; moment about the crank's pivot; motor and applied slider forces act against the frame"};
+  file.columns = {"crank angle [deg]", "x [N]", "y [N]", "moment [N m]", "x rigid [N]", "y rigid [N]",
+                  "moment rigid [N m]"};
+  const Eigen::Vector3d factor(units.force, units.force, units.moment);
+  file.rows.resize(N + 1, 7);
+  file.rows << turn_angles(N), closed(frame.elastic, N) * factor.asDiagonal(),
+      closed(frame.rigid, N) * factor.asDiagonal();
+  return file;
+}
+
+std::vector<CsvFile> slider_csvs(const SceneModel& model, const SpeedResult& result) {
+  const OutputUnits units = output_units(model.scene);
+  std::vector<CsvFile> files;
+  for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed)) {
+    const Index N = samples_for(slider.position.num_harmonics());
+    CsvFile file;
+    file.name = file_name("slider_" + slider.name) + ".csv";
+    file.comment = {fmt::format("{}, {}: {}, motion along its guide over one turn, from the guide's point",
+                                scene_name(model.scene), speed_text(result.speed, model.scene), slider.name)};
+    file.columns = {"crank angle [deg]", fmt::format("position [{}]", units.length),
+                    fmt::format("velocity [{}/{}]", units.length, units.time),
+                    fmt::format("acceleration [{}/{}^2]", units.length, units.time)};
+    file.rows.resize(N + 1, 4);
+    file.rows << turn_angles(N), closed(slider.position, N), closed(slider.velocity(), N),
+        closed(slider.acceleration(), N);
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+}  // namespace hb::tools

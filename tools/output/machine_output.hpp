@@ -1,0 +1,34 @@
+// What a machine's designer reads beside joint forces: resultants at the bearings, what the frame feels, the drive, the
+// sliders' motion, the deflection at rest, the stress over a turn.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/linkage_analysis.hpp"
+#include "tools/output/csv_output.hpp"
+
+namespace hb::tools {
+
+// Rows for the table, where joint forces were computed.
+[[nodiscard]] std::string machine_rows(const SceneModel& model, const SpeedResult& result);
+// "static deflection  ..." of one rod; empty where its shape was not computed.
+[[nodiscard]] std::string static_row(const SceneModel& model, const SpeedResult& result, std::size_t rod);
+
+// Axial and bending stress together: the largest, and the widest cycle; empty without a section.
+[[nodiscard]] std::string stress_rows(const SceneModel& model, const SpeedResult& result, std::size_t rod);
+void add_stress_cycle(nlohmann::ordered_json& stress, const SceneModel& model, const SpeedResult& result,
+                      std::size_t rod);
+
+// Adds bearings, frame, power, drive and sliders to the document, mean and rms to its torque.
+void add_machine(nlohmann::ordered_json& document, const SceneModel& model, const SpeedResult& result);
+// The value of static_deflection of one rod: null where it would buckle.
+[[nodiscard]] nlohmann::ordered_json static_json(const SceneModel& model, const SpeedResult& result, std::size_t rod);
+
+// Crank angle, force x, y and moment on the frame, elastic and rigid.
+[[nodiscard]] CsvFile frame_csv(const SceneModel& model, const SpeedResult& result);
+// Crank angle, position, velocity and acceleration; one file for each slider.
+[[nodiscard]] std::vector<CsvFile> slider_csvs(const SceneModel& model, const SpeedResult& result);
+
+}  // namespace hb::tools
