@@ -76,7 +76,8 @@ int run_sweep_command(const SweepFlags& flags) {
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : sweep_table(sweep_scene, result);
   if (branches && !out.json)
-    delivery.printed = "By the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
+    delivery.printed = branches_verdict(sweep_scene, *branches) +
+                       "\nBy the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
                        branches_table(sweep_scene, *branches);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
