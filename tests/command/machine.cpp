@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -122,6 +123,61 @@ TEST_F(Machine, SharpPeaksDoNotFlattenTheForcesOfASweep) {
     ++ranges;
   }
   EXPECT_GE(ranges, 8);
+}
+
+// Two scenes, or a folder of results beside a scene.
+TEST_F(Machine, CompareSaysWhatDiffersAndWhatIsTheSame) {
+  const CommandResult result = hb("compare " + scene("six_link") + " " + scene("six_link") +
+                                  " --rpm 900 --modes 2 --set-b AB.J=60 --out out --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json found = Json::parse(result.out);
+  EXPECT_EQ(found["a"]["verdict"], "stable");
+  const Json one = document(scene("six_link") + " --rpm 900 --modes 2"),
+             other = document(scene("six_link") + " --rpm 900 --modes 2 --set AB.J=60");
+  bool deflection = false, untouched = false;
+  std::vector<std::string> order;
+  for (const Json& quantity : found["quantities"]) {
+    if (order.empty() || order.back() != quantity["of"]) order.push_back(quantity["of"]);
+    if (quantity["of"] == "AB" && quantity["name"] == "deflection") {
+      deflection = true;
+      EXPECT_EQ(quantity["unit"], "mm");
+      EXPECT_EQ(quantity["a"], one["rods"]["AB"]["deflection"]["max_abs"]);
+      EXPECT_EQ(quantity["b"], other["rods"]["AB"]["deflection"]["max_abs"]);
+      EXPECT_LT(quantity["change"].get<double>(), -0.2);
+      EXPECT_EQ(quantity["same"], false);
+    }
+    // Rods do not feel each other's bending.
+    if (quantity["of"] == "CD" && quantity["name"] == "deflection") untouched = quantity["same"];
+  }
+  EXPECT_TRUE(deflection);
+  EXPECT_TRUE(untouched);
+  EXPECT_EQ(order, (std::vector<std::string>{"AB", "CD", "bearings", "frame", "drive"}));
+  EXPECT_GT(fs::file_size(folder_ / "out/compare_AB.svg"), 5000u);
+  EXPECT_NE(read(folder_ / "out/compare_AB.svg").find("AB.J=60"), std::string::npos);
+
+  ASSERT_EQ(hb("steady " + scene("six_link") + " --rpm 2400 --modes 2 --no-plots --out before").status, 0);
+  const CommandResult text = hb("compare before " + scene("six_link") + " --rpm 2400 --modes 2 --set-b AB.J=2000");
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_TRUE(text.out.starts_with("A  Six-link mechanism, 2400 rpm (before): UNSTABLE because of AB\nB  "))
+      << text.out;
+  EXPECT_NE(text.out.find("--set AB.J=2000): stable\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("same\n"), std::string::npos) << text.out;
+}
+
+TEST_F(Machine, CompareRefusesWhatCannotBeCompared) {
+  fs::create_directory(folder_ / "empty");
+  std::ofstream(folder_ / "other.json") << "{\"rods\": 3}";
+  for (const auto& [arguments, said] :
+       {std::pair("empty " + scene("six_link"), "empty/steady.json"),
+        std::pair(scene("six_link") + " other.json", "no answer of hb steady in other.json"),
+        std::pair(scene("six_link") + " " + scene("mathieu") + " --omega 10", "two of one kind"),
+        std::pair(scene("six_link"), "B is required"),
+        std::pair(scene("six_link") + " empty --rpm 300 --modes 1 --set-b AB.J=3", "--set-b")}) {
+    const CommandResult result = hb("compare " + arguments);
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+    EXPECT_TRUE(result.out.empty()) << result.out;
+  }
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "lib/scene/scene_keys.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
+#include "tools/command/compare.hpp"
 #include "tools/command/version.hpp"
 #include "tools/output/printable.hpp"
 #include "tools/work/ranks.hpp"
@@ -69,6 +70,7 @@ int run(int argc, char** argv) {
   add_bench_command(app, status);
   add_tune_command(app, status);
   add_report_command(app, status);
+  add_compare_command(app, status);
   try {
     app.parse(argc, argv);
     return status;

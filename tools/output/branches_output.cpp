@@ -12,6 +12,7 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -180,6 +181,21 @@ void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& swe
   json["jumps"] = std::move(jumps);
   json["stopped"] = sweep.stopped;
   add_followed(json, scene, sweep);
+}
+
+std::string branches_verdict(const SweepScene& scene, const NonlinearSweep& sweep) {
+  std::vector<NamedVerdicts> points;
+  std::size_t without = 0;
+  for (const auto& place : sweep.followed) {
+    const NonlinearPoint* point = place ? &sweep.branches[place->branch].points[place->point] : nullptr;
+    without += point == nullptr;
+    if (point && point->stability) points.push_back({{"all rods together", point->stability->verdict}});
+  }
+  const std::string verdict = verdict_at_points(points, "points");
+  return fmt::format(
+      "{}, motion without linearisation{}{}{}\n", scene_name(scene.scene()), verdict.empty() ? "" : ": ", verdict,
+      without > 0 ? fmt::format("; the branch followed does not come to {} of {}", without, sweep.followed.size())
+                  : "");
 }
 
 std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep) {

@@ -1,0 +1,290 @@
+#include "tools/output/compare_output.hpp"
+
+#include <fmt/core.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+
+#include "tools/output/output_folder.hpp"
+#include "tools/output/verdict_words.hpp"
+#include "tools/output/wording.hpp"
+
+namespace hb::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Factors from the units of a document to mm, N, N m, MPa, Hz, W.
+struct Factors {
+  double length = 1, force = 1, moment = 1, stress = 1, frequency = 1, power = 1;
+  std::string length_unit, rate_unit;
+};
+
+Factors factors_of(const Json& document) {
+  static const std::map<std::string, double> metres = {{"m", 1},     {"mm", 1e-3}, {"cm", 1e-2},   {"dm", 0.1},
+                                                       {"um", 1e-6}, {"km", 1e3},  {"in", 0.0254}, {"ft", 0.3048}};
+  static const std::map<std::string, double> seconds = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
+  const Json& units = document.at("units");
+  const std::string time = units.at("time").get<std::string>();
+  const double second = seconds.at(time);
+  Factors factors;
+  factors.rate_unit = "1/" + time;
+  if (document.at("rods").contains("system")) return factors;
+  const double metre = metres.at(units.at("length").get<std::string>());
+  factors.length_unit = "mm";
+  factors.length = metre * 1e3;
+  factors.force = units.at("force_in_newton");
+  factors.moment = units.at("torque_in_newton_metre");
+  factors.stress = factors.force / (metre * metre) * 1e-6;
+  factors.frequency = 1 / (2 * std::numbers::pi * second);
+  factors.power = factors.moment / second;
+  return factors;
+}
+
+// The number at a path of keys; empty where there is none.
+std::optional<double> number_at(const Json& json, std::initializer_list<const char*> keys) {
+  const Json* at = &json;
+  for (const char* key : keys) {
+    if (!at->is_object() || !at->contains(key)) return std::nullopt;
+    at = &at->at(key);
+  }
+  return at->is_number() ? std::optional(at->get<double>()) : std::nullopt;
+}
+
+struct Entry {
+  std::string of, name, unit;
+  double value = 0;
+  std::optional<double> error;
+};
+
+class Entries {
+ public:
+  explicit Entries(const Json& document) : document_(document), factors_(factors_of(document)) {
+    for (const auto& [name, rod] : document.at("rods").items()) add_rod(name, rod);
+    add_machine();
+  }
+  const std::vector<Entry>& list() const { return list_; }
+
+ private:
+  void add(const std::string& of, const std::string& name, const std::string& unit, double factor,
+           std::optional<double> value, std::optional<double> error) {
+    if (value)
+      list_.push_back({of, name, unit, factor * *value, error ? std::optional(factor * *error) : std::nullopt});
+  }
+  // Error relative to the value itself.
+  void add_relative(const std::string& of, const std::string& name, const std::string& unit, double factor,
+                    std::optional<double> value, std::optional<double> relative) {
+    add(of, name, unit, factor, value, value && relative ? std::optional(*relative * std::abs(*value)) : std::nullopt);
+  }
+
+  void add_rod(const std::string& name, const Json& rod) {
+    const Factors& f = factors_;
+    const bool is_rod = name != "system";
+    const double bound = number_at(rod, {"error_bound"}).value_or(0), cut = number_at(rod, {"modes_error"}).value_or(0);
+    if (rod.contains("q") && !rod["q"]["max_abs"].empty())
+      add_relative(name, "largest |q_1|", f.length_unit, f.length, rod["q"]["max_abs"][0].get<double>(), bound);
+    add_relative(name, "deflection", f.length_unit, f.length, number_at(rod, {"deflection", "max_abs"}), bound + cut);
+    add(name, "deflection at rest", f.length_unit, f.length, number_at(rod, {"static_deflection", "max_abs"}),
+        number_at(rod, {"static_deflection", "error"}));
+    const double I = number_at(rod, {"modes"}).value_or(1);
+    add_relative(name, "bending moment", "N m", f.moment, number_at(rod, {"bending_moment", "max_abs"}),
+                 I * I * (bound + cut));
+    add(name, "stress, axial", "MPa", f.stress, number_at(rod, {"stress", "axial"}), std::nullopt);
+    add(name, "stress, bending", "MPa", f.stress, number_at(rod, {"stress", "bending"}), std::nullopt);
+    for (const char* key : {"max_abs", "amplitude"})
+      add(name, std::string("stress, ") + (key[0] == 'm' ? "together" : "amplitude"), "MPa", f.stress,
+          number_at(rod, {"stress", key}), number_at(rod, {"stress", "error"}));
+    add(name, "share of buckling load", "", 1, number_at(rod, {"axial_force", "buckling_share"}), std::nullopt);
+    add(name, "theory error", "", 1, number_at(rod, {"theory_error"}), std::nullopt);
+    add(name, "amplification", "", 1, number_at(rod, {"amplification"}), std::nullopt);
+    add(name, "omega_1", is_rod ? "Hz" : "rad per unit time", f.frequency,
+        number_at(rod, {"nearest_resonance", "frequency"}), std::nullopt);
+    add(name, "growth rate", f.rate_unit, 1, number_at(rod, {"growth_rate"}), number_at(rod, {"exponent_error"}));
+  }
+
+  void add_machine() {
+    const Factors& f = factors_;
+    const auto sum = [&](const char* one, const char* other) -> std::optional<double> {
+      const std::optional<double> a = number_at(document_, {one}), b = number_at(document_, {other});
+      return a ? std::optional(*a + b.value_or(0)) : std::nullopt;
+    };
+    const std::optional<double> force = sum("joints_error", "joints_modes_error"),
+                                torque = sum("torque_error", "torque_modes_error");
+    if (document_.contains("bearings")) {
+      double largest = 0;
+      for (const auto& [name, bearing] : document_["bearings"].items())
+        largest = std::max(largest, number_at(bearing, {"max"}).value_or(0));
+      for (const auto& [name, bearing] : document_["bearings"].items())
+        add("bearings", name, "N", f.force, number_at(bearing, {"max"}),
+            force ? std::optional(std::sqrt(2.0) * *force * largest) : std::nullopt);
+    }
+    add("frame", "shaking force", "N", f.force, number_at(document_, {"frame", "max"}),
+        number_at(document_, {"frame", "force_error"}));
+    const std::optional<double> low = number_at(document_, {"torque", "min"}),
+                                high = number_at(document_, {"torque", "max"});
+    const double size = std::max(std::abs(low.value_or(0)), std::abs(high.value_or(0)));
+    const std::optional<double> error = torque ? std::optional(*torque * size) : std::nullopt;
+    add("drive", "torque, largest", "N m", f.moment, high, error);
+    add("drive", "torque, smallest", "N m", f.moment, low, error);
+    add("drive", "torque, rms", "N m", f.moment, number_at(document_, {"torque", "rms"}), error);
+    const double omega = number_at(document_, {"omega"}).value_or(0);
+    add("drive", "power, mean", "W", f.power, number_at(document_, {"power", "mean"}),
+        error ? std::optional(omega * *error) : std::nullopt);
+    add("drive", "energy of a flywheel", "J", f.moment, number_at(document_, {"flywheel", "energy_fluctuation"}),
+        error ? std::optional(2 * std::numbers::pi * *error) : std::nullopt);
+  }
+
+  const Json& document_;
+  Factors factors_;
+  std::vector<Entry> list_;
+};
+
+std::string title_of(const ComparedSide& side) {
+  const std::string title = side.document.value("title", "");
+  const bool system = side.document.at("rods").contains("system");
+  const double speed = side.document.at(system ? "omega" : "rpm");
+  return fmt::format("{}, {}", title.empty() ? side.source : title,
+                     system ? fmt::format("omega = {:.10g}", speed) : fmt::format("{:.10g} rpm", speed));
+}
+
+std::string side_line(const char* letter, const ComparedSide& side) {
+  const std::string verdict = side_verdict(side);
+  return fmt::format("{}  {} ({}){}{}\n", letter, title_of(side), side.source, verdict.empty() ? "" : ": ", verdict);
+}
+
+std::string cell(const std::optional<double>& value, const std::optional<double>& error) {
+  if (!value) return "";
+  return fmt::format("{:.{}g}", *value, std::min(6, trusted_digits(*value, error.value_or(1e-6 * std::abs(*value)))));
+}
+
+Json optional_json(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json();
+}
+
+// c_0..c_H of q_1; empty where the document has none.
+std::vector<std::complex<double>> first_unknown(const ComparedSide& side, const std::string& rod) {
+  const Json& rods = side.document.at("rods");
+  if (!rods.contains(rod) || !rods[rod].contains("q") || rods[rod]["q"]["fourier"].empty()) return {};
+  std::vector<std::complex<double>> c;
+  for (const Json& pair : rods[rod]["q"]["fourier"][0]) c.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+  return c;
+}
+
+double value_at(const std::vector<std::complex<double>>& c, double tau) {
+  double value = c[0].real();
+  for (std::size_t n = 1; n < c.size(); ++n) value += 2 * (c[n] * std::polar(1.0, static_cast<double>(n) * tau)).real();
+  return value;
+}
+
+}  // namespace
+
+std::optional<double> ComparedQuantity::change() const {
+  if (!a || !b || *a == 0) return std::nullopt;
+  return (*b - *a) / std::abs(*a);
+}
+
+bool ComparedQuantity::same() const { return a && b && std::abs(*b - *a) <= error_a.value_or(0) + error_b.value_or(0); }
+
+std::vector<ComparedQuantity> compared_quantities(const ComparedSide& a, const ComparedSide& b) {
+  std::vector<ComparedQuantity> quantities;
+  const Entries of_a(a.document), of_b(b.document);
+  for (const Entry& entry : of_a.list())
+    quantities.push_back({entry.of, entry.name, entry.unit, entry.value, std::nullopt, entry.error, std::nullopt});
+  for (const Entry& entry : of_b.list()) {
+    const auto known = std::ranges::find_if(
+        quantities, [&](const ComparedQuantity& q) { return q.of == entry.of && q.name == entry.name; });
+    ComparedQuantity& quantity =
+        known != quantities.end()
+            ? *known
+            : quantities.emplace_back(ComparedQuantity{entry.of, entry.name, entry.unit, {}, {}, {}, {}});
+    quantity.b = entry.value;
+    quantity.error_b = entry.error;
+  }
+  // What belongs together stands together, in the order of A.
+  std::vector<std::string> order;
+  for (const ComparedQuantity& q : quantities)
+    if (std::ranges::find(order, q.of) == order.end()) order.push_back(q.of);
+  std::ranges::stable_sort(quantities, {},
+                           [&](const ComparedQuantity& q) { return std::ranges::find(order, q.of) - order.begin(); });
+  return quantities;
+}
+
+std::string side_verdict(const ComparedSide& side) {
+  const std::string verdict = side.document.value("verdict", "");
+  if (verdict.empty()) return "";
+  std::string because;
+  for (const auto& [name, rod] : side.document.at("rods").items())
+    if (name != "system" && rod.value("verdict", "") == verdict) because += (because.empty() ? "" : ", ") + name;
+  const bool good = verdict == "stable" || verdict == "bounded";
+  return (verdict == "unstable" ? "UNSTABLE" : verdict) + (good || because.empty() ? "" : " because of " + because);
+}
+
+std::string compare_table(const ComparedSide& a, const ComparedSide& b) {
+  std::string text = side_line("A", a) + side_line("B", b);
+  text += fmt::format("\n{:<34}{:>16}{:>16}{:>12}\n", "", "A", "B", "B against A");
+  std::string of;
+  for (const ComparedQuantity& q : compared_quantities(a, b)) {
+    if (q.of != of) text += q.of + "\n";
+    of = q.of;
+    const std::optional<double> change = q.change();
+    text += fmt::format("  {:<32}{:>16}{:>16}{:>12}\n", q.name + (q.unit.empty() ? "" : " [" + q.unit + "]"),
+                        cell(q.a, q.error_a), cell(q.b, q.error_b),
+                        q.same() ? "same"
+                        : change ? fmt::format("{:+.3g} %", 100 * *change)
+                                 : "");
+  }
+  return text + "\nsame: no further apart than the errors of both computations\n";
+}
+
+Json compare_json(const ComparedSide& a, const ComparedSide& b) {
+  Json json;
+  for (const auto& [key, side] : {std::pair("a", &a), std::pair("b", &b)}) {
+    Json entry = {{"source", side->source}};
+    for (const char* copied : {"title", "rpm", "omega", "verdict", "warnings", "notes"})
+      if (side->document.contains(copied)) entry[copied] = side->document[copied];
+    json[key] = std::move(entry);
+  }
+  Json list = Json::array();
+  for (const ComparedQuantity& q : compared_quantities(a, b))
+    list.push_back({{"of", q.of},
+                    {"name", q.name},
+                    {"unit", q.unit},
+                    {"a", optional_json(q.a)},
+                    {"b", optional_json(q.b)},
+                    {"error_a", optional_json(q.error_a)},
+                    {"error_b", optional_json(q.error_b)},
+                    {"change", optional_json(q.change())},
+                    {"same", q.same()}});
+  json["quantities"] = std::move(list);
+  return json;
+}
+
+std::vector<CsvFile> compare_csvs(const ComparedSide& a, const ComparedSide& b) {
+  std::vector<CsvFile> files;
+  const double factor_a = factors_of(a.document).length, factor_b = factors_of(b.document).length;
+  const std::string unit = factors_of(a.document).length_unit;
+  for (const auto& [name, rod] : a.document.at("rods").items()) {
+    const auto first = first_unknown(a, name), second = first_unknown(b, name);
+    if (first.empty() || second.empty()) continue;
+    constexpr Eigen::Index N = 720;
+    CsvFile file;
+    file.name = file_name("compare_" + name) + ".csv";
+    file.comment = {fmt::format("{}: q_1 over one turn; A: {}; B: {}", name, title_of(a), title_of(b))};
+    file.columns = {"crank angle [deg]", "q_1 A" + (unit.empty() ? "" : " [" + unit + "]"),
+                    "q_1 B" + (unit.empty() ? "" : " [" + unit + "]")};
+    file.rows.resize(N + 1, 3);
+    for (Eigen::Index j = 0; j <= N; ++j) {
+      const double tau = 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N);
+      file.rows.row(j) << 360 * static_cast<double>(j) / static_cast<double>(N), factor_a * value_at(first, tau),
+          factor_b * value_at(second, tau);
+    }
+    files.push_back(std::move(file));
+  }
+  return files;
+}
+
+}  // namespace hb::tools
