@@ -50,12 +50,24 @@ MatrixXd values(const FourierSeries& series, Index N) {
   return picked;
 }
 
+// C without the highest harmonics that are small beside the mean stiffnesses of the modes they couple.
+FourierSeries without_small(const FourierSeries& C, Index I, double relative) {
+  const Eigen::VectorXd mean = Eigen::Map<const Eigen::MatrixXcd>(C.c.col(0).data(), I, I).diagonal().cwiseAbs();
+  const MatrixXd largest = relative * (mean.cwiseSqrt() * mean.cwiseSqrt().transpose());
+  const Eigen::Map<const Eigen::VectorXd> allowed(largest.data(), I * I);
+  const auto small = [&](Index k) { return (C.c.col(k).cwiseAbs2().array() <= allowed.array().square()).all(); };
+  Index H = C.num_harmonics();
+  while (H > 0 && small(H)) --H;
+  return H == C.num_harmonics() ? C : fourier::resized(C, H);
+}
+
 // M q'' + B q' + C q - h at the samples.
 MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd& q, const MatrixXd& q1,
                          const MatrixXd& q2) {
+  constexpr double exact = 1e-13;
   const Index I = system.num_modes(), N = q.cols();
   MatrixXd r = system.mass * q2 + system.damping * q1;
-  const MatrixXd C = values(stiffness_at(system, speed), N);
+  const MatrixXd C = values(without_small(stiffness_at(system, speed), I, exact), N);
   for (Index j = 0; j < N; ++j) r.col(j).noalias() += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I) * q.col(j);
   const FourierSeries h = load_at(system, speed);
   if (h.c.size() > 0) r -= values(h, N);
@@ -67,7 +79,7 @@ std::optional<FourierSeries> response(const HillSystem& system, double speed, co
                                       double& amplification) {
   const HillSystem loaded{system.mass,
                           system.damping,
-                          {stiffness_at(system, speed), {}, {}},
+                          {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * rough), {}, {}},
                           {on_unknowns(fourier::analyse(load), system.num_modes()), {}, {}}};
   if (!loaded.load[0].c.allFinite()) return std::nullopt;
   if (const auto state = rough_steady_state(loaded, speed, rough)) {
