@@ -19,9 +19,10 @@ using Eigen::MatrixXd;
 constexpr double negligible = 1e-6;
 // Asked of the correction.
 constexpr double rough = 1e-5;
-// Response to the left-out load over that far from resonance, beyond which one correction does not show the change (by
-// random linkages).
-constexpr double most_amplified = 25;
+// Where the correction times the amplification of the left-out load stays below the first, the second correction is
+// smaller than a twentieth of the first and not looked at (by random linkages); where it is larger than the other part
+// of it, one correction does not show the change.
+constexpr double harmless = 4e-3, most_second = 0.05;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
   std::vector<FourierSeries> q;
@@ -169,8 +170,8 @@ Corrections corrections(const ExactModel& model, double speed, std::span<const L
   return found;
 }
 
-// Next to a resonance with little damping the correction itself moves the resonance by more than its width: (T1) at
-// q + dq until dq settles, which is the change itself. Where it does not settle the first correction stays.
+// Next to a resonance the correction itself moves the resonance: (T1) at q + dq until dq settles, which is the change
+// itself. The first correction stays where the second one is small, or where dq does not settle.
 void repeat(const ExactModel& model, double speed, std::span<const LinearRod> rods, const CrankAngles& angles,
             const std::vector<FourierSeries>& q, std::vector<FourierSeries>& dq) {
   constexpr int most = 8;
@@ -191,6 +192,7 @@ void repeat(const ExactModel& model, double speed, std::span<const LinearRod> ro
       const FourierSeries difference(fourier::resized(next.dq[r], H).c - fourier::resized(now[r], H).c);
       change = std::max(change, ratio(largest_value(difference), largest_value(next.dq[r])));
     }
+    if (step == 0 && change <= most_second) return;
     now = std::move(next.dq);
     if (!(change <= settled)) continue;
     dq = std::move(now);
@@ -233,7 +235,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   double largest_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r)
     largest_error = std::max(largest_error, ratio(largest_value(dq[r]), largest_value(*rods[r].q)));
-  if (first.amplification > most_amplified && largest_error <= theory_error_limit)
+  if (first.amplification * largest_error > harmless && largest_error <= theory_error_limit)
     repeat(model, speed, rods, angles, q, dq);
   for (std::size_t r = 0; r < rods.size(); ++r) {
     TheoryErrors::Rod& rod = errors.rods[r];
