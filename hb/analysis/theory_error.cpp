@@ -19,9 +19,10 @@ using Eigen::MatrixXd;
 constexpr double negligible = 1e-6;
 // Asked of the correction.
 constexpr double rough = 1e-5;
-// Response to the left-out load over that far from resonance, beyond which one correction does not show the change (by
-// random linkages).
-constexpr double most_amplified = 25;
+// Where the correction times the amplification of the left-out load stays below the first, the second correction is
+// smaller than a twentieth of the first and not looked at (by random linkages); where it is larger than the other part
+// of it, one correction does not show the change.
+constexpr double harmless = 4e-3, most_second = 0.05;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
   std::vector<FourierSeries> q;
@@ -50,12 +51,24 @@ MatrixXd values(const FourierSeries& series, Index N) {
   return picked;
 }
 
+// C without the highest harmonics that are small beside the mean stiffnesses of the modes they couple.
+FourierSeries without_small(const FourierSeries& C, Index I, double relative) {
+  const Eigen::VectorXd mean = Eigen::Map<const Eigen::MatrixXcd>(C.c.col(0).data(), I, I).diagonal().cwiseAbs();
+  const MatrixXd largest = relative * (mean.cwiseSqrt() * mean.cwiseSqrt().transpose());
+  const Eigen::Map<const Eigen::VectorXd> allowed(largest.data(), I * I);
+  const auto small = [&](Index k) { return (C.c.col(k).cwiseAbs2().array() <= allowed.array().square()).all(); };
+  Index H = C.num_harmonics();
+  while (H > 0 && small(H)) --H;
+  return H == C.num_harmonics() ? C : fourier::resized(C, H);
+}
+
 // M q'' + B q' + C q - h at the samples.
 MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd& q, const MatrixXd& q1,
                          const MatrixXd& q2) {
+  constexpr double exact = 1e-13;
   const Index I = system.num_modes(), N = q.cols();
   MatrixXd r = system.mass * q2 + system.damping * q1;
-  const MatrixXd C = values(stiffness_at(system, speed), N);
+  const MatrixXd C = values(without_small(stiffness_at(system, speed), I, exact), N);
   for (Index j = 0; j < N; ++j) r.col(j).noalias() += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I) * q.col(j);
   const FourierSeries h = load_at(system, speed);
   if (h.c.size() > 0) r -= values(h, N);
@@ -67,7 +80,7 @@ std::optional<FourierSeries> response(const HillSystem& system, double speed, co
                                       double& amplification) {
   const HillSystem loaded{system.mass,
                           system.damping,
-                          {stiffness_at(system, speed), {}, {}},
+                          {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * rough), {}, {}},
                           {on_unknowns(fourier::analyse(load), system.num_modes()), {}, {}}};
   if (!loaded.load[0].c.allFinite()) return std::nullopt;
   if (const auto state = rough_steady_state(loaded, speed, rough)) {
@@ -157,8 +170,8 @@ Corrections corrections(const ExactModel& model, double speed, std::span<const L
   return found;
 }
 
-// Next to a resonance with little damping the correction itself moves the resonance by more than its width: (T1) at
-// q + dq until dq settles, which is the change itself. Where it does not settle the first correction stays.
+// Next to a resonance the correction itself moves the resonance: (T1) at q + dq until dq settles, which is the change
+// itself. The first correction stays where the second one is small, or where dq does not settle.
 void repeat(const ExactModel& model, double speed, std::span<const LinearRod> rods, const CrankAngles& angles,
             const std::vector<FourierSeries>& q, std::vector<FourierSeries>& dq) {
   constexpr int most = 8;
@@ -179,6 +192,7 @@ void repeat(const ExactModel& model, double speed, std::span<const LinearRod> ro
       const FourierSeries difference(fourier::resized(next.dq[r], H).c - fourier::resized(now[r], H).c);
       change = std::max(change, ratio(largest_value(difference), largest_value(next.dq[r])));
     }
+    if (step == 0 && change <= most_second) return;
     now = std::move(next.dq);
     if (!(change <= settled)) continue;
     dq = std::move(now);
@@ -221,7 +235,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   double largest_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r)
     largest_error = std::max(largest_error, ratio(largest_value(dq[r]), largest_value(*rods[r].q)));
-  if (first.amplification > most_amplified && largest_error <= theory_error_limit)
+  if (first.amplification * largest_error > harmless && largest_error <= theory_error_limit)
     repeat(model, speed, rods, angles, q, dq);
   for (std::size_t r = 0; r < rods.size(); ++r) {
     TheoryErrors::Rod& rod = errors.rods[r];

@@ -56,6 +56,17 @@ struct RodConstants {
   double internal_damping = 0, damping_x = 0, damping_y = 0;  // alpha_c, c_x, c_y
 };
 
+[[nodiscard]] inline RodConstants constants_of(const Body& body) {
+  const Elastic& elastic = *body.elastic;
+  return {.length = body.length,
+          .mass_per_length = body.mass / body.length,
+          .rotary = elastic.density * elastic.second_moment,
+          .bending = elastic.youngs_modulus * elastic.second_moment,
+          .internal_damping = elastic.internal_damping,
+          .damping_x = elastic.damping_x,
+          .damping_y = elastic.damping_y};
+}
+
 // One elastic link in one state: what the mechanism needs to know, and what it answers.
 template <class T>
 struct RodState {

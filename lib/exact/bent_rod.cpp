@@ -58,13 +58,13 @@ BentRod::BentRod(const RodQuadrature& rule, const RodConstants& rod, const Sampl
 
   steepest_ = a_.abs().colwise().maxCoeff();
   const double first = std::numbers::pi / rule.length;
-  Angles at_0 = Angles::Zero(q.cols()), at_l = at_0;
+  at_0_ = at_l_ = Angles::Zero(q.cols());
   for (Index i = 0; i < q.rows(); ++i) {
     const double wave = first * static_cast<double>(i + 1);
-    at_0 += wave * q.row(i).array();
-    at_l += (i % 2 == 0 ? -wave : wave) * q.row(i).array();
+    at_0_ += wave * q.row(i).array();
+    at_l_ += (i % 2 == 0 ? -wave : wave) * q.row(i).array();
   }
-  steepest_ = steepest_.max(at_0.abs()).max(at_l.abs());
+  steepest_ = steepest_.max(at_0_.abs()).max(at_l_.abs());
 
   integrals_.resize(15, q.cols());
   integrals_ << sum(rule.weight, p_), sum(rule.weight, u1_), sum(rule.weight, u2_),  //
@@ -124,6 +124,20 @@ MatrixXd BentRod::residual(const RodSurroundings& at) const {
                      transposed_times(rule_.s1, g1_ * f.axial + f.rotary * k_ + f.m * f.K_a) +
                      transposed_times(rule_.s2, f.m * k_);
   return 2 / (rod_.length * rod_.bending) * r;
+}
+
+Field BentRod::tension(const RodSurroundings& at, const Angles& Y) const {
+  const Index Q = rule_.num_points(), N = num_angles();
+  const Loads f = loads(at);
+  const Angles base_x = at.axial_force - sum(rule_.weight, f.f_x), base_y = Y - sum(rule_.weight, f.f_y);
+  Field F_x = times(rule_.integral, f.f_x).array(), F_y = times(rule_.integral, f.f_y).array();
+  F_x.rowwise() += base_x;
+  F_y.rowwise() += base_y;
+  Field result(Q + 2, N);
+  result.topRows(Q) = F_x / k_ + F_y * a_;
+  result.row(Q) = base_x * (1 - at_0_.square()).sqrt() + base_y * at_0_;
+  result.row(Q + 1) = at.axial_force * (1 - at_l_.square()).sqrt() + Y * at_l_;
+  return result;
 }
 
 RodDerivatives BentRod::derivatives(const RodSurroundings& at) const {

@@ -51,6 +51,10 @@ class BentRod {
 
   RodDerivatives derivatives(const RodSurroundings& at) const;
 
+  // Tension N = F_x cos psi + F_y sin psi with F = (X, Y) - int_x^l f dx, Y across the chord at joint 1; at the points
+  // and, last two rows, at both ends.
+  Field tension(const RodSurroundings& at, const Angles& Y) const;
+
  private:
   struct Loads;
   Loads loads(const RodSurroundings& at) const;
@@ -67,7 +71,7 @@ class BentRod {
   Field h1_, h2_;  // du'_t/da, du'_tt/da: g2 a_t, g2 a_tt + g3 a_t^2 with g3 = -3 a k^5
   Field psi2_;  // psi_tt
   Field p_, u1_, u2_;  // x + u, u_t, u_tt
-  Angles c_, c1_, c2_, steepest_;
+  Angles c_, c1_, c2_, at_0_, at_l_, steepest_;  // w' at both ends
   Eigen::ArrayXXd integrals_;  // 15 x N, rows as ShapeIntegrals
 };
 

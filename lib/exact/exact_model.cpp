@@ -33,17 +33,6 @@ struct ExactModel::Impl {
 
 namespace {
 
-exact::RodConstants constants_of(const Body& body) {
-  const Elastic& elastic = *body.elastic;
-  return {.length = body.length,
-          .mass_per_length = body.mass / body.length,
-          .rotary = elastic.density * elastic.second_moment,
-          .bending = elastic.youngs_modulus * elastic.second_moment,
-          .internal_damping = elastic.internal_damping,
-          .damping_x = elastic.damping_x,
-          .damping_y = elastic.damping_y};
-}
-
 std::vector<BentRod> bent_rods(const ExactModel::Impl& model, const RitzSamples& motion) {
   std::vector<BentRod> rods;
   rods.reserve(model.rods.size());
@@ -277,7 +266,7 @@ ExactModel::ExactModel(Linkage linkage, std::vector<Rod> rods, Index num_points)
     impl->rod_of[static_cast<std::size_t>(rods[r].link)] = static_cast<int>(r);
     impl->first.push_back(impl->first.back() + rods[r].num_modes);
     impl->rules.emplace_back(body.length, rods[r].num_modes, num_points);
-    impl->constants.push_back(constants_of(body));
+    impl->constants.push_back(exact::constants_of(body));
   }
   impl->linkage = std::move(linkage);
   impl->rods = std::move(rods);

@@ -82,6 +82,61 @@ TEST(NonlinearFromCpp, ABranchIsFollowedFromAMotionThatIsGiven) {
   EXPECT_EQ(found.branches.branches.size(), 3u);  // the lower one; the upper one in both directions
 }
 
+// modes = "auto" was refused with the nonlinear theory.
+TEST(NonlinearFromCpp, AutomaticModesAreAsManyAsTheErrorOfTheCutTakes) {
+  const Scene scene = read_scene(scenes + "six_link.toml");
+  Request request = at(600, 1, motion_alone);
+  request.modes = AutoModes{};
+  request.tolerance = 1e-6;
+  const NonlinearSteady found = nonlinear_steady(scene, request);
+  ASSERT_EQ(found.search, MotionSearch::found);
+  EXPECT_TRUE(found.shortfalls.empty());
+  ASSERT_TRUE(found.cut_tolerance);
+  EXPECT_EQ(*found.cut_tolerance, 1e-6);
+  for (const NonlinearRod& rod : found.rods) {
+    ASSERT_TRUE(rod.modes_error);
+    EXPECT_LE(*rod.modes_error, 1e-6);
+    EXPECT_GE(rod.max_abs.size(), 2u);
+  }
+  const auto modes = static_cast<int>(found.rods[0].max_abs.size());
+  const NonlinearSteady more = nonlinear_steady(scene, at(600, modes + 4, motion_alone));
+  EXPECT_NEAR(found.rods[0].max_abs[0].value, more.rods[0].max_abs[0].value, 2e-6 * more.rods[0].max_abs[0].value);
+}
+
+TEST(NonlinearFromCpp, EverythingIsKnownOfThePointsOfASweepThatWereAskedFor) {
+  const Scene scene = read_scene(scenes + "six_link.toml");
+  SweepRequest request;
+  request.modes = 1;
+  request.only = motion_alone;
+  request.x = along("rpm", 1490, 1500, 2);
+  const NonlinearAlong along = nonlinear_sweep(scene, request);
+  ASSERT_TRUE(along.branches.followed.back());
+  const BranchPlace place = *along.branches.followed.back();
+  const NonlinearPoint& point = along.branches.branches[place.branch].points[place.point];
+  const Settings settings = settings_of(at(1500, 1, {}), scene);
+  const SceneModel model = make_model(scene, settings, false);
+  const NonlinearResult all = nonlinear_motion(model, point.speed, point.q, settings);
+  ASSERT_EQ(all.search, MotionSearch::found);
+  EXPECT_NEAR(all.rods[0].max_abs[0].value, 15.867511, 1e-5 * 15.87);
+  EXPECT_TRUE(all.stability && all.forces && all.rods[0].shape && all.rods[0].stress);
+}
+
+// At low speed the axial force is that of the rigid mechanism.
+TEST(NonlinearFromCpp, StressIsThatOfTheLinearTheoryAtLowSpeed) {
+  const Scene scene = read_scene(scenes + "six_link.toml");
+  Request request = at(300, 2, {});
+  const NonlinearSteady nonlinear = nonlinear_steady(scene, request);
+  const SteadyResult linear = steady(scene, request);
+  for (std::size_t r = 0; r < 2; ++r) {
+    const RodStress &a = *nonlinear.rods[r].stress, &b = *linear.rods[r].stress;
+    const double force = std::max(b.tension, b.compression);
+    EXPECT_NEAR(a.tension, b.tension, 0.01 * force);
+    EXPECT_NEAR(a.compression, b.compression, 0.01 * force);
+    EXPECT_NEAR(a.bending, b.bending, 1e-3 * b.bending);
+    EXPECT_NEAR(a.strain, b.strain, 0.01 * b.strain);
+  }
+}
+
 TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {
   int asked = 0;
   const NonlinearSweepOptions options{.stop = [&] { return ++asked > 200; }};

@@ -10,11 +10,14 @@
 #include <optional>
 #include <sstream>
 
-#include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/steady.hpp"
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/output_flags.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/command/speed_flags.hpp"
 #include "tools/command/version.hpp"
 #include "tools/output/compare_output.hpp"
 #include "tools/output/json_output.hpp"
@@ -53,13 +56,13 @@ ComparedSide from_files(const std::string& given) {
 ComparedSide computed(const CompareFlags& flags, const SceneInput& input, const std::vector<std::string>& more) {
   CommonFlags own = flags;
   own.set.insert(own.set.end(), more.begin(), more.end());
-  Scene scene = input.source.with(overrides(own));
-  const Settings options = settings(own, scene);
-  const double speed = single_speed(own, scene);
-  const SceneModel model = make_model(std::move(scene), options);
+  const Scene scene = input.source.with(overrides(own));
+  Request request = asked_request(own, scene);
+  set_speed(request, first_speed(own, scene));
+  const SteadyResult result = steady(scene, request);
   std::string source = input.name;
   for (const std::string& set : more) source += " --set " + set;
-  return {source, steady_json(model, analyse(model, speed, options), options, false)};
+  return {source, steady_json(*result.model, result, result.settings, false)};
 }
 
 Figure response_figure(const ComparedSide& a, const ComparedSide& b, const CsvFile& csv) {

@@ -10,6 +10,7 @@
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/printable.hpp"
+#include "tools/output/stress_words.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
@@ -43,15 +44,6 @@ void add_resonance(Json& json, const RodModel& model, const RodResult& rod, doub
   double largest = 0;
   for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);
   if (slow && !rod.max_abs.empty()) json["amplification"] = largest / *slow;
-}
-
-void add_stress(Json& json, const RodStress& stress) {
-  json["axial_force"] = {{"tension", stress.tension},
-                         {"compression", stress.compression},
-                         {"buckling_load", stress.buckling_load},
-                         {"buckling_share", stress.buckling_share()}};
-  json["stress"] = {{"axial", stress.axial}, {"bending", stress.bending}, {"height_known", stress.height_known}};
-  json["strain"] = stress.strain;
 }
 
 void add_stability(Json& json, const RodResult& rod, double speed) {

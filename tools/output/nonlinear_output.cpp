@@ -9,6 +9,7 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/stress_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
@@ -46,6 +47,7 @@ Json rod_json(const NonlinearRod& rod, const NonlinearResult& result, const Unit
   if (rod.shape) {
     json["deflection"] = peak_json(rod.shape->deflection, units);
     json["bending_moment"] = peak_json(rod.shape->bending_moment, units);
+    if (rod.stress) add_stress(json, *rod.stress);
   }
   return json;
 }
@@ -56,7 +58,7 @@ std::string way_text(const NonlinearResult& result, const Scene& scene) {
                      result.folds == 1 ? "1 fold" : fmt::format("{} folds", result.folds));
 }
 
-void add_rod(Text& text, const NonlinearRod& rod, const OutputUnits& units) {
+void add_rod(Text& text, const NonlinearRod& rod, const Linkage& linkage, const OutputUnits& units) {
   add(text, "{}: {} {}, {} harmonics\n", rod.name, rod.max_abs.size(), rod.max_abs.size() == 1 ? "mode" : "modes",
       rod.q.num_harmonics());
   add(text, "  q_i: amplitude of sin(i pi x/l), largest over the motion\n");
@@ -76,6 +78,7 @@ void add_rod(Text& text, const NonlinearRod& rod, const OutputUnits& units) {
     peak("deflection", rod.shape->deflection, 1, units.length);
     peak("bending moment", rod.shape->bending_moment, units.moment, "N m");
   }
+  if (rod.stress) add(text, "{}", stress_lines(*rod.stress, *body_at(linkage, rod.link), units));
   add(text, "\n");
 }
 
@@ -137,6 +140,7 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   if (!result.shortfalls.empty()) json["notes"] = result.shortfalls;
   json["tolerance"] = settings.tolerance;
   json["motion_tolerance"] = result.tolerance;
+  if (result.cut_tolerance) json["modes_tolerance"] = *result.cut_tolerance;
   if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
   json["units"] = units_json(units);
   json["found"] = result.search == MotionSearch::found;
@@ -186,7 +190,7 @@ std::string nonlinear_table(const SceneModel& model, const NonlinearResult& resu
       result.speed, units.time, result.turns == 1 ? "" : fmt::format(", period of {} turns", result.turns));
   if (result.search == MotionSearch::found) add(text, "  {}\n\n", way_text(result, scene));
   for (const NonlinearRod& rod : result.rods)
-    if (rod.reported) add_rod(text, rod, units);
+    if (rod.reported) add_rod(text, rod, *model.linkage(), units);
   if (result.stability) add_stability(text, result, scene);
   if (result.forces) add_forces(text, result, units);
   for (const OtherMotion& other : result.others) {
@@ -228,6 +232,7 @@ SpeedResult as_speed_result(const NonlinearResult& result) {
     rod.steady = std::move(state);
     rod.max_abs = from.max_abs;
     rod.shape = from.shape;
+    rod.stress = from.stress;
     speed.rods.push_back(std::move(rod));
   }
   speed.forces = result.forces;

@@ -11,6 +11,7 @@
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/stress_words.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
@@ -119,20 +120,6 @@ void add_stability(Text& text, const RodModel& model, const RodResult& rod, doub
   add(text, "  {}\n", verdict_sentence(stability, speed, scene, lines));
 }
 
-// Digits that an engineer uses: the model is not better than that.
-void add_stress(Text& text, const RodStress& stress, const RodResult& rod, const Linkage& linkage,
-                const OutputUnits& units) {
-  const Body& link = *body_at(linkage, rod.link);
-  add(text, "  axial force       {:.4g} N pull, {:.4g} N push = {:.3g} of its buckling load\n",
-      stress.tension * units.force, stress.compression * units.force, stress.buckling_share());
-  add(text, "  stress            axial {:.3g} MPa, bending {:.3g} MPa{}\n", stress.axial * units.megapascal,
-      stress.bending * units.megapascal,
-      stress.height_known
-          ? ""
-          : fmt::format(" (as of a rectangle {:.3g} {} high: the scene gives no section)",
-                        2 * std::sqrt(3 * link.elastic->second_moment / link.elastic->area), units.length));
-}
-
 std::string range_text(const FourierSeries& series, Eigen::Index component, double factor) {
   const Range range = fourier::range(series, component);
   return fmt::format("{:>12.6g} .. {:<12.6g}", range.min.value * factor, range.max.value * factor);
@@ -194,7 +181,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
       add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units,
                error * static_cast<double>(rod.num_modes * rod.num_modes));
     }
-    if (rod.stress) add_stress(text, *rod.stress, rod, *model.linkage(), units);
+    if (rod.stress) add(text, "{}", stress_lines(*rod.stress, *body_at(*model.linkage(), rod.link), units));
     add(text, "{}", stress_rows(model, result, r));
     if (rod.stability) add_stability(text, model.rods[r], rod, result.speed, scene, multipliers);
     add(text, "\n");

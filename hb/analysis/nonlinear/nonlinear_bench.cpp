@@ -77,7 +77,7 @@ RodBench bench_motion(const SceneModel& model, double speed, const Settings& set
     return bench;
   }
   std::vector<ExactModel::Rod> rods;
-  for (const RodModel& rod : model.rods) rods.push_back({rod.link, rod.system.num_modes()});
+  for (const NonlinearRod& rod : found.rods) rods.push_back({rod.link, rod.q.num_components()});
   const NonlinearSystem system = exact_system(std::make_shared<const ExactModel>(*model.linkage(), rods));
   const int turns = found.turns;
   const FourierSeries start =

@@ -96,7 +96,7 @@ NonlinearCheck nonlinear_check(const SceneModel& model, double speed, const Sett
     return check;
   }
   std::vector<ExactModel::Rod> rods;
-  for (const RodModel& rod : model.rods) rods.push_back({rod.link, rod.system.num_modes()});
+  for (const NonlinearRod& rod : check.series.rods) rods.push_back({rod.link, rod.q.num_components()});
   const auto exact = std::make_shared<const ExactModel>(*model.linkage(), rods);
   const PeriodicMotion& motion = check.series.motion;
   constexpr Index start_samples = 128;

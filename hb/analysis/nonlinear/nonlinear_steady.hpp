@@ -28,6 +28,7 @@ struct NonlinearRod {
   // Estimated max |error of w| / max |w| from cutting the Ritz series: the motion once more with more modes.
   std::optional<double> modes_error;
   std::optional<RodShape> shape;  // the moment EJ kappa, kappa = w''/cos psi
+  std::optional<RodStress> stress;  // beside it, with the axial force along the bent rod
 };
 
 // Another motion of as many turns at the same speed.
@@ -46,6 +47,8 @@ struct NonlinearResult {
   double speed = 0;  // rad per unit time
   int turns = 1;
   double tolerance = 0;  // that the motion was solved to: the one asked for, at least 1e-9
+  // With modes = "auto": what modes_error was to come below, the tolerance asked for, at least 2e-8.
+  std::optional<double> cut_tolerance;
   Only computed;
   MotionSearch search = MotionSearch::none;
   std::string why;  // no motion: in words
@@ -71,9 +74,14 @@ struct NonlinearResult {
 void require_nonlinear(const SceneModel& model, int turns);
 
 // The branch followed in speed from the weakly bent motion at low speed, at its first passage of this speed; of T > 1
-// turns the first motion found on a branch that leaves it by period doubling. `model` with a fixed number of modes.
-// Throws RequestError as require_nonlinear does, and for modes = "auto".
+// turns the first motion found on a branch that leaves it by period doubling. With modes = "auto" each rod has as many
+// as the error of the cut takes. Throws RequestError as require_nonlinear does.
 [[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                                const NonlinearOptions& options = {});
+
+// Everything asked for of the motion that Newton's method finds from `near`: all rods one above the other, with the
+// modes of `model`, of options.turns turns, as NonlinearPoint::q. Others are not looked for. Throws as above.
+[[nodiscard]] NonlinearResult nonlinear_motion(const SceneModel& model, double speed, const FourierSeries& near,
+                                               const Settings& settings, const NonlinearOptions& options = {});
 
 }  // namespace hb

@@ -19,6 +19,7 @@ struct NonlinearPoint {
   double x = 0, speed = 0;  // along the axis; rad per unit time
   bool asked = false;  // at a value of the axis; else a step of the continuation
   RodPeaks max_abs;
+  FourierSeries q;  // of all rods, one above the other, where asked; harmonic k is k Omega/T: for nonlinear_motion
   double error_bound = 0;  // estimate of max |error of q| / max |q|, where x may differ by x_error
   double x_error = 0;
   std::optional<Stability> stability;  // of all rods together
