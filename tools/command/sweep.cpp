@@ -77,10 +77,9 @@ int run_sweep_command(const SweepFlags& flags) {
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : sweep_table(swept, result);
   if (branches && !out.json)
-    delivery.printed = branches_verdict(swept, *branches) + "
-                       By the linear theory;
-  the motion without linearisation stands below." + delivery.printed +
-      branches_table(swept, *branches);
+    delivery.printed = branches_verdict(swept, *branches) +
+                       "\nBy the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
+                       branches_table(swept, *branches);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
     std::vector<Figure> figures = sweep_files(swept, result, place);
