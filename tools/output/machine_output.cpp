@@ -138,6 +138,7 @@ std::string static_row(const SceneModel& model, const SpeedResult& result, std::
   const std::optional<StaticDeflection> found = at_rest(model, result, rod);
   if (!found) return "  at rest           no value: its load at rest is beyond its buckling load\n";
   const double value = found->peak.max_abs;
+  if (value == 0) return "  at rest           not bent: no load across it\n";
   return fmt::format(
       "  at rest           {:.{}g} {} at x = {:.4g} {}, crank angle {:.2f} deg: under gravity and applied "
       "forces alone\n",
@@ -165,10 +166,13 @@ std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
       shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
       range_of(frame.elastic, 2, units.moment, 6), range_of(frame.rigid, 2, units.moment, 6));
   const Drive drive = drive_of(result.forces->torque, result.speed);
+  const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / result.speed;
+  const double error = size * std::max(1e-13, result.force_errors ? result.force_errors->torque : 0.0);
+  const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what is rounding counts as 0
   text += fmt::format(
       "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
-      drive.mean * units.moment, drive.rms * units.moment, drive.mean_power * watt(scene),
-      drive.rms_power * watt(scene), drive.smallest_power * watt(scene), drive.largest_power * watt(scene));
+      mean * units.moment, drive.rms * units.moment, result.speed * mean * watt(scene), drive.rms_power * watt(scene),
+      drive.smallest_power * watt(scene), drive.largest_power * watt(scene));
   text += fmt::format("  energy that a flywheel takes up and gives back: {:.6g} J a turn",
                       drive.energy_fluctuation * units.moment);
   if (const double inertia = crank_inertia(linkage); inertia > 0) {
