@@ -50,6 +50,11 @@ std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& res
       figures.push_back(shape_figure(model, result, rod, deflection, false));
       figures.push_back(shape_figure(model, result, rod, moment, true));
     }
+    const auto place = static_cast<std::size_t>(&rod - result.rods.data());
+    if (const std::optional<CsvFile> stress = machine ? stress_csv(model, result, place) : std::nullopt) {
+      write(*stress);
+      figures.push_back(stress_figure(model, result, rod, stress->name));
+    }
     if (rod.stability) write(exponents_csv(model, result, rod));
   }
   if (result.forces) {

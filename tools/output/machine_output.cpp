@@ -256,6 +256,26 @@ void add_machine(Json& document, const SceneModel& model, const SpeedResult& res
   if (!sliders.empty()) document["sliders"] = std::move(sliders);
 }
 
+std::optional<CsvFile> stress_csv(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const RodResult& entry = result.rods[rod];
+  if (!entry.stress || !entry.stress->height_known) return std::nullopt;
+  const OutputUnits units = output_units(model.scene);
+  constexpr Index points = 101;
+  const StressEnvelope envelope = stress_envelope(*body_at(*model.linkage(), entry.link), coefficients_of(model, rod),
+                                                  result.speed, entry.steady->q, points);
+  CsvFile file;
+  file.name = file_name("stress_" + entry.name) + ".csv";
+  file.comment = {fmt::format("{}, {}: {}, axial and bending stress together along the rod, over one turn",
+                              scene_name(model.scene), speed_text(result.speed, model.scene), entry.name),
+                  "fibres right and left of the way from joint 0 to joint 1; tension positive"};
+  file.columns = {"x" + bracketed(units.length), "right smallest [MPa]", "right largest [MPa]", "left smallest [MPa]",
+                  "left largest [MPa]"};
+  file.rows.resize(points, 5);
+  file.rows << envelope.x, units.megapascal * envelope.smallest[0], units.megapascal * envelope.largest[0],
+      units.megapascal * envelope.smallest[1], units.megapascal * envelope.largest[1];
+  return file;
+}
+
 CsvFile frame_csv(const SceneModel& model, const SpeedResult& result) {
   const OutputUnits units = output_units(model.scene);
   const FrameForces frame = frame_of(model, result);
