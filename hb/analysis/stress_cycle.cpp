@@ -111,6 +111,22 @@ Place worst_place(const Stresses& stresses, double length, Index points, const M
 
 }  // namespace
 
+StressEnvelope stress_envelope(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                               Index points) {
+  Index H = std::max<Index>(q.num_harmonics(), 8);
+  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
+  constexpr Index samples_per_harmonic = 16;
+  StressEnvelope envelope;
+  envelope.x = Eigen::VectorXd::LinSpaced(points, 0, link.length);
+  const Field field = Stresses(link, rod, speed, q, fourier::fast_length(samples_per_harmonic * H)).at(envelope.x);
+  for (int s = 0; s < 2; ++s) {
+    const MatrixXd sigma = field.axial + (s == 0 ? 1 : -1) * field.bending;
+    envelope.smallest[s] = sigma.rowwise().minCoeff();
+    envelope.largest[s] = sigma.rowwise().maxCoeff();
+  }
+  return envelope;
+}
+
 StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                          const FourierSeries& more_modes, double error_bound) {
   const Elastic& elastic = *link.elastic;

@@ -24,4 +24,12 @@ struct StressCycle {
 [[nodiscard]] StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed,
                                        const FourierSeries& q, const FourierSeries& more_modes, double error_bound);
 
+// Smallest and largest stress over the turn at equally spaced places from joint 0 to joint 1, of both fibres.
+struct StressEnvelope {
+  Eigen::VectorXd x;
+  Eigen::VectorXd smallest[2], largest[2];  // side +1, side -1
+};
+[[nodiscard]] StressEnvelope stress_envelope(const Body& link, const RodCoefficients& rod, double speed,
+                                             const FourierSeries& q, Eigen::Index points);
+
 }  // namespace hb

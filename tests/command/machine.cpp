@@ -89,6 +89,19 @@ TEST_F(Machine, StressIsThatOfBothTogetherWhereASectionIsGiven) {
   EXPECT_FALSE(document(scene("slider_crank") + crank_with_flywheel)["rods"]["rod"]["stress"].contains("max_abs"));
 }
 
+TEST_F(Machine, TheStressPictureHoldsTheLargestStress) {
+  ASSERT_EQ(hb("steady " + scene("slider_crank_units") + " --rpm 3000 --modes 3 --out out").status, 0);
+  const Json stress = Json::parse(read(folder_ / "out/steady.json"))["rods"]["rod"]["stress"];
+  double largest = 0;
+  for (const char* name :
+       {"right smallest [MPa]", "right largest [MPa]", "left smallest [MPa]", "left largest [MPa]"}) {
+    const auto [low, high] = column(folder_ / "out/stress_rod.csv", name);
+    largest = std::max({largest, -low, high});
+  }
+  EXPECT_NEAR(largest, 1e-6 * stress["max_abs"].get<double>(), 0.01 * largest);
+  EXPECT_GT(fs::file_size(folder_ / "out/stress_rod.svg"), 5000u);
+}
+
 TEST_F(Machine, TableFilesAndDocumentAgree) {
   const CommandResult result = hb("steady " + scene("slider_crank") + crank_with_flywheel + " --out out");
   ASSERT_EQ(result.status, 0) << result.err;

@@ -1,5 +1,7 @@
 #include "tools/command/steady_files.hpp"
 
+#include <optional>
+
 #include "tools/output/csv_output.hpp"
 #include "tools/output/machine_output.hpp"
 #include "tools/pictures/figures.hpp"
@@ -27,6 +29,11 @@ std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& res
       write(moment);
       figures.push_back(shape_figure(model, result, rod, deflection, false));
       figures.push_back(shape_figure(model, result, rod, moment, true));
+    }
+    const auto place = static_cast<std::size_t>(&rod - result.rods.data());
+    if (const std::optional<CsvFile> stress = machine ? stress_csv(model, result, place) : std::nullopt) {
+      write(*stress);
+      figures.push_back(stress_figure(model, result, rod, stress->name));
     }
     if (rod.stability) write(exponents_csv(model, result, rod));
   }

@@ -138,6 +138,7 @@ std::string static_row(const SceneModel& model, const SpeedResult& result, std::
   const std::optional<StaticDeflection> found = at_rest(model, result, rod);
   if (!found) return "  at rest           no value: its load at rest is beyond its buckling load\n";
   const double value = found->peak.max_abs;
+  if (value == 0) return "  at rest           not bent: no load across it\n";
   return fmt::format(
       "  at rest           {:.{}g} {} at x = {:.4g} {}, crank angle {:.2f} deg: under gravity and applied "
       "forces alone\n",
@@ -165,10 +166,13 @@ std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
       shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
       range_of(frame.elastic, 2, units.moment, 6), range_of(frame.rigid, 2, units.moment, 6));
   const Drive drive = drive_of(result.forces->torque, result.speed);
+  const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / result.speed;
+  const double error = size * std::max(1e-13, result.force_errors ? result.force_errors->torque : 0.0);
+  const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what is rounding counts as 0
   text += fmt::format(
       "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
-      drive.mean * units.moment, drive.rms * units.moment, drive.mean_power * watt(scene),
-      drive.rms_power * watt(scene), drive.smallest_power * watt(scene), drive.largest_power * watt(scene));
+      mean * units.moment, drive.rms * units.moment, result.speed * mean * watt(scene), drive.rms_power * watt(scene),
+      drive.smallest_power * watt(scene), drive.largest_power * watt(scene));
   text += fmt::format("  energy that a flywheel takes up and gives back: {:.6g} J a turn",
                       drive.energy_fluctuation * units.moment);
   if (const double inertia = crank_inertia(linkage); inertia > 0) {
@@ -250,6 +254,26 @@ void add_machine(Json& document, const SceneModel& model, const SpeedResult& res
                             {"velocity", range_json(slider.velocity(), 0)},
                             {"acceleration", range_json(slider.acceleration(), 0)}};
   if (!sliders.empty()) document["sliders"] = std::move(sliders);
+}
+
+std::optional<CsvFile> stress_csv(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const RodResult& entry = result.rods[rod];
+  if (!entry.stress || !entry.stress->height_known) return std::nullopt;
+  const OutputUnits units = output_units(model.scene);
+  constexpr Index points = 101;
+  const StressEnvelope envelope = stress_envelope(*body_at(*model.linkage(), entry.link), coefficients_of(model, rod),
+                                                  result.speed, entry.steady->q, points);
+  CsvFile file;
+  file.name = file_name("stress_" + entry.name) + ".csv";
+  file.comment = {fmt::format("{}, {}: {}, axial and bending stress together along the rod, over one turn",
+                              scene_name(model.scene), speed_text(result.speed, model.scene), entry.name),
+                  "fibres right and left of the way from joint 0 to joint 1; tension positive"};
+  file.columns = {"x" + bracketed(units.length), "right smallest [MPa]", "right largest [MPa]", "left smallest [MPa]",
+                  "left largest [MPa]"};
+  file.rows.resize(points, 5);
+  file.rows << envelope.x, units.megapascal * envelope.smallest[0], units.megapascal * envelope.largest[0],
+      units.megapascal * envelope.smallest[1], units.megapascal * envelope.largest[1];
+  return file;
 }
 
 CsvFile frame_csv(const SceneModel& model, const SpeedResult& result) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ void add_machine(nlohmann::ordered_json& document, const SceneModel& model, cons
 // The value of static_deflection of one rod: null where it would buckle.
 [[nodiscard]] nlohmann::ordered_json static_json(const SceneModel& model, const SpeedResult& result, std::size_t rod);
 
+// x, smallest and largest stress over the turn of the right and the left fibre; empty without a section.
+[[nodiscard]] std::optional<CsvFile> stress_csv(const SceneModel& model, const SpeedResult& result, std::size_t rod);
 // Crank angle, force x, y and moment on the frame, elastic and rigid.
 [[nodiscard]] CsvFile frame_csv(const SceneModel& model, const SpeedResult& result);
 // Crank angle, position, velocity and acceleration; one file for each slider.

@@ -145,4 +145,19 @@ Figure shape_figure(const SceneModel& model, const SpeedResult& result, const Ro
   return figure;
 }
 
+Figure stress_figure(const SceneModel& model, const SpeedResult& result, const RodResult& rod, const std::string& csv) {
+  Figure figure;
+  figure.name = figure_name("stress", rod.name);
+  figure.commands = fmt::format(
+      "set title {}\nset xlabel 'x from joint 0 to joint 1 [{}]'\nset ylabel 'stress [MPa]'\n"
+      "set key outside right center Left reverse samplen 2\n"
+      "plot '{}' using 1:2:3 with filledcurves fillcolor '#cfe3f2' notitle, '' using 1:2 with lines lt 1 title 'right "
+      "fibre', '' using 1:3 with lines lt 1 notitle, '' using 1:4 with lines lt 2 dashtype 2 title 'left fibre', '' "
+      "using 1:5 with lines lt 2 dashtype 2 notitle\n"
+      "unset title\nunset xlabel\nunset ylabel\nset key default\n",
+      rod_title(model, result, rod, "axial and bending stress together, smallest and largest over the turn"),
+      output_units(model.scene).length, csv);
+  return figure;
+}
+
 }  // namespace hb::tools

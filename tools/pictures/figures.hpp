@@ -19,6 +19,9 @@ namespace hb::tools {
 // Deflection or bending moment along the rod at several crank angles, with the envelope over the turn.
 [[nodiscard]] Figure shape_figure(const SceneModel& model, const SpeedResult& result, const RodResult& rod,
                                   const CsvFile& csv, bool moment);
+// Stress of both fibres along the rod, between smallest and largest over the turn.
+[[nodiscard]] Figure stress_figure(const SceneModel& model, const SpeedResult& result, const RodResult& rod,
+                                   const std::string& csv);
 // Elastic beside rigid: one figure per dyad, one for the crank's pivot.
 [[nodiscard]] std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& result,
                                                 const std::string& csv);
