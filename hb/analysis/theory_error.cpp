@@ -19,10 +19,9 @@ using Eigen::MatrixXd;
 constexpr double negligible = 1e-6;
 // Asked of the correction.
 constexpr double rough = 1e-5;
-// Where the correction times the amplification of the left-out load stays below the first, the second correction is
-// smaller than a twentieth of the first and not looked at (by random linkages); where it is larger than the other part
-// of it, one correction does not show the change.
-constexpr double harmless = 4e-3, most_second = 0.05;
+// Below the first, of the correction times the amplification of the left-out load, one correction shows the change to
+// within a tenth (by random linkages); so it does where the second one has the same size to within the other.
+constexpr double harmless = 0.01, most_second = 0.07;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
   std::vector<FourierSeries> q;
@@ -186,13 +185,15 @@ void repeat(const ExactModel& model, double speed, std::span<const LinearRod> ro
     }
     Corrections next = corrections(model, speed, rods, angles, moved);
     if (next.breakdown || next.singular) return;
-    double change = 0;
+    double change = 0, growth = 0;
     for (std::size_t r = 0; r < q.size(); ++r) {
       const Index H = std::max(now[r].num_harmonics(), next.dq[r].num_harmonics());
       const FourierSeries difference(fourier::resized(next.dq[r], H).c - fourier::resized(now[r], H).c);
-      change = std::max(change, ratio(largest_value(difference), largest_value(next.dq[r])));
+      const double size = largest_value(next.dq[r]);
+      change = std::max(change, ratio(largest_value(difference), size));
+      growth = std::max(growth, ratio(std::abs(size - largest_value(now[r])), size));
     }
-    if (step == 0 && change <= most_second) return;
+    if (step == 0 && growth <= most_second) return;
     now = std::move(next.dq);
     if (!(change <= settled)) continue;
     dq = std::move(now);

@@ -11,7 +11,8 @@ trap 'rm -rf "$work"' EXIT
 # Six-link: indicator every 10 rpm, true change where a motion without linearisation was found.
 "$hb" sweep ../six_link/scene.toml --rpm 200:2400:10 --modes 1 --only steady --no-plots --out "$work/sweep" >/dev/null
 for rod in AB CD; do grep -v "^#" "$work/sweep/sweep_$rod.csv" >"indicator_$rod.csv"; done
-for rpm in 300 600 900 1000 1100 1200 1300 1400 1450 1480 1500 1550; do
+# Beyond 1718 rpm the branch from low speed has turned back: no motion of one turn is known there.
+for rpm in 200 250 300 400 500 600 700 800 900 1000 1100 1200 1300 1400 1450 1480 1500 1550 1600 1650 1700; do
   for theory in linear nonlinear; do
     "$hb" steady ../six_link/scene.toml --rpm $rpm --modes 1 --only steady --theory $theory --json \
       >"$work/${theory}_$rpm.json"

@@ -108,7 +108,7 @@ TEST(NonlinearFromCpp, EverythingIsKnownOfThePointsOfASweepThatWereAskedFor) {
   SweepRequest request;
   request.modes = 1;
   request.only = motion_alone;
-  request.x = along("rpm", 1490, 1500, 2);
+  request.x = along("rpm", 1480, 1500, 2);
   const NonlinearAlong along = nonlinear_sweep(scene, request);
   ASSERT_TRUE(along.branches.followed.back());
   const BranchPlace place = *along.branches.followed.back();

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <bit>
 
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
@@ -39,7 +40,12 @@ void require_linear(const std::string& theory, const std::string& why_not) {
 
 int turns_of(const TheoryFlags& flags) {
   if (flags.period.empty()) return 1;
-  return integer_flag("--period", flags.period, 1, 64, "a whole number of turns from 1 to 64");
+  constexpr const char* allowed =
+      "1, 2, 4, 8, 16, 32 or 64: motions of more than one turn are found by period doublings";
+  const int turns = integer_flag("--period", flags.period, 1, 64, allowed);
+  if (!std::has_single_bit(static_cast<unsigned>(turns)))
+    throw UsageError(fmt::format("--period: found {}, allowed: {}", flags.period, allowed));
+  return turns;
 }
 
 std::function<bool()> stop_of() { return time_is_up; }
