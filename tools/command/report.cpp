@@ -13,6 +13,7 @@
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/shared_work.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 struct ReportFlags : CommonFlags {
   std::string x, y;
+  TheoryFlags theory;
 };
 
 // The map asked for beside the sweep, whose speeds are not its own.
@@ -44,16 +46,24 @@ int run_report(const ReportFlags& flags) {
   AxisAndSpeed asked = axis_of(flags, "", scene);
   const SharedWork geometry(out.threads, nullptr, {}, time_is_up);
   std::optional<AskedMap> map = asked_map(flags, input, geometry);
-  OutputFile file(*out.folder);
-
   const SweepScene sweep_scene(input.source, set, options, std::move(asked.axis), asked.speed, asked.rpm);
+  const bool nonlinear = is_nonlinear(flags.theory);
+  NonlinearSweepOptions branches_asked;
+  branches_asked.turns = turns_of(flags.theory);
+  branches_asked.stop = stop_of();
+  if (nonlinear) require_nonlinear(sweep_scene, branches_asked);
+  OutputFile file(*out.folder, "report");
+
   // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
   std::optional<InterruptGuard> guard(std::in_place, false);
   SharedWork work(out.threads, nullptr, {}, time_is_up);
   const SweepResult result = run_sweep(sweep_scene, work);
+  std::optional<NonlinearSweep> branches;
+  if (nonlinear) branches = nonlinear_sweep(sweep_scene, branches_asked);
+  const NonlinearSweep* along = branches ? &*branches : nullptr;
   ReportData data(scene);
-  data.add_sweep(sweep_scene, result, places_along(sweep_scene, work));
-  bool reached = result.shortfalls.empty();
+  data.add_sweep(sweep_scene, result, places_along(sweep_scene, work, along), along);
+  bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   if (map) {
     map->compute(work);
     reached = reached && map->document().complete;
@@ -64,10 +74,12 @@ int run_report(const ReportFlags& flags) {
   std::vector<PageText::Picture> still;
   if (out.plots) {
     const std::optional<MapDocument> document = map ? std::optional(map->document()) : std::nullopt;
-    still = report_pictures(sweep_scene, result, document ? &*document : nullptr);
+    still = report_pictures(sweep_scene, result, along, document ? &*document : nullptr);
   }
   file.commit(data.page(page_text(provenance(flags.line, input), std::move(still))));
-  for (const std::string& sentence : result.shortfalls) fmt::print(stderr, "NOT REACHED: {}\n", sentence);
+  std::vector<std::string> shortfalls = result.shortfalls;
+  if (branches) shortfalls.insert(shortfalls.end(), branches->shortfalls.begin(), branches->shortfalls.end());
+  for (const std::string& sentence : shortfalls) fmt::print(stderr, "NOT REACHED: {}\n", sentence);
   return reached ? exit_ok : exit_not_reached;
 }
 
@@ -81,6 +93,7 @@ void add_report_command(CLI::App& app, int& status) {
   command->get_option("--out")->description("the page's file")->type_name("FILE");
   command->remove_option(command->get_option("--json"));
   command->remove_option(command->get_option("--stats"));
+  add_theory_flags(*command, flags->theory);
   command->get_option("--no-plots")->description("no pictures for readers without JavaScript");
   command->add_option("--x", flags->x, "a map too: its first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

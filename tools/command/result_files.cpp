@@ -12,6 +12,44 @@
 
 namespace hb::tools {
 
+std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, OutputFolder& folder) {
+  std::vector<Figure> figures;
+  const auto write = [&](const CsvFile& file) { folder.write(file.name, csv_text(file)); };
+  for (const RodResult& rod : result.rods) {
+    if (!rod.reported) continue;
+    const bool solved = rod.steady && rod.steady->status != SteadyStatus::singular;
+    if (solved && result.computed.steady) {
+      const CsvFile response = response_csv(model, result, rod), spectrum = fourier_csv(model, result, rod);
+      write(response);
+      write(spectrum);
+      figures.push_back(response_figure(model, result, rod, response.name));
+      figures.push_back(phase_figure(model, result, rod, response.name));
+      figures.push_back(spectrum_figure(model, result, rod, spectrum.name));
+    }
+    if (rod.shape) {
+      const CsvFile deflection = deflection_csv(model, result, rod), moment = bending_moment_csv(model, result, rod);
+      write(deflection);
+      write(moment);
+      figures.push_back(shape_figure(model, result, rod, deflection, false));
+      figures.push_back(shape_figure(model, result, rod, moment, true));
+    }
+    if (rod.stability) write(exponents_csv(model, result, rod));
+  }
+  if (result.forces) {
+    const CsvFile forces = forces_csv(model, result), torque = torque_csv(model, result);
+    write(forces);
+    write(torque);
+    for (Figure& figure : force_figures(model, result, forces.name)) figures.push_back(std::move(figure));
+    figures.push_back(torque_figure(model, result, torque.name));
+  }
+  if (model.linkage()) {
+    const CsvFile mechanism = mechanism_csv(model.scene);
+    write(mechanism);
+    figures.push_back(mechanism_figure(model.scene, mechanism));
+  }
+  return figures;
+}
+
 std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder) {
   std::vector<Figure> figures;
   const Only& only = result.computed;
@@ -82,9 +120,11 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
 }
 
 std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
-                                               const MapDocument* map) {
+                                               const NonlinearSweep* branches, const MapDocument* map) {
   return page_pictures([&](OutputFolder& folder) {
     std::vector<Figure> figures = sweep_files(scene, result, folder);
+    if (branches != nullptr)
+      for (Figure& figure : branch_files(scene, result, *branches, folder)) figures.push_back(std::move(figure));
     if (scene.first().linkage() != nullptr) {
       const CsvFile mechanism = mechanism_csv(scene.scene());
       folder.write(mechanism.name, csv_text(mechanism));

@@ -1,4 +1,4 @@
-// The CSV files of a sweep and of a map, and what is drawn of them.
+// The CSV files of one speed, of a sweep and of a map, and what is drawn of them.
 #pragma once
 
 #include <vector>
@@ -13,14 +13,16 @@
 
 namespace hb::tools {
 
+[[nodiscard]] std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result,
+                                               OutputFolder& folder);
 [[nodiscard]] std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder);
 // What `linear` has beside it without linearisation.
 [[nodiscard]] std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear,
                                                const NonlinearSweep& sweep, OutputFolder& folder);
 [[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
 
-// Pictures of a report for readers without script; `map` may be null.
+// Pictures of a report for readers without script; `branches` and `map` may be null.
 [[nodiscard]] std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
-                                                             const MapDocument* map);
+                                                             const NonlinearSweep* branches, const MapDocument* map);
 
 }  // namespace hb::tools

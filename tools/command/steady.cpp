@@ -10,14 +10,13 @@
 #include "tools/command/command.hpp"
 #include "tools/command/common_flags.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/theory_flags.hpp"
-#include "tools/output/csv_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/table_output.hpp"
-#include "tools/pictures/figures.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
@@ -25,44 +24,6 @@
 
 namespace hb::tools {
 namespace {
-
-std::vector<Figure> write_tables(const SceneModel& model, const SpeedResult& result, OutputFolder& folder) {
-  std::vector<Figure> figures;
-  const auto write = [&](const CsvFile& file) { folder.write(file.name, csv_text(file)); };
-  for (const RodResult& rod : result.rods) {
-    if (!rod.reported) continue;
-    const bool solved = rod.steady && rod.steady->status != SteadyStatus::singular;
-    if (solved && result.computed.steady) {
-      const CsvFile response = response_csv(model, result, rod), spectrum = fourier_csv(model, result, rod);
-      write(response);
-      write(spectrum);
-      figures.push_back(response_figure(model, result, rod, response.name));
-      figures.push_back(phase_figure(model, result, rod, response.name));
-      figures.push_back(spectrum_figure(model, result, rod, spectrum.name));
-    }
-    if (rod.shape) {
-      const CsvFile deflection = deflection_csv(model, result, rod), moment = bending_moment_csv(model, result, rod);
-      write(deflection);
-      write(moment);
-      figures.push_back(shape_figure(model, result, rod, deflection, false));
-      figures.push_back(shape_figure(model, result, rod, moment, true));
-    }
-    if (rod.stability) write(exponents_csv(model, result, rod));
-  }
-  if (result.forces) {
-    const CsvFile forces = forces_csv(model, result), torque = torque_csv(model, result);
-    write(forces);
-    write(torque);
-    for (Figure& figure : force_figures(model, result, forces.name)) figures.push_back(std::move(figure));
-    figures.push_back(torque_figure(model, result, torque.name));
-  }
-  if (model.linkage()) {
-    const CsvFile mechanism = mechanism_csv(model.scene);
-    write(mechanism);
-    figures.push_back(mechanism_figure(model.scene, mechanism));
-  }
-  return figures;
-}
 
 struct SteadyFlags : CommonFlags {
   TheoryFlags theory;
@@ -81,12 +42,14 @@ int run_nonlinear(const SteadyFlags& flags) {
   asked.turns = turns_of(flags.theory);
   asked.stop = stop_of();
   std::optional<OutputFolder> folder;
-  if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
+  const Provenance origin = provenance(flags.line, input);
+  if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
   // The motion is that of all rods, whatever is shown of it.
   Settings all = options;
   all.only.steady = true;
-  const SceneModel model = make_model(std::move(scene), all, false);
+  const auto shared_model = std::make_shared<const SceneModel>(make_model(std::move(scene), all, false));
+  const SceneModel& model = *shared_model;
   NonlinearResult result = nonlinear_steady(model, speed, options, asked);
   say_time_limit(flags.time_limit, asked.stop, result.shortfalls);
   const nlohmann::ordered_json document =
@@ -95,8 +58,14 @@ int run_nonlinear(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : nonlinear_table(model, result);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return result.turns == 1 ? write_tables(model, as_speed_result(result), place) : std::vector<Figure>();
+    return result.turns == 1 ? steady_files(model, as_speed_result(result), place) : std::vector<Figure>();
   };
+  if (out.html)
+    delivery.page = [&](std::vector<PageText::Picture> pictures) {
+      ReportData data(model.scene);
+      data.add_speed(nonlinear_place(shared_model, result, options), options);
+      return data.page(page_text(origin, std::move(pictures)));
+    };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
                              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
@@ -123,12 +92,12 @@ int run_steady(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : steady_table(model, result, options, flags.multipliers);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return write_tables(model, result, place);
+    return steady_files(model, result, place);
   };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       ReportData data(model.scene);
-      data.add_speed({shared_model, result, ""}, options);
+      data.add_speed({shared_model, result, "", {}}, options);
       return data.page(page_text(origin, std::move(pictures)));
     };
   const int status =

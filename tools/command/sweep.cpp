@@ -89,7 +89,8 @@ int run_sweep_command(const SweepFlags& flags) {
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       ReportData data(sweep_scene.scene());
-      data.add_sweep(sweep_scene, result, places_along(sweep_scene, SharedWork(out.threads)));
+      const NonlinearSweep* along = branches ? &*branches : nullptr;
+      data.add_sweep(sweep_scene, result, places_along(sweep_scene, SharedWork(out.threads), along), along);
       return data.page(page_text(origin, std::move(pictures)));
     };
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());

@@ -354,14 +354,10 @@ void bend(RodPeak& moment, const FourierSeries& q, double l) {
   moment.max_abs /= std::sqrt(1 - slope * slope);
 }
 
-void add_rods(const SceneModel& model, const ExactModel& exact, Search& search, NonlinearResult& result) {
+// `finer`: by rod with more modes, where it is known.
+void add_rods(const SceneModel& model, const ExactModel& exact, const std::optional<std::vector<FourierSeries>>& finer,
+              NonlinearResult& result) {
   const PeriodicMotion& motion = result.motion;
-  std::optional<std::vector<FourierSeries>> finer;
-  if (result.computed.steady || result.computed.shape) {
-    Stopwatch watch;
-    finer = search.with_more_modes();
-    result.stages.push_back({"motion with more modes", watch.seconds(), finer ? "" : "none found"});
-  }
   // With modes beyond I following their load as in the linear theory; damping of that tail counts harmonics of Omega/T.
   const double base = result.speed / result.turns;
   for (std::size_t r = 0; r < model.rods.size(); ++r) {
@@ -495,7 +491,13 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
   if (!(result.motion.error_bound <= wanted))
     result.shortfalls.push_back(
         fmt::format("the motion's error {:.1e} exceeds {:.1e} of the largest |q|", result.motion.error_bound, wanted));
-  add_rods(model, search.exact(), search, result);
+  std::optional<std::vector<FourierSeries>> finer;
+  if (result.computed.steady || result.computed.shape) {
+    Stopwatch finer_watch;
+    finer = search.with_more_modes();
+    result.stages.push_back({"motion with more modes", finer_watch.seconds(), finer ? "" : "none found"});
+  }
+  add_rods(model, search.exact(), finer, result);
   if (settings.only.stability) {
     Stopwatch stability_watch;
     const StabilityOptions exponents{.tolerance = exponent_share * result.tolerance};
@@ -516,6 +518,31 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
     result.stages.push_back({"joint forces", forces_watch.seconds(), ""});
   }
   look_for_others();
+  return result;
+}
+
+NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
+                                 const std::optional<Stability>& stability, double tolerance,
+                                 const Settings& settings) {
+  NonlinearResult result;
+  result.speed = motion.speed;
+  result.turns = motion.turns;
+  result.computed = settings.only;
+  result.tolerance = tolerance;
+  result.search = MotionSearch::found;
+  result.motion = motion;
+  if (!(motion.error_bound <= tolerance))
+    result.shortfalls.push_back(
+        fmt::format("the motion's error {:.1e} exceeds {:.1e} of the largest |q|", motion.error_bound, tolerance));
+  std::vector<ExactModel::Rod> modes;
+  for (const RodModel& rod : model.rods) modes.push_back({rod.link, rod.system.num_modes()});
+  const ExactModel exact(*model.linkage(), modes);
+  add_rods(model, exact, std::nullopt, result);
+  if (settings.only.stability) result.stability = stability;
+  if (settings.only.reactions) {
+    result.forces = forces_of_motion(exact, motion.speed, motion.turns, motion.q);
+    result.force_errors = errors_of(exact, result);
+  }
   return result;
 }
 

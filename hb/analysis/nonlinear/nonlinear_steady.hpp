@@ -76,4 +76,10 @@ void require_nonlinear(const SceneModel& model, int turns);
 [[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                                const NonlinearOptions& options = {});
 
+// A motion that is known already, solved to `tolerance` at its speed, as such an answer: shape, forces and their errors
+// of this motion alone; modes_error and other motions, which take further motions, are left out.
+[[nodiscard]] NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
+                                               const std::optional<Stability>& stability, double tolerance,
+                                               const Settings& settings);
+
 }  // namespace hb

@@ -202,8 +202,11 @@ class Sweeper {
   }
 
   NonlinearPoint point_of(const BranchPoint& point) const {
-    return {point.motion.parameter,   point.motion.speed,           point.stop,     peaks(point.motion.q),
-            point.motion.error_bound, point.motion.parameter_error, point.stability};
+    const PeriodicMotion& motion = point.motion;
+    return {motion.parameter,   motion.speed,
+            point.stop,         peaks(motion.q),
+            motion.error_bound, motion.parameter_error,
+            point.stability,    point.stop ? std::make_shared<const PeriodicMotion>(motion) : nullptr};
   }
 
   // `begin`: the bifurcation at which it leaves another branch.

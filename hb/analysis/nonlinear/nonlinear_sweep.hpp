@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct NonlinearPoint {
   double error_bound = 0;  // estimate of max |error of q| / max |q|, where x may differ by x_error
   double x_error = 0;
   std::optional<Stability> stability;  // of all rods together
+  std::shared_ptr<const PeriodicMotion> motion = nullptr;  // where asked
 };
 
 struct NonlinearBranch {
