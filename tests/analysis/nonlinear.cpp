@@ -115,7 +115,8 @@ TEST(NonlinearFromCpp, EverythingIsKnownOfThePointsOfASweepThatWereAskedFor) {
   const NonlinearPoint& point = along.branches.branches[place.branch].points[place.point];
   const Settings settings = settings_of(at(1500, 1, {}), scene);
   const SceneModel model = make_model(scene, settings, false);
-  const NonlinearResult all = nonlinear_motion(model, point.speed, point.q, settings);
+  const NonlinearResult all =
+      nonlinear_answer(model, *point.motion, point.stability, along.branches.tolerance, settings);
   ASSERT_EQ(all.search, MotionSearch::found);
   EXPECT_NEAR(all.rods[0].max_abs[0].value, 15.867511, 1e-5 * 15.87);
   EXPECT_TRUE(all.stability && all.forces && all.rods[0].shape && all.rods[0].stress);

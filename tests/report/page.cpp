@@ -81,7 +81,7 @@ TEST(ReportPage, NoTextLeavesItsPlace) {
   PageText text;
   text.title = "</title><script>x</script>{{data}}{{{script}}}";
   text.rods = {{"<b>&\"'{{#rods}}", "stable"}};
-  text.scene_source = "</pre>";
+  text.origin.scene_text = "</pre>";
   text.num_points = 2;
   const std::string page = report_page(text, {{"words", "</script><!--"}});
   EXPECT_NE(page.find("<title>&lt;/title&gt;&lt;script&gt;x&lt;/script&gt;{{data}}{{{script}}}</title>"), page.npos);

@@ -1,13 +1,17 @@
 """Reports in a real browser: python3 report_page.py HB, where HB is the built command."""
 
+import fcntl
+import html
 import html.parser
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 import browser
 import scenes
@@ -83,6 +87,12 @@ class ReportPages(unittest.TestCase):
     def six_link(self):
         return self.page("six_link", scenes.FOLDER / "six_link.toml", "--rpm", "300:3000:300", "--x", "rpm=300:3000:7",
                          "--y", "*.J=30:90:4")
+
+    # Through the folds of the six-link mechanism: unstable between them, at large deflections.
+    NONLINEAR = ("--rpm", "1440:1500:20", "--modes", "1", "--theory", "nonlinear")
+
+    def nonlinear(self):
+        return self.page("nonlinear", scenes.FOLDER / "six_link.toml", *self.NONLINEAR)
 
     def mathieu(self):
         return self.page("mathieu", scenes.FOLDER / "mathieu.toml", "--omega", "0.5:2.5:0.1")
@@ -238,6 +248,64 @@ class ReportPages(unittest.TestCase):
         self.browser.driver.execute_async_script("setTimeout(arguments[0], 200)")
         self.assertEqual(self.browser.run("return state.angle"), stopped)
 
+    def test_page_without_linearisation_shows_the_branch_of_the_sweep_at_every_speed(self):
+        sweep = answer("sweep", scenes.FOLDER / "six_link.toml", *self.NONLINEAR)
+        self.browser.open(self.nonlinear(), "#play=0")
+        system = sweep["system"]
+        for index, rpm in enumerate(sweep["rpm"]):
+            self.browser.choose(index)
+            branch = sweep["branches"][system["branch"][index]]
+            for rod in ("AB", "CD"):
+                self.assertEqual(self.browser.text(f"verdict-{rod}"), sweep["verdict"][index])
+                shown = self.browser.run("return document.querySelector(`#numbers [data-path='rods.${arguments[0]}.q.max_abs.0']`).dataset.value", rod)
+                self.assertEqual(float(shown), branch["rods"][rod]["max_abs"][system["point"][index]][0], rpm)
+            growth = self.browser.run("return document.querySelector(`#numbers [data-path='system.growth_rate']`).dataset.value")
+            self.assertEqual(float(growth), system["growth_rate"][index])
+        self.assert_quiet()
+
+    def test_page_without_linearisation_has_branches_folds_and_jumps(self):
+        sweep = answer("sweep", scenes.FOLDER / "six_link.toml", *self.NONLINEAR)
+        self.browser.open(self.nonlinear(), "#play=0")
+        shown = self.browser.run("return peakBranches('AB', 0).map((b) => [b.verdicts, [...b.x]])")
+        self.assertEqual([verdicts for verdicts, _ in shown], [b["verdict"] for b in sweep["branches"]])
+        self.assertEqual([x for _, x in shown], [b["x"] for b in sweep["branches"]])
+        self.assertEqual(self.browser.run("return nonlinear.folds.map((f) => f.x)"), sweep["folds"])
+        tables = self.browser.text("tables-views")
+        for fold in sweep["folds"]:
+            self.assertIn(f"{fold:.2f}", tables)
+        self.assertEqual(tables.count("upward") + tables.count("downward"), len(sweep["jumps"]))
+        self.assert_quiet()
+
+    def test_bent_mechanism_keeps_its_links_together(self):
+        self.browser.open(self.nonlinear(), "#play=0")
+        self.browser.choose(3)
+        # Joint 1 of the bent rod, at the end of its chord, is joint 0 of the link behind it, and lies before the straight one.
+        gaps = self.browser.run("""
+            return [0, 1, 2, 3, 4, 5].map((angle) => {
+              const poses = posesAt(motionHere(), angle), rod = poses.find((p) => p.body.name === 'AB');
+              const others = poses.filter((p) => p !== rod).flatMap((p) => p.joints);
+              return [Math.min(...others.map((z) => Math.hypot(z[0] - rod.joints[1][0], z[1] - rod.joints[1][1]))), rod.chord[40] / rod.body.length];
+            })""")
+        for gap, share in gaps:
+            self.assertLess(gap, 1e-3)  # mm, of a rod of 250
+            self.assertLess(share, 1)
+        self.assertLess(min(share for _, share in gaps), 0.999)
+
+    def test_html_of_steady_without_linearisation_has_its_numbers(self):
+        arguments = ("steady", scenes.FOLDER / "six_link.toml", "--rpm", 1500, "--modes", 1, "--theory", "nonlinear")
+        done = run(*arguments, "--out", self.folder / "steady", "--html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        steady = answer(*arguments)
+        self.browser.open(self.folder / "steady" / "report.html", "#play=0")
+        self.browser.settled()
+        self.assertEqual(self.browser.text("rpm-value"), "1500.0")
+        self.assertEqual(self.browser.text("verdict-AB"), steady["verdict"])
+        shown = dict(self.browser.run("return [...document.querySelectorAll('#numbers [data-value]')].map((c) => [c.dataset.path, c.dataset.value])"))
+        for path in ("system.growth_rate", "rods.AB.q.max_abs.0", "rods.CD.deflection.max_abs", "joints.AB.0.x.max", "torque.min"):
+            self.assertEqual(float(shown[path]), at(steady, path), path)
+        self.assertIn("Another motion", self.browser.text("numbers"))
+        self.assert_quiet()
+
     def test_titles_and_names_made_of_markup_do_no_harm(self):
         scene = self.written("hostile.toml", scenes.hostile())
         page = self.page("hostile", scene, "--rpm", "100:300:100")
@@ -326,7 +394,43 @@ class ReportPages(unittest.TestCase):
         self.assertIn("AB stable", self.browser.element("speed").get_attribute("aria-valuetext"))
 
 
+def document_of(page):
+    """The data that a page holds."""
+    return json.loads(re.search(r'<script type="application/json" id="report-data">(.*?)</script>', page.read_text(), re.S).group(1))
+
+
 class ReportCommand(unittest.TestCase):
+    def test_one_run_at_a_time_writes_a_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "report.html"
+            lock = pathlib.Path(f"{path}.lock")
+            lock.write_text("hb\nreport\n4711\n2000-01-01 00:00:00\n\n")
+            with lock.open() as held:
+                fcntl.flock(held, fcntl.LOCK_EX)
+                done = run("report", scenes.FOLDER / "four_bar.toml", "--rpm", "100:200:100", "--out", path)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("is in use by report, process 4711", done.stderr)
+            self.assertFalse(path.exists())
+            # Of a run that was killed: its lock is taken, the file that it had begun is removed.
+            begun = pathlib.Path(folder) / ".hb-report.html-abcdef"
+            begun.write_text("half a page")
+            lock.write_text(f"hb\nreport\n4711\n2000-01-01 00:00:00\n{begun}\n")
+            done = run("report", scenes.FOLDER / "four_bar.toml", "--rpm", "100:200:100", "--no-plots", "--out", path)
+            self.assertIn(done.returncode, (0, 3), done.stderr)
+            self.assertIn("its lock", done.stderr)
+            self.assertEqual([p.name for p in pathlib.Path(folder).iterdir()], ["report.html"])
+
+    def test_page_says_where_it_comes_from(self):
+        scene = scenes.FOLDER / "four_bar.toml"
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "report.html"
+            run("report", scene, "--rpm", "100:200:100", "--no-plots", "--threads", 2, "--out", path)
+            origin = document_of(path)["provenance"]
+            self.assertEqual(origin["command"], f"hb report {scene} --rpm 100:200:100")
+            self.assertEqual(origin["scene"], {"file": str(scene), "crc32": f"{zlib.crc32(scene.read_bytes()):08x}"})
+            self.assertTrue(origin["program"].startswith("hb "))
+            self.assertIn(html.escape(origin["command"]), path.read_text())
+
     def test_same_input_gives_the_same_bytes_with_any_number_of_threads(self):
         with tempfile.TemporaryDirectory() as folder:
             pages = []
@@ -341,7 +445,8 @@ class ReportCommand(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "report.html"
             scene = scenes.FOLDER / "four_bar.toml"
-            for arguments in (["--rpm", "300"], ["--rpm", "300:100:10"], ["--rpm", "100:300:100", "--x", "rpm=100:300:5"]):
+            for arguments in (["--rpm", "300"], ["--rpm", "300:100:10"], ["--rpm", "100:300:100", "--x", "rpm=100:300:5"],
+                              ["--rpm", "100:300:100", "--theory", "exact"], ["--rpm", "100:300:100", "--period", "2"]):
                 done = run("report", scene, *arguments, "--out", path)
                 self.assertEqual(done.returncode, 2, arguments)
                 self.assertIn("allowed", done.stderr)

@@ -14,6 +14,7 @@
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
+#include "tools/command/theory_flags.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/shared_work.hpp"
@@ -23,6 +24,7 @@ namespace {
 
 struct ReportFlags : CommonFlags {
   std::string x, y;
+  TheoryFlags theory;
 };
 
 // The map asked for beside the sweep, whose speeds are not its own.
@@ -48,16 +50,24 @@ int run_report(const ReportFlags& flags) {
   const SweepRequest request = asked_sweep(flags, "", scene);
   const SharedWork geometry(out.threads, nullptr, {}, time_is_up);
   const std::optional<MapTask> task = asked_map(flags, input, geometry);
-  OutputFile file(*out.folder);
-
   const std::shared_ptr<const SweepScene> along = sweep_scene(SceneFamily(input.source, set), request);
+  NonlinearSweepOptions branches_asked;
+  branches_asked.turns = turns_of(flags.theory);
+  branches_asked.stop = stop_of();
+  const bool nonlinear = is_nonlinear(flags.theory);
+  if (nonlinear) require_nonlinear(*along, branches_asked);
+  OutputFile file(*out.folder, "report");
+
   // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
   std::optional<InterruptGuard> guard(std::in_place, false);
   SharedWork work(out.threads, nullptr, {}, time_is_up);
   const SweepResult result = run_sweep(*along, work);
+  std::optional<NonlinearSweep> found;
+  if (nonlinear) found = nonlinear_sweep(*along, branches_asked);
+  const NonlinearSweep* branches = found ? &*found : nullptr;
   ReportData data(scene);
-  data.add_sweep(*along, result, places_along(*along, work));
-  bool reached = result.shortfalls.empty();
+  data.add_sweep(*along, result, places_along(*along, work, branches), branches);
+  bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   std::optional<Map> map;
   if (task) {
     map = task->compute(work);
@@ -69,10 +79,12 @@ int run_report(const ReportFlags& flags) {
   std::vector<PageText::Picture> still;
   if (out.plots) {
     const std::optional<MapDocument> document = map ? std::optional(document_of(*map)) : std::nullopt;
-    still = report_pictures(*along, result, document ? &*document : nullptr);
+    still = report_pictures(*along, result, branches, document ? &*document : nullptr);
   }
   file.commit(data.page(page_text(provenance(flags.line, input), std::move(still))));
-  for (const std::string& sentence : result.shortfalls) fmt::print(stderr, "NOT REACHED: {}\n", sentence);
+  std::vector<std::string> shortfalls = result.shortfalls;
+  if (branches) shortfalls.insert(shortfalls.end(), branches->shortfalls.begin(), branches->shortfalls.end());
+  for (const std::string& sentence : shortfalls) fmt::print(stderr, "NOT REACHED: {}\n", sentence);
   return reached ? exit_ok : exit_not_reached;
 }
 
@@ -86,6 +98,7 @@ void add_report_command(CLI::App& app, int& status) {
   command->get_option("--out")->description("the page's file")->type_name("FILE");
   command->remove_option(command->get_option("--json"));
   command->remove_option(command->get_option("--stats"));
+  add_theory_flags(*command, flags->theory);
   command->get_option("--no-plots")->description("no pictures for readers without JavaScript");
   command->add_option("--x", flags->x, "a map too: its first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

@@ -82,9 +82,11 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
 }
 
 std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
-                                               const MapDocument* map) {
+                                               const NonlinearSweep* branches, const MapDocument* map) {
   return page_pictures([&](OutputFolder& folder) {
     std::vector<Figure> figures = sweep_files(scene, result, folder);
+    if (branches != nullptr)
+      for (Figure& figure : branch_files(scene, result, *branches, folder)) figures.push_back(std::move(figure));
     if (scene.first().linkage() != nullptr) {
       const CsvFile mechanism = mechanism_csv(scene.scene());
       folder.write(mechanism.name, csv_text(mechanism));

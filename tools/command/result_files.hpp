@@ -19,8 +19,8 @@ namespace hb::tools {
                                                const NonlinearSweep& sweep, OutputFolder& folder);
 [[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
 
-// Pictures of a report for readers without script; `map` may be null.
+// Pictures of a report for readers without script; `branches` and `map` may be null.
 [[nodiscard]] std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,
-                                                             const MapDocument* map);
+                                                             const NonlinearSweep* branches, const MapDocument* map);
 
 }  // namespace hb::tools

@@ -44,7 +44,8 @@ int run_nonlinear(const SteadyFlags& flags) {
   asked.turns = turns_of(flags.theory);
   asked.stop = stop_of();
   std::optional<OutputFolder> folder;
-  if (out.folder) folder.emplace(*out.folder, "steady", provenance(flags.line, input));
+  const Provenance origin = provenance(flags.line, input);
+  if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
   NonlinearSteady result = nonlinear_steady(scene, request, asked);
   const SceneModel& model = *result.model;
@@ -57,6 +58,12 @@ int run_nonlinear(const SteadyFlags& flags) {
     place.write("steady.json", json_file_text(document));
     return result.turns == 1 ? steady_files(model, as_speed_result(result), false, place) : std::vector<Figure>();
   };
+  if (out.html)
+    delivery.page = [&](std::vector<PageText::Picture> pictures) {
+      ReportData data(model.scene);
+      data.add_speed(nonlinear_place(result.model, result, result.settings), result.settings);
+      return data.page(page_text(origin, std::move(pictures)));
+    };
   const int status = deliver(folder ? &*folder : nullptr, out.plots,
                              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
@@ -87,7 +94,7 @@ int run_steady(const SteadyFlags& flags) {
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       ReportData data(model.scene);
-      data.add_speed({result.model, result, ""}, result.settings);
+      data.add_speed({result.model, result, "", {}}, result.settings);
       return data.page(page_text(origin, std::move(pictures)));
     };
   const int status =

@@ -91,7 +91,8 @@ int run_sweep_command(const SweepFlags& flags) {
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       ReportData data(swept.scene());
-      data.add_sweep(swept, result, places_along(swept, SharedWork(out.threads)));
+      const NonlinearSweep* along = branches ? &*branches : nullptr;
+      data.add_sweep(swept, result, places_along(swept, SharedWork(out.threads), along), along);
       return data.page(page_text(origin, std::move(pictures)));
     };
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());

@@ -84,7 +84,7 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& command)
       const std::optional<Holder> other = holder(contents(descriptor_));
       close(descriptor_);
       throw OutputError(fmt::format(
-          "--out: {} is in use by {}; allowed: another folder, or this one when that run has ended", folder.string(),
+          "--out: {} is in use by {}; allowed: another place, or this one when that run has ended", folder.string(),
           other ? fmt::format("{}, process {}, started {}", other->command, other->process, other->start)
                 : "another run"));
     }
@@ -117,8 +117,9 @@ void FolderLock::take_over(const fs::path& folder) {
   // Only what this run would have made itself, whatever the file says.
   const fs::path scratch = killed->scratch;
   std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(scratch, ignored);
   const bool own =
-      scratch.filename().string().starts_with(".hb-") && fs::is_directory(fs::symlink_status(scratch, ignored)) &&
+      scratch.filename().string().starts_with(".hb-") && (fs::is_directory(status) || fs::is_regular_file(status)) &&
       (fs::equivalent(scratch.parent_path(), folder, ignored) ||
        fs::equivalent(scratch.parent_path(), file_.parent_path().empty() ? "." : file_.parent_path(), ignored));
   if (own) fs::remove_all(scratch, ignored);

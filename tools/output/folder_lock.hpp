@@ -1,5 +1,5 @@
-// One run at a time in an output folder: a lock file beside it (inside, where nothing may be written beside it), held
-// by the kernel until the process ends, however it ends.
+// One run at a time in an output folder, or at an output file: a lock file beside it (inside, where nothing may be
+// written beside it), held by the kernel until the process ends, however it ends.
 #pragma once
 
 #include <filesystem>

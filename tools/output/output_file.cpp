@@ -21,14 +21,17 @@ namespace {
 
 }  // namespace
 
-OutputFile::OutputFile(fs::path path) : path_(std::move(path)) {
+OutputFile::OutputFile(fs::path path, const std::string& command) : path_(std::move(path)) {
   std::error_code error;
   if (fs::is_directory(path_, error)) fail(path_, "it is a folder");
+  if (!path_.has_filename()) fail(path_, "it names no file");
+  lock_.emplace(path_, command);
   std::string name = (fs::absolute(path_).parent_path() / (".hb-" + path_.filename().string() + "-XXXXXX")).string();
   file_ = mkostemp(name.data(), O_CLOEXEC);
   if (file_ < 0) fail(path_, std::strerror(errno));
   scratch_ = name;
   removed_on_signal_.emplace(scratch_, Unfinished::Kind::file);
+  lock_->note_scratch(scratch_);
   // mkostemp's file is for its owner alone; a usual new file is not.
   const mode_t mask = umask(0);
   umask(mask);

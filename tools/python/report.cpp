@@ -21,18 +21,20 @@ using namespace tools;
 void write_page(const std::string& file, PythonWork& work, const std::function<std::string()>& page) {
   if (const std::string obstacle = report_obstacle(); !obstacle.empty()) throw RequestError("report", obstacle, "");
   work.run([&] {
-    OutputFile place(file);
+    OutputFile place(file, "report");
     place.commit(page());
     return true;
   });
 }
 
 void steady_report(const SceneCore& core, const Answer& answer, const std::string& file, const std::string& call) {
-  if (answer.nonlinear) throw RequestError("report", "a motion without linearisation", "results of the linear theory");
   PythonWork work;
   write_page(file, work, [&] {
     ReportData data(answer.model->scene);
-    data.add_speed({answer.model, answer.result, ""}, answer.settings);
+    if (answer.nonlinear)
+      data.add_speed(nonlinear_place(answer.model, *answer.nonlinear, answer.settings), answer.settings);
+    else
+      data.add_speed({answer.model, answer.result, "", {}}, answer.settings);
     return data.page(page_text(core.provenance(call), {}));
   });
 }
@@ -44,14 +46,15 @@ void sweep_report(const SceneCore& core, const SweepCore& swept, const Map* map,
   PythonWork work(threads);
   write_page(file, work, [&] {
     ReportData data(sweep.scene->scene());
-    data.add_sweep(*sweep.scene, sweep, places_along(*sweep.scene, work));
+    const NonlinearSweep* branches = swept.branches ? &*swept.branches : nullptr;
+    data.add_sweep(*sweep.scene, sweep, places_along(*sweep.scene, work, branches), branches);
     std::optional<MapDocument> document;
     if (map != nullptr) {
       document.emplace(document_of(*map));
       data.add_map(map_json(*document), core.source);
     }
     std::vector<PageText::Picture> still;
-    if (pictures) still = report_pictures(*sweep.scene, sweep, document ? &*document : nullptr);
+    if (pictures) still = report_pictures(*sweep.scene, sweep, branches, document ? &*document : nullptr);
     return data.page(page_text(core.provenance(call), std::move(still)));
   });
 }

@@ -1,7 +1,10 @@
 #include "tools/report/design_page.hpp"
 
+#include <fmt/core.h>
+
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "tools/output/output_units.hpp"
 #include "tools/output/tune_output.hpp"
@@ -22,11 +25,13 @@ std::string design_page(const TuneTask& task, const TuneResult& result, const Sc
     axis.kind = task.in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
     axis.path = task.in_rpm ? "rpm" : "omega";
     axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, points);
+    // Speeds as one would ask for them, without the last digits of the conversion.
+    for (double& value : axis.values) value = std::stod(fmt::format("{:.12g}", value));
     const SweepScene along(task.source, tuned, task.settings, axis, span.from, axis.values.front());
     data.add_sweep(along, run_sweep(along, work), places_along(along, work));
   } else {
     const auto model = std::make_shared<const SceneModel>(make_model(after, task.settings));
-    data.add_speed({model, analyse(*model, span.from, task.settings), ""}, task.settings);
+    data.add_speed({model, analyse(*model, span.from, task.settings), "", {}}, task.settings);
   }
   std::vector<ReportData::DesignCurve> curves;
   if (result.curves_before && result.curves_after) {

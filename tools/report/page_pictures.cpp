@@ -16,12 +16,16 @@ namespace {
 constexpr std::size_t most_bytes = 500000;  // of all pictures of a page
 
 // Places in this order; what has none here stays away.
-const std::vector<std::pair<std::string, std::string>> shown = {
-    {"mechanism", "The mechanism"},   {"map", "Stability map"},
-    {"campbell", "Campbell diagram"}, {"growth", "Growth rate along the speed"},
-    {"peaks", "Largest response"},    {"before_after", "Before and after"},
-    {"response", "Response"},         {"deflection", "Deflection along the link"},
-    {"torque", "Driving torque"}};
+const std::vector<std::pair<std::string, std::string>> shown = {{"mechanism", "The mechanism"},
+                                                                {"map", "Stability map"},
+                                                                {"campbell", "Campbell diagram"},
+                                                                {"growth", "Growth rate along the speed"},
+                                                                {"branches", "Motion without linearisation"},
+                                                                {"peaks", "Largest response"},
+                                                                {"before_after", "Before and after"},
+                                                                {"response", "Response"},
+                                                                {"deflection", "Deflection along the link"},
+                                                                {"torque", "Driving torque"}};
 
 std::size_t place_of(const Figure& figure) {
   const auto at = std::find_if(shown.begin(), shown.end(), [&](const auto& kind) {

@@ -6,15 +6,21 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/output/branches_output.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/nonlinear_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/path_unit.hpp"
 #include "tools/output/scene_report.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/report/branch_data.hpp"
 #include "tools/report/map_data.hpp"
 #include "tools/report/mechanism_motion.hpp"
 #include "tools/report/page_values.hpp"
+#include "tools/report/place_curves.hpp"
 #include "tools/report/rigid_forces.hpp"
 
 namespace hb::tools {
@@ -30,25 +36,10 @@ std::vector<double> at(const std::vector<double>& values, const std::vector<std:
   return chosen;
 }
 
-const RodModel* rod_model(const SceneModel& model, const std::string& name) {
-  const auto rod =
-      std::find_if(model.rods.begin(), model.rods.end(), [&](const RodModel& r) { return r.name == name; });
-  return rod == model.rods.end() ? nullptr : &*rod;
-}
-
-// Smallest, then largest bending moment over the turn at equally spaced places.
-std::vector<double> moment_envelope(const SceneModel& model, const RodModel& rod, double speed,
-                                    const FourierSeries& q) {
-  constexpr Eigen::Index places = 41;
-  const Body& link = *body_at(*model.linkage(), rod.link);
-  const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
-  const Eigen::Index N = fourier::fast_length(std::max<Eigen::Index>(96, 4 * q.num_harmonics()));
-  const RodField field = rod_field(link, coefficients, speed, q, Eigen::VectorXd::LinSpaced(places, 0, link.length), N);
-  const Eigen::VectorXd low = field.bending_moment.rowwise().minCoeff(),
-                        high = field.bending_moment.rowwise().maxCoeff();
-  std::vector<double> values(low.begin(), low.end());
-  values.insert(values.end(), high.begin(), high.end());
-  return values;
+// As `hb steady --json` has it.
+Json document(const ReportPlace& place, const Settings& settings) {
+  return place.motion ? nonlinear_json(*place.model, *place.motion, settings, false)
+                      : steady_json(*place.model, place.result, settings, false);
 }
 
 // The document of one speed without what the page has once: warnings of the scene are at its top.
@@ -74,6 +65,8 @@ ReportData::ReportData(const Scene& scene) : scene_(scene) {
   data_["kind"] = linkage ? "linkage" : "hill";
   data_["units"] = units_json(scene_.units);
   data_["units"]["time_in_s"] = scene_.units.time_in_s;
+  const FrequencyUnit frequency = frequency_unit(scene_);
+  data_["units"]["frequency"] = {{"name", frequency.name}, {"factor", frequency.factor}};
   data_["axis"] = axis_json("rpm", scene_.units);
   data_["points"] = {{"count", 0}};
   data_["rods"] = Json::array();
@@ -104,14 +97,15 @@ void ReportData::add_rods(const SceneModel& model, const Scene& scene) {
 
 void ReportData::add_speed(const ReportPlace& place, const Settings& settings) {
   add_rods(*place.model, scene_);
-  const double speed = place.result.speed, rpm = rpm_of(speed, scene_.units);
+  const double speed = place.motion ? place.motion->speed : place.result.speed, rpm = rpm_of(speed, scene_.units);
+  if (place.motion) data_["theory"] = "nonlinear";
   data_["points"] = {{"count", 1},
                      {"x", block_.doubles(std::vector{rpm})},
                      {"rpm", block_.doubles(std::vector{rpm})},
                      {"omega", block_.doubles(std::vector{speed})}};
   data_["first_rpm"] = rpm;
   subtitle_ = speed_text(speed, scene_);
-  const Json steady = steady_json(*place.model, place.result, settings, false);
+  const Json steady = document(place, settings);
   for (const auto& [name, rod] : steady["rods"].items())
     if (rod.contains("verdict")) data_["verdicts"][name] = std::string(1, letter(rod["verdict"]));
   if (steady.contains("verdict")) data_["verdicts"][""] = std::string(1, letter(steady["verdict"]));
@@ -120,10 +114,15 @@ void ReportData::add_speed(const ReportPlace& place, const Settings& settings) {
   add_places({place}, settings, false);
 }
 
-void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places) {
+void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places,
+                           const NonlinearSweep* branches) {
   const Settings& settings = scene.settings();
   add_rods(scene.first(), scene.scene());
   Json sweep = sweep_json(scene, result, false);
+  if (branches != nullptr) {
+    add_branches(sweep, scene, *branches);
+    data_["theory"] = "nonlinear";
+  }
   const std::size_t count = result.points.size();
   const std::vector<std::size_t> kept = kept_points(count);
   data_["axis"] = axis_json(scene.axis().path, scene_.units);
@@ -134,10 +133,13 @@ void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, c
   data_["first_rpm"] = sweep["rpm"].front();
   const std::vector<double>& values = scene.axis().values;
   const std::string unit = data_["axis"]["unit"];
-  subtitle_ = fmt::format("{} = {:.10g} to {:.10g}{}{}, {} points", data_["axis"]["label"].get<std::string>(),
-                          values.front(), values.back(), unit.empty() ? "" : " ", unit, count);
+  subtitle_ = fmt::format("{} = {:.10g} to {:.10g}{}{}, {} {}", data_["axis"]["label"].get<std::string>(),
+                          values.front(), values.back(), unit.empty() ? "" : " ", unit, count,
+                          scene.axis().kind == Axis::Kind::parameter ? "values" : "speeds");
+  // Without linearisation all rods have one verdict together.
   for (const auto& [name, rod] : sweep["rods"].items())
-    if (rod.contains("verdict")) data_["verdicts"][name] = letters(rod["verdict"]);
+    if (rod.contains("verdict"))
+      data_[branches != nullptr ? "linear_verdicts" : "verdicts"][name] = letters(rod["verdict"]);
   if (sweep.contains("verdict")) data_["verdicts"][""] = letters(sweep["verdict"]);
   if (kept.size() < count) {
     data_["points"]["kept"] = kept;
@@ -151,17 +153,23 @@ void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, c
         data_["growth"][name] = {{"rate", block_.doubles(numbers(rod["growth_rate"]))},
                                  {"error", block_.doubles(numbers(rod["growth_error"]))}};
     }
+    if (branches != nullptr && sweep["system"].contains("growth_rate"))
+      data_["growth"][""] = {{"rate", block_.doubles(numbers(sweep["system"]["growth_rate"]))},
+                             {"error", block_.doubles(numbers(sweep["system"]["growth_error"]))}};
   }
   add_along(scene, result);
   if (sweep.contains("notes")) data_["notes"] = sweep["notes"];
   if (sweep.contains("warnings"))
-    for (const Json& warning : sweep["warnings"]) data_["warnings"].push_back(warning);
+    for (const Json& warning : sweep["warnings"])
+      if (std::find(data_["warnings"].begin(), data_["warnings"].end(), warning) == data_["warnings"].end())
+        data_["warnings"].push_back(warning);
   add_places(places, settings, scene.axis().kind != Axis::Kind::parameter);
 
   // What the page reads of the sweep's own document; its columns are elsewhere.
   Json& own = data_["sweep"] = Json::object();
-  for (const char* key : {"critical", "band_details", "branches", "folds", "bifurcations", "problems"})
+  for (const char* key : {"critical", "band_details", "problems"})
     if (sweep.contains(key)) own[key] = std::move(sweep[key]);
+  if (branches != nullptr) own["nonlinear"] = branch_data(sweep, *branches, block_);
   const auto columns = [&](Json& range) {
     for (const char* end : {"min", "max"}) range[end] = block_.floats(at(numbers(range[end]), kept));
   };
@@ -224,19 +232,19 @@ void ReportData::add_places(const std::vector<ReportPlace>& places, const Settin
     if (!place.model) {
       entry["problem"] = place.problem;
     } else {
-      const Json steady = steady_json(*place.model, place.result, settings, false);
-      entry["curves"] = curves(place, steady);
-      if (!one_scene && place.result.forces) {
+      if (!place.problem.empty()) entry["lacking"] = place.problem;
+      entry["curves"] = place_curves(place, block_);
+      const std::optional<JointForces>& forces = place.motion ? place.motion->forces : place.result.forces;
+      if (!one_scene && forces) {
         Json& rigid = entry["curves"]["rigid"];
-        for (const JointForce& joint : place.result.forces->joints)
-          rigid["joints"][joint.name] = block_.series(joint.rigid);
-        rigid["torque"] = block_.series(place.result.forces->torque_rigid);
+        for (const JointForce& joint : forces->joints) rigid["joints"][joint.name] = block_.series(joint.rigid);
+        rigid["torque"] = block_.series(forces->torque_rigid);
       }
       if (!one_scene && place.model->linkage() && places.size() > 1) {
         entry["motion"] = data_["motions"].size();
         data_["motions"].push_back(motion_json(*place.model->linkage(), block_));
       }
-      const Json own = own_numbers(steady, scene_.warnings);
+      const Json own = own_numbers(document(place, settings), scene_.warnings);
       for (const auto& [name, rod] : own["rods"].items())
         data_["has_theory"] = data_.value("has_theory", false) || rod.contains("theory_error");
       const PackedNumbers::Place packed = packed_.add(own);
@@ -248,27 +256,6 @@ void ReportData::add_places(const std::vector<ReportPlace>& places, const Settin
   if (one_scene) {
     if (Json rigid = rigid_forces_json(places, block_); !rigid.is_null()) data_["rigid"] = std::move(rigid);
   }
-}
-
-Json ReportData::curves(const ReportPlace& place, const Json& steady) {
-  Json entry;
-  entry["rods"] = Json::object();
-  for (const RodResult& rod : place.result.rods) {
-    if (!rod.reported || !rod.steady || rod.steady->status == SteadyStatus::singular ||
-        rod.steady->q.num_harmonics() < 0)
-      continue;
-    Json& own = entry["rods"][rod.name];
-    own["q"] = block_.series(rod.steady->q);
-    const RodModel* model = rod_model(*place.model, rod.name);
-    if (place.model->linkage() && model && steady["rods"][rod.name].contains("bending_moment"))
-      own["moment"] = block_.floats(moment_envelope(*place.model, *model, place.result.speed, rod.steady->q));
-  }
-  if (place.result.forces) {
-    for (const JointForce& joint : place.result.forces->joints)
-      entry["joints"][joint.name] = block_.series(joint.elastic);
-    entry["torque"] = block_.series(place.result.forces->torque);
-  }
-  return entry;
 }
 
 void ReportData::add_map(Json map, const SceneSource& source) {
@@ -287,6 +274,7 @@ void ReportData::add_design(Json tune, const std::string& words, const Scene& be
                             const std::vector<DesignCurve>& curves) {
   Json& design = data_["design"];
   for (const char* key : {"title", "units", "stats"}) tune.erase(key);
+  for (Json& variable : tune["variables"]) variable["unit"] = path_unit(variable["path"], scene_.units);
   design["tune"] = std::move(tune);
   design["text"] = words;
   if (const auto* linkage = std::get_if<Linkage>(&before.model)) {
@@ -309,6 +297,11 @@ std::string ReportData::page(PageText text) const {
   data["shapes"] = packed_.shapes();
   data["words"] = packed_.words();
   data["bytes"] = block.base64();
+  // As the other documents have it; the scene's text is in the page.
+  data["provenance"] = {
+      {"program", text.origin.program},
+      {"command", text.origin.command},
+      {"scene", {{"file", text.origin.scene_file}, {"crc32", fmt::format("{:08x}", crc32(text.origin.scene_text))}}}};
   text.title = scene_name(scene_);
   if (text.subtitle.empty()) text.subtitle = subtitle_;
   text.scene_table = scene_table(scene_);
@@ -316,7 +309,7 @@ std::string ReportData::page(PageText text) const {
   text.has_map = data.contains("map");
   if (data.contains("first_rpm")) text.first_rpm = data["first_rpm"].dump();
   for (const std::string& rod : rods_) {
-    const std::string verdicts = data["verdicts"].value(rod, std::string());
+    const std::string verdicts = data["verdicts"].value(rod, data["verdicts"].value(std::string(), std::string()));
     const char first = verdicts.empty() ? '-' : verdicts.front();
     text.rods.push_back({rod, first == 's'   ? "stable"
                               : first == 'b' ? "bounded"

@@ -20,8 +20,9 @@ class ReportData {
 
   // One speed: its place alone.
   void add_speed(const ReportPlace& place, const Settings& settings);
-  // Points along an axis: places at kept_points(), in that order.
-  void add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places);
+  // Points along an axis: places at kept_points(), in that order; with `branches` of the motion without linearisation.
+  void add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places,
+                 const NonlinearSweep* branches = nullptr);
   // `map` as map_json has it; values of the scene's own numbers where they are known.
   void add_map(nlohmann::ordered_json map, const SceneSource& source);
 
@@ -40,7 +41,6 @@ class ReportData {
  private:
   void add_rods(const SceneModel& model, const Scene& scene);
   void add_places(const std::vector<ReportPlace>& places, const Settings& settings, bool one_scene);
-  nlohmann::ordered_json curves(const ReportPlace& place, const nlohmann::ordered_json& steady);
   void add_along(const SweepScene& scene, const SweepResult& result);
 
   Scene scene_;

@@ -106,10 +106,7 @@ std::string html_escaped(const std::string& text) {
 
 PageText page_text(const Provenance& origin, std::vector<PageText::Picture> pictures) {
   PageText text;
-  text.version = origin.program;
-  text.provenance = fmt::format("Written by {}: {}. Scene {}, CRC-32 {:08x}.", origin.program, origin.command,
-                                origin.scene_file, crc32(origin.scene_text));
-  text.scene_source = origin.scene_text;
+  text.origin = origin;
   text.pictures = std::move(pictures);
   return text;
 }
@@ -121,10 +118,13 @@ std::string report_obstacle() {
 }
 
 std::string report_page(const PageText& text, const Json& data) {
-  Values values = {{"version", text.version},
+  const Provenance& origin = text.origin;
+  const std::string provenance = fmt::format("Written by {}: {}. Scene {}, CRC-32 {:08x}.", origin.program,
+                                             origin.command, origin.scene_file, crc32(origin.scene_text));
+  Values values = {{"version", origin.program},
                    {"title", cut(text.title, longest_title)},
                    {"subtitle", cut(text.subtitle, longest_title)},
-                   {"provenance", cut(text.provenance, longest_text)},
+                   {"provenance", cut(provenance, longest_text)},
                    {"scene_table", cut(text.scene_table, longest_text)},
                    {"first_rpm", text.first_rpm},
                    {"last_index", std::to_string(text.num_points > 0 ? text.num_points - 1 : 0)},
@@ -138,9 +138,9 @@ std::string report_page(const PageText& text, const Json& data) {
                    {"licence", std::string(page::library_licence)}};
   if (text.has_map) values["map_canvas"] = "<canvas id=\"map\"></canvas>";
   if (text.num_points < 2) values["speed_disabled"] = " disabled";
-  if (!text.scene_source.empty())
+  if (!origin.scene_text.empty())
     values["scene_source"] = "<details><summary>The scene's file</summary><pre tabindex=\"0\">" +
-                             html_escaped(cut(text.scene_source, longest_text)) + "</pre></details>";
+                             html_escaped(cut(origin.scene_text, longest_text)) + "</pre></details>";
   std::vector<Values> rods;
   for (const PageText::Rod& rod : text.rods) rods.push_back({{"name", rod.name}, {"verdict", rod.verdict}});
   return filled(page::html, values, rods);

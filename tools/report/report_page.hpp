@@ -12,8 +12,9 @@ namespace hb::tools {
 
 // What stands in the page before any script runs.
 struct PageText {
-  std::string version, title, subtitle, provenance;
-  std::string scene_table, scene_source;  // as `hb scene` prints it; the scene's file
+  Provenance origin;  // with the scene's file
+  std::string title, subtitle;
+  std::string scene_table;  // as `hb scene` prints it
   struct Rod {
     std::string name, verdict;  // at the first speed; may be empty
   };

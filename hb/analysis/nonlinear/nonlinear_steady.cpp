@@ -58,14 +58,10 @@ RodStress bent_stress(const Body& rod, const TensionRange& force, const RodCoeff
   return stress;
 }
 
-void add_rods(const SceneModel& model, const ExactModel& exact, const MotionFinder& finder, NonlinearResult& result) {
+// `finer`: by rod with more modes, where it is known.
+void add_rods(const SceneModel& model, const ExactModel& exact, const std::optional<std::vector<FourierSeries>>& finer,
+              NonlinearResult& result) {
   const PeriodicMotion& motion = result.motion;
-  std::optional<std::vector<FourierSeries>> finer;
-  if (result.computed.steady || result.computed.shape) {
-    Stopwatch watch;
-    finer = finder.with_more_modes();
-    result.stages.push_back({"motion with more modes", watch.seconds(), finer ? "" : "none found"});
-  }
   std::vector<TensionRange> tension;
   if (result.computed.shape) {
     const Index N = std::max<Index>(256 * result.turns, fourier::fast_length(8 * motion.q.num_harmonics()));
@@ -156,7 +152,13 @@ ForceErrors errors_of(const ExactModel& exact, const NonlinearResult& result) {
 
 // Rods, stability and forces of the motion found.
 void describe(const SceneModel& model, const MotionFinder& finder, const Settings& settings, NonlinearResult& result) {
-  add_rods(model, finder.exact(), finder, result);
+  std::optional<std::vector<FourierSeries>> finer;
+  if (result.computed.steady || result.computed.shape) {
+    Stopwatch watch;
+    finer = finder.with_more_modes();
+    result.stages.push_back({"motion with more modes", watch.seconds(), finer ? "" : "none found"});
+  }
+  add_rods(model, finder.exact(), finer, result);
   if (settings.only.stability) {
     Stopwatch watch;
     const StabilityOptions exponents{.tolerance = exponent_share * result.tolerance};
@@ -275,17 +277,36 @@ void require_nonlinear(const SceneModel& model, int turns) {
     throw RequestError("period", fmt::format("{}", turns), "1, 2, 4, 8, ...: motions that double their period");
 }
 
-NonlinearResult nonlinear_motion(const SceneModel& model, double speed, const FourierSeries& near,
-                                 const Settings& settings, const NonlinearOptions& options) {
-  require_nonlinear(model, options.turns);
-  return at_given_modes(model, speed, settings, options, &near);
-}
-
 NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                  const NonlinearOptions& options) {
   require_nonlinear(model, options.turns);
   if (std::holds_alternative<AutoModes>(settings.modes)) return with_automatic_modes(model, speed, settings, options);
   return at_given_modes(model, speed, settings, options, nullptr);
+}
+
+NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
+                                 const std::optional<Stability>& stability, double tolerance,
+                                 const Settings& settings) {
+  NonlinearResult result;
+  result.speed = motion.speed;
+  result.turns = motion.turns;
+  result.computed = settings.only;
+  result.tolerance = tolerance;
+  result.search = MotionSearch::found;
+  result.motion = motion;
+  if (!(motion.error_bound <= tolerance))
+    result.shortfalls.push_back(
+        fmt::format("the motion's error {:.1e} exceeds {:.1e} of the largest |q|", motion.error_bound, tolerance));
+  std::vector<ExactModel::Rod> modes;
+  for (const RodModel& rod : model.rods) modes.push_back({rod.link, rod.system.num_modes()});
+  const ExactModel exact(*model.linkage(), modes);
+  add_rods(model, exact, std::nullopt, result);
+  if (settings.only.stability) result.stability = stability;
+  if (settings.only.reactions) {
+    result.forces = forces_of_motion(exact, motion.speed, motion.turns, motion.q);
+    result.force_errors = errors_of(exact, result);
+  }
+  return result;
 }
 
 }  // namespace hb

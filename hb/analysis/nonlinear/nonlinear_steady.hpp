@@ -79,9 +79,10 @@ void require_nonlinear(const SceneModel& model, int turns);
 [[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                                const NonlinearOptions& options = {});
 
-// Everything asked for of the motion that Newton's method finds from `near`: all rods one above the other, with the
-// modes of `model`, of options.turns turns, as NonlinearPoint::q. Others are not looked for. Throws as above.
-[[nodiscard]] NonlinearResult nonlinear_motion(const SceneModel& model, double speed, const FourierSeries& near,
-                                               const Settings& settings, const NonlinearOptions& options = {});
+// A motion that is known already, solved to `tolerance` at its speed, as such an answer: shape, forces and their errors
+// of this motion alone; modes_error and other motions, which take further motions, are left out.
+[[nodiscard]] NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
+                                               const std::optional<Stability>& stability, double tolerance,
+                                               const Settings& settings);
 
 }  // namespace hb

@@ -203,14 +203,10 @@ class Sweeper {
 
   NonlinearPoint point_of(const BranchPoint& point) const {
     const PeriodicMotion& motion = point.motion;
-    return {motion.parameter,
-            motion.speed,
-            point.stop,
-            peaks(motion.q),
-            point.stop ? motion.q : FourierSeries(),
-            motion.error_bound,
-            motion.parameter_error,
-            point.stability};
+    return {motion.parameter,   motion.speed,
+            point.stop,         peaks(motion.q),
+            motion.error_bound, motion.parameter_error,
+            point.stability,    point.stop ? std::make_shared<const PeriodicMotion>(motion) : nullptr};
   }
 
   // `begin`: the bifurcation at which it leaves another branch.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,10 +20,10 @@ struct NonlinearPoint {
   double x = 0, speed = 0;  // along the axis; rad per unit time
   bool asked = false;  // at a value of the axis; else a step of the continuation
   RodPeaks max_abs;
-  FourierSeries q;  // of all rods, one above the other, where asked; harmonic k is k Omega/T: for nonlinear_motion
   double error_bound = 0;  // estimate of max |error of q| / max |q|, where x may differ by x_error
   double x_error = 0;
   std::optional<Stability> stability;  // of all rods together
+  std::shared_ptr<const PeriodicMotion> motion = nullptr;  // where asked; for nonlinear_answer
 };
 
 struct NonlinearBranch {
@@ -72,7 +73,6 @@ struct NonlinearSweep {
 struct BranchStart {
   double x = 0;  // along the axis, within its values
   int turns = 1;
-  FourierSeries q;  // of all rods, one above the other; harmonic k is k Omega/turns
 };
 
 struct NonlinearSweepOptions {
