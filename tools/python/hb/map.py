@@ -139,8 +139,10 @@ class Map(_Grid, Result):
     def shortfalls(self) -> list[str]:
         """What missed a boundary_tol asked for, or was not computed in time."""
         notes = list(self._document.get("notes", []))
-        complete = self._document["status"] == "reached"
-        return notes if self._arguments.get("boundary_tol") is not None else notes[: 0 if complete else 1]
+        asked = self._arguments.get("boundary_tol") is not None
+        missed = asked and self._document.get("boundary_points_not_reached", 0) > 0
+        early = self._document["status"] != "reached"
+        return (notes[:1] if early else []) + (notes[-1:] if missed else [])
 
     def to_frame(self) -> "pandas.DataFrame":
         """The command's table map_grid.csv: a row for each place."""
