@@ -1,0 +1,82 @@
+// Which exponent belongs to which mode along a parameter.
+#include "hb/engine/boundaries/mode_tracks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace {
+
+using namespace hb;
+
+constexpr double Omega = 10;
+
+double folded(double x) { return x - Omega * std::round(x / Omega); }
+
+// Exponents -damping_m +- i frequency_m, folded as the solvers give them, without names.
+Stability made(const std::vector<double>& frequencies, double damping = 0.1) {
+  Stability s;
+  for (const double w : frequencies)
+    for (const double sign : {1.0, -1.0}) {
+      Exponent e;
+      e.value = {-damping, folded(sign * w)};
+      e.error = 1e-12;
+      e.mode = -1;
+      e.frequency = NAN;
+      s.exponents.push_back(e);
+    }
+  return s;
+}
+
+TEST(ModeTracks, NamesComeFromWhatIsExpectedUnfolded) {
+  const std::vector<ModeState> found =
+      modes_by_continuity(made({23.1, 4.2}), Omega, {{4, -0.1, -0.1}, {23, -0.1, -0.1}});
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_NEAR(found[0].frequency, 4.2, 1e-12);
+  EXPECT_NEAR(found[1].frequency, 23.1, 1e-12);
+  EXPECT_NEAR(found[0].damping(), 0.1, 1e-15);
+}
+
+TEST(ModeTracks, CrossingsStayCrossings) {
+  // Two lines that cross at x = 5: 3 + x and 13 - x, modulo Omega apart all the while.
+  std::vector<Stability> along;
+  std::vector<TrackedPlace> places;
+  constexpr int n = 21;
+  for (int k = 0; k < n; ++k) along.push_back(made({3 + 0.5 * k, 13 - 0.5 * k}));
+  for (int m = 0; m < 2; ++m) {  // names at the first place
+    for (int sign = 0; sign < 2; ++sign) {
+      Exponent& e = along[0].exponents[static_cast<std::size_t>(2 * m + sign)];
+      e.mode = m;
+      e.frequency = m == 0 ? 3 : 13;
+    }
+  }
+  for (int k = 0; k < n; ++k) places.push_back({0.5 * k, Omega, &along[static_cast<std::size_t>(k)]});
+  const auto tracks = track_modes(places, 2);
+  ASSERT_EQ(tracks.size(), static_cast<std::size_t>(n));
+  for (int k = 0; k < n; ++k) {
+    EXPECT_NEAR(tracks[static_cast<std::size_t>(k)][0].frequency, 3 + 0.5 * k, 1e-9) << k;
+    EXPECT_NEAR(tracks[static_cast<std::size_t>(k)][1].frequency, 13 - 0.5 * k, 1e-9) << k;
+  }
+}
+
+TEST(ModeTracks, PlacesWithoutAnswerAreGapsThatTracksGoOnBeyond) {
+  std::vector<Stability> along = {made({3}), made({3.4}), made({3.8})};
+  for (Exponent& e : along[0].exponents) {
+    e.mode = 0;
+    e.frequency = 3;
+  }
+  const auto tracks = track_modes({{0, Omega, &along[0]}, {1, Omega, nullptr}, {2, Omega, &along[2]}}, 1);
+  EXPECT_NEAR(tracks[0][0].frequency, 3, 1e-12);
+  EXPECT_TRUE(std::isnan(tracks[1][0].frequency));
+  EXPECT_NEAR(tracks[2][0].frequency, 3.8, 1e-12);
+}
+
+TEST(ModeTracks, InterpolationIsLinearAndTakesTheKnownEnd) {
+  const std::vector<ModeState> a = {{2, -0.2, -0.4}, {NAN, NAN, NAN}}, b = {{4, -0.4, -0.4}, {7, -1, -2}};
+  const std::vector<ModeState> middle = interpolated(a, b, 0.25);
+  EXPECT_DOUBLE_EQ(middle[0].frequency, 2.5);
+  EXPECT_DOUBLE_EQ(middle[0].growth, -0.25);
+  EXPECT_DOUBLE_EQ(middle[1].frequency, 7);
+}
+
+}  // namespace

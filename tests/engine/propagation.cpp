@@ -1,0 +1,121 @@
+// Propagation of one turn and the exponents of its cell maps: order of the collocation, Liouville's formula, QR sweeps
+// where the product itself has lost its small multipliers.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "hb/engine/exponents/radau_turn.hpp"
+#include "hb/engine/exponents/turn_exponents.hpp"
+
+namespace {
+
+using namespace hb;
+using cplx = std::complex<double>;
+
+constexpr double turn = 2 * std::numbers::pi;
+
+// Diagonal x'' + b_i x' + (a_i + swing cos tau) x = 0.
+struct Uncoupled {
+  FourierSeries alpha, beta;
+
+  Uncoupled(const Eigen::VectorXd& a, const Eigen::VectorXd& b, double swing)
+      : alpha(a.size() * a.size(), swing == 0 ? 0 : 1), beta(b.size() * b.size(), 0) {
+    const Eigen::Index m = a.size();
+    for (Eigen::Index i = 0; i < m; ++i) {
+      alpha.c(i * m + i, 0) = a(i);
+      beta.c(i * m + i, 0) = b(i);
+      if (swing != 0) alpha.c(i * m + i, 1) = 0.5 * swing;
+    }
+  }
+};
+
+// Product of the cell maps, last cell on the left.
+Eigen::MatrixXd product(const TurnMaps& maps) {
+  const Eigen::Index n = maps.num_states();
+  Eigen::MatrixXd P = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index k = 0; k < maps.num_cells; ++k) P = (maps.cells.middleCols(k * n, n) * P).eval();
+  return P;
+}
+
+TurnMaps maps_of(const Uncoupled& system, Eigen::Index m, Eigen::Index cells) {
+  return radau_turn(system.alpha, system.beta, m, radau_cells(cells));
+}
+
+TEST(RadauTurn, ErrorOfAStiffModeFallsWithTheFifteenthPowerOfTheCell) {
+  const double w = 40, b = 0.02;
+  const Uncoupled system(Eigen::VectorXd::Constant(1, w * w), Eigen::VectorXd::Constant(1, b), 0);
+  const double damped = std::sqrt(w * w - b * b / 4);
+  const double trace = 2 * std::exp(-b / 2 * turn) * std::cos(damped * turn);
+  double last_error = 0, last_cells = 0;
+  int compared = 0;
+  for (Eigen::Index least = 8; least <= 64; least = static_cast<Eigen::Index>(last_cells) + 1) {
+    const TurnMaps maps = maps_of(system, 1, least);
+    const double error = std::abs(product(maps).trace() - trace), cells = static_cast<double>(maps.num_cells);
+    if (last_error < 1e-3 && last_error > 1e-9 && error > 1e-11) {
+      const double order = std::log(last_error / error) / std::log(cells / last_cells);
+      EXPECT_NEAR(order, 15, 1.5) << cells;
+      ++compared;
+    }
+    last_error = error;
+    last_cells = cells;
+  }
+  EXPECT_GE(compared, 2);
+  EXPECT_LT(last_error, 1e-11);
+}
+
+TEST(RadauTurn, UnresolvedFastModesVanish) {
+  const Uncoupled system(Eigen::VectorXd::Constant(1, 1e16), Eigen::VectorXd::Constant(1, 1e3), 0);
+  EXPECT_LT(product(maps_of(system, 1, 8)).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+TEST(RadauTurn, DeterminantIsThatOfLiouville) {
+  const Uncoupled system(Eigen::Vector2d(1.3, 7.1), Eigen::Vector2d(0.05, 0.11), 0.4);
+  const TurnMaps maps = maps_of(system, 2, 24);
+  EXPECT_NEAR(maps.damping_trace, 0.16, 1e-15);
+  EXPECT_NEAR(std::log(product(maps).determinant()), -turn * 0.16, 1e-12);
+}
+
+TEST(TurnExponents, AreThoseOfTheConstantSystemFolded) {
+  const Eigen::Vector3d a(1.21, 30, 5.3), b(0.02, 0.3, 4.8);  // the last overdamped
+  const Uncoupled system(a, b, 0);
+  const TurnMaps maps = maps_of(system, 3, 48);
+  const TurnExponents found = turn_exponents(maps, Eigen::MatrixXd::Zero(6, 6));
+  ASSERT_EQ(found.s.size(), 6u);
+  for (int i = 0; i < 3; ++i) {
+    for (const double sign : {-1.0, 1.0}) {
+      cplx s = -b(i) / 2 + sign * std::sqrt(cplx(b(i) * b(i) / 4 - a(i)));
+      s = {s.real(), s.imag() - std::round(s.imag())};
+      double nearest = HUGE_VAL, bar = 0;
+      for (std::size_t k = 0; k < found.s.size(); ++k) {
+        cplx d = found.s[k] - s;
+        d = {d.real(), d.imag() - std::round(d.imag())};
+        if (std::abs(d) < nearest) {
+          nearest = std::abs(d);
+          bar = found.error[k];
+        }
+      }
+      // The maps themselves are known to the collocation's error.
+      EXPECT_LE(nearest, bar + 1e-12) << s;
+    }
+  }
+  for (std::size_t k = 1; k < found.s.size(); ++k) EXPECT_GE(found.s[k - 1].real(), found.s[k].real());
+}
+
+TEST(TurnExponents, SweepsKeepMultipliersThatTheProductLoses) {
+  // Multipliers e^(-2 pi 0.05) and e^(-2 pi 9): 2.7e-25 is below the rounding of any product of the maps.
+  const Eigen::Vector2d a(4.0025, 81.49), b(0.1, 18);
+  const TurnMaps maps = maps_of(Uncoupled(a, b, 0), 2, 64);
+  const TurnExponents found = turn_exponents(maps, Eigen::MatrixXd::Zero(4, 4));
+  ASSERT_EQ(found.s.size(), 4u);
+  EXPECT_NEAR(found.s[2].real(), -9, 1e-10);
+  EXPECT_NEAR(found.s[3].real(), -9, 1e-10);
+  EXPECT_NEAR(std::abs(found.s[2].imag()), std::abs(0.7 - std::round(0.7)), 1e-10);
+  EXPECT_LT(found.error[3], 1e-8);
+  const Eigen::VectorXcd multipliers = product(maps).eigenvalues();
+  const double least = std::log(multipliers.cwiseAbs().minCoeff()) / turn;
+  EXPECT_GT(std::abs(least + 9), 1e-6) << "the product alone would have done";
+}
+
+}  // namespace
