@@ -104,7 +104,8 @@ std::shared_ptr<HillCore> hill_core(const py::object& mass, const py::object& da
   system.mass = matrix("mass", mass);
   const Eigen::Index size = system.mass.rows();
   if (size < 1 || system.mass.cols() != size)
-    throw RequestError("mass", fmt::format("a {} x {} matrix", size, system.mass.cols()), "a square matrix of a row or more");
+    throw RequestError("mass", fmt::format("a {} x {} matrix", size, system.mass.cols()),
+                       "a square matrix of a row or more");
   system.damping = damping.is_none() ? Eigen::MatrixXd::Zero(size, size) : matrix("damping", damping);
   if (system.damping.rows() != size || system.damping.cols() != size)
     throw RequestError("damping", fmt::format("a {} x {} matrix", system.damping.rows(), system.damping.cols()),
