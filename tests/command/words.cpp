@@ -152,6 +152,22 @@ TEST_F(Words, WhatAxialElasticityChangesIsARoughEstimate) {
          {"half or more would be changed by axial elasticity"});
 }
 
+// Without damping nothing is stable, but "bounded or stable elsewhere" stood there.
+TEST_F(Words, WithoutDampingASystemIsBoundedElsewhere) {
+  const std::string text = said("sweep " + scene("mathieu") + " --omega 1.5:2.6:0.1 --set hill.damping.0.0=0");
+  EXPECT_EQ(first_line(text), "Forced Mathieu equation: UNSTABLE at 2.00509 to 2.36939 rad/s; bounded elsewhere");
+  expect(said("steady " + scene("mathieu") + " --omega 1 --set hill.damping.0.0=0"), {"bounded"}, {" -0 "});
+}
+
+// The first line of a sweep without linearisation was that of the linear theory.
+TEST_F(Words, ANonlinearSweepBeginsWithItsOwnVerdict) {
+  const std::string text =
+      said("sweep " + scene("four_bar") + " --rpm 60:100:20 --modes 1 --theory nonlinear --only steady,stability");
+  EXPECT_NE(first_line(text).find("motion without linearisation: stable (all rods together) at all 3 points"),
+            std::string::npos)
+      << text;
+}
+
 // Words of a crank and millimetres stood in answers about a system of equations.
 TEST_F(Words, ASystemOfEquationsHasNoCrank) {
   for (const char* arguments : {"steady ", "steady --multipliers ", "sweep --omega 1:2.2:0.1 "}) {
