@@ -231,7 +231,8 @@ branch = 1
   expect_refused("sweep thick.toml --rpm 300:400:50 --theory nonlinear", "shear of rod");
   expect_refused("steady " + scene("six_link") + " --rpm 300 --theory quadratic", "allowed: linear, nonlinear");
   expect_refused("sweep " + scene("six_link") + " --rpm 300:400:50 --period 2", "allowed: with --theory nonlinear");
-  expect_refused("sweep " + scene("six_link") + " --rpm 300:400:50 --theory nonlinear --period 3", "--period: found 3, allowed: 1, 2, 4, 8");
+  expect_refused("sweep " + scene("six_link") + " --rpm 300:400:50 --theory nonlinear --period 3",
+                 "--period: found 3, allowed: 1, 2, 4, 8");
   expect_refused("check " + scene("six_link") + " --rpm 300 --theory nonlinear --march", "--march");
 }
 
