@@ -9,6 +9,8 @@ branches='branches_*.svg branches_*.csv bifurcations.csv'
 
 "$run" six_link "$branches" sweep ../six_link/scene.toml --rpm 1200:1620:20 --modes 1 --theory nonlinear --period 2 \
   --only steady,stability
+"$run" six_link_200-1710rpm "$branches" sweep ../six_link/scene.toml --rpm 200:1710:10 --modes 1 --theory nonlinear \
+  --only steady,stability --no-search
 "$run" six_link_1585rpm check.json check ../six_link/scene.toml --rpm 1585 --modes 1 --theory nonlinear --period 2 --tol 1e-7
 "$run" slider_crank check.json check slider_crank.toml --omega 150 --theory nonlinear
 "$run" four_bar "$branches" sweep ../four_bar/scene.toml --rpm 200:400:10 --modes 1 --theory nonlinear --only steady,stability
