@@ -287,7 +287,7 @@ class ReportPages(unittest.TestCase):
               return [Math.min(...others.map((z) => Math.hypot(z[0] - rod.joints[1][0], z[1] - rod.joints[1][1]))), rod.chord[40] / rod.body.length];
             })""")
         for gap, share in gaps:
-            self.assertLess(gap, 1e-3)  # mm, of a rod of 250
+            self.assertLess(gap, 5e-3)  # mm, of positions up to 600 kept to 1e-6 in each harmonic
             self.assertLess(share, 1)
         self.assertLess(min(share for _, share in gaps), 0.999)
 
@@ -303,7 +303,7 @@ class ReportPages(unittest.TestCase):
         shown = dict(self.browser.run("return [...document.querySelectorAll('#numbers [data-value]')].map((c) => [c.dataset.path, c.dataset.value])"))
         for path in ("system.growth_rate", "rods.AB.q.max_abs.0", "rods.CD.deflection.max_abs", "joints.AB.0.x.max", "torque.min"):
             self.assertEqual(float(shown[path]), at(steady, path), path)
-        self.assertIn("Another motion", self.browser.text("numbers"))
+        self.assertEqual(self.browser.text("numbers").count("Another motion"), len(steady["other_motions"]))
         self.assert_quiet()
 
     def test_titles_and_names_made_of_markup_do_no_harm(self):
