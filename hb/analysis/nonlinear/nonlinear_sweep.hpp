@@ -73,6 +73,7 @@ struct NonlinearSweep {
 struct BranchStart {
   double x = 0;  // along the axis, within its values
   int turns = 1;
+  FourierSeries q;  // of all rods, one above the other; harmonic k is k Omega/turns
 };
 
 struct NonlinearSweepOptions {
