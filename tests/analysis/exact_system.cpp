@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numbers>
 
 #include "hb/engine/nonlinear/periodic_motion.hpp"
@@ -70,7 +71,9 @@ TEST(ExactSystem, OneAngleAfterManyIsThatAngleAlone) {
   ASSERT_FALSE(system.evaluate(10, at_rest(4), Derivatives::none, many));
   ASSERT_FALSE(system.evaluate(10, at_rest(1), Derivatives::none, one));
   ASSERT_EQ(one.r.cols(), 1);
-  EXPECT_EQ(one.r.col(0), many.r.col(0));
+  // Lanes and tail of an array may differ by a unit in the last place; another angle's answer by its first digit.
+  EXPECT_TRUE(one.r.col(0).isApprox(many.r.col(0), 4 * std::numeric_limits<double>::epsilon()))
+      << (one.r.col(0) - many.r.col(0)).transpose();
 }
 
 TEST(ExactSystem, FoldedRodsAreSaidWithTheirAngle) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace {
@@ -13,18 +14,16 @@ constexpr double Omega = 10;
 
 double folded(double x) { return x - Omega * std::round(x / Omega); }
 
-// Exponents -damping_m +- i frequency_m, folded as the solvers give them, without names.
-Stability made(const std::vector<double>& frequencies, double damping = 0.1) {
+// Exponents -damping +- i frequency, folded, each mode named by its rank in frequency as the solvers do.
+Stability made(std::vector<double> frequencies, double damping = 0.1) {
   Stability s;
-  for (const double w : frequencies)
-    for (const double sign : {1.0, -1.0}) {
-      Exponent e;
-      e.value = {-damping, folded(sign * w)};
-      e.error = 1e-12;
-      e.mode = -1;
-      e.frequency = NAN;
-      s.exponents.push_back(e);
-    }
+  std::ranges::sort(frequencies);
+  for (std::size_t m = 0; m < frequencies.size(); ++m)
+    for (const double sign : {1.0, -1.0})
+      s.exponents.push_back({.value = {-damping, folded(sign * frequencies[m])},
+                             .error = 1e-12,
+                             .mode = static_cast<int>(m),
+                             .frequency = frequencies[m]});
   return s;
 }
 
@@ -43,13 +42,6 @@ TEST(ModeTracks, CrossingsStayCrossings) {
   std::vector<TrackedPlace> places;
   constexpr int n = 21;
   for (int k = 0; k < n; ++k) along.push_back(made({3 + 0.5 * k, 13 - 0.5 * k}));
-  for (int m = 0; m < 2; ++m) {  // names at the first place
-    for (int sign = 0; sign < 2; ++sign) {
-      Exponent& e = along[0].exponents[static_cast<std::size_t>(2 * m + sign)];
-      e.mode = m;
-      e.frequency = m == 0 ? 3 : 13;
-    }
-  }
   for (int k = 0; k < n; ++k) places.push_back({0.5 * k, Omega, &along[static_cast<std::size_t>(k)]});
   const auto tracks = track_modes(places, 2);
   ASSERT_EQ(tracks.size(), static_cast<std::size_t>(n));
@@ -60,11 +52,7 @@ TEST(ModeTracks, CrossingsStayCrossings) {
 }
 
 TEST(ModeTracks, PlacesWithoutAnswerAreGapsThatTracksGoOnBeyond) {
-  std::vector<Stability> along = {made({3}), made({3.4}), made({3.8})};
-  for (Exponent& e : along[0].exponents) {
-    e.mode = 0;
-    e.frequency = 3;
-  }
+  const std::vector<Stability> along = {made({3}), made({3.4}), made({3.8})};
   const auto tracks = track_modes({{0, Omega, &along[0]}, {1, Omega, nullptr}, {2, Omega, &along[2]}}, 1);
   EXPECT_NEAR(tracks[0][0].frequency, 3, 1e-12);
   EXPECT_TRUE(std::isnan(tracks[1][0].frequency));

@@ -50,7 +50,7 @@ TEST(RadauTurn, ErrorOfAStiffModeFallsWithTheFifteenthPowerOfTheCell) {
   const double trace = 2 * std::exp(-b / 2 * turn) * std::cos(damped * turn);
   double last_error = 0, last_cells = 0;
   int compared = 0;
-  for (Eigen::Index least = 8; least <= 64; least = static_cast<Eigen::Index>(last_cells) + 1) {
+  for (Eigen::Index least = 8; least <= 200; least = static_cast<Eigen::Index>(last_cells) + 1) {
     const TurnMaps maps = maps_of(system, 1, least);
     const double error = std::abs(product(maps).trace() - trace), cells = static_cast<double>(maps.num_cells);
     if (last_error < 1e-3 && last_error > 1e-9 && error > 1e-11) {
@@ -104,9 +104,17 @@ TEST(TurnExponents, AreThoseOfTheConstantSystemFolded) {
 }
 
 TEST(TurnExponents, SweepsKeepMultipliersThatTheProductLoses) {
-  // Multipliers e^(-2 pi 0.05) and e^(-2 pi 9): 2.7e-25 is below the rounding of any product of the maps.
-  const Eigen::Vector2d a(4.0025, 81.49), b(0.1, 18);
-  const TurnMaps maps = maps_of(Uncoupled(a, b, 0), 2, 64);
+  // Multipliers e^(-2 pi 0.05) and e^(-2 pi 9): 2.7e-25 is below the rounding of any product of the maps. Turned by 0.5
+  // rad, so that both modes stand in every entry.
+  Eigen::Matrix2d turned, alpha = Eigen::Vector2d(4.0025, 81.49).asDiagonal(),
+                          beta = Eigen::Vector2d(0.1, 18).asDiagonal();
+  turned << std::cos(0.5), -std::sin(0.5), std::sin(0.5), std::cos(0.5);
+  alpha = (turned * alpha * turned.transpose()).eval();
+  beta = (turned * beta * turned.transpose()).eval();
+  FourierSeries a(4, 0), b(4, 0);
+  a.c.col(0).real() = alpha.reshaped();
+  b.c.col(0).real() = beta.reshaped();
+  const TurnMaps maps = radau_turn(a, b, 2, radau_cells(64));
   const TurnExponents found = turn_exponents(maps, Eigen::MatrixXd::Zero(4, 4));
   ASSERT_EQ(found.s.size(), 4u);
   EXPECT_NEAR(found.s[2].real(), -9, 1e-10);

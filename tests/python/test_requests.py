@@ -35,7 +35,6 @@ from conftest import SCENES, command
         ({"theory": 3}, "theory"),
         ({"period": 2}, "period"),
         ({"theory": "nonlinear", "period": 0}, "period"),
-        ({"theory": "nonlinear", "modes": "auto"}, "modes"),
         ({"steady_method": "fast"}, "steady_method"),
         ({"stability_method": "fast"}, "stability_method"),
         ({"bound": "certain"}, "bound"),
@@ -95,7 +94,7 @@ def test_names_that_are_not_there_are_answered_with_those_that_are(steady):
 
 
 def test_a_page_that_cannot_be_written_names_its_file(steady, tmp_path):
-    with pytest.raises(OSError, match="^[^-]*none/page.html cannot be written") as raised:
+    with pytest.raises(OSError, match="none/page.html cannot be written") as raised:
         steady.report(tmp_path / "none" / "page.html")
     assert "--" not in str(raised.value)
 

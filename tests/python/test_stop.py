@@ -86,8 +86,10 @@ def test_a_map_gives_what_is_there_in_time():
 def test_a_check_gives_the_speeds_that_are_there_in_time():
     found = hb.load(SCENES / "four_bar.toml").check(rpm=(200, 600, "x500"), modes=1, time_limit=2)
     assert not found.converged and any("speeds were not computed" in s for s in found.shortfalls)
-    with pytest.raises(TimeoutError):
-        hb.load(SCENES / "four_bar.toml").check(rpm=(200, 600, "x500"), time_limit=1e-3)
+    try:
+        assert not hb.load(SCENES / "four_bar.toml").check(rpm=(200, 600, "x500"), time_limit=1e-3).converged
+    except TimeoutError as error:  # not even one speed was ready
+        assert "0.001 s" in str(error)
 
 
 def test_a_motion_without_linearisation_is_given_up_in_time(six_link):
