@@ -9,8 +9,9 @@ namespace {
 
 constexpr Eigen::Index samples_per_harmonic = 16;
 
-// f_2, f_3, f_4 at one speed over the turn, a row each.
-Eigen::MatrixXd axial_coefficients(const RodCoefficients& rod, double speed) {
+}  // namespace
+
+FourierSeries axial_series(const RodCoefficients& rod, double speed) {
   Eigen::Index H = 0;
   for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
   FourierSeries sum(3, H);
@@ -19,16 +20,16 @@ Eigen::MatrixXd axial_coefficients(const RodCoefficients& rod, double speed) {
     if (f.num_harmonics() >= 0) sum.c.leftCols(f.c.cols()) += power * f.c.middleRows(2, 3);
     power *= speed;
   }
-  return fourier::synthesise(sum, fourier::fast_length(samples_per_harmonic * std::max<Eigen::Index>(H, 4)));
+  return sum;
 }
-
-}  // namespace
 
 // N(x, tau) = EJ (f4 + f3 x - f2 x^2/2), README of lib (M4): largest at an end, or at x = f3/f2 inside.
 RodStress rod_stress(const Body& link, const RodCoefficients& rod, double speed, double bending_moment) {
   const Elastic& elastic = *link.elastic;
   const double l = link.length, E = elastic.youngs_modulus, F = elastic.area, J = elastic.second_moment;
-  const Eigen::MatrixXd f = axial_coefficients(rod, speed);
+  const FourierSeries series = axial_series(rod, speed);
+  const Eigen::Index H = std::max<Eigen::Index>(series.num_harmonics(), 4);
+  const Eigen::MatrixXd f = fourier::synthesise(series, fourier::fast_length(samples_per_harmonic * H));
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (Eigen::Index j = 0; j < f.cols(); ++j) {
     const double f2 = f(0, j), f3 = f(1, j), f4 = f(2, j), inside = f3 / f2;

@@ -22,6 +22,9 @@ struct RodStress {
   double buckling_share() const { return compression / buckling_load; }
 };
 
+// f_2, f_3, f_4 at one speed, lib/README.md (M4).
+[[nodiscard]] FourierSeries axial_series(const RodCoefficients& rod, double speed);
+
 // `bending_moment`: its largest value over rod and turn (rod_shape).
 [[nodiscard]] RodStress rod_stress(const Body& link, const RodCoefficients& rod, double speed, double bending_moment);
 

@@ -4,24 +4,13 @@
 #include <cmath>
 #include <functional>
 
+#include "hb/analysis/rod_stress.hpp"
+
 namespace hb {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-// f_2, f_3, f_4 at one speed, README of lib (M4).
-FourierSeries axial_series(const RodCoefficients& rod, double speed) {
-  Index H = 0;
-  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
-  FourierSeries sum(3, H);
-  double power = 1;
-  for (const FourierSeries& f : rod.f) {
-    if (f.num_harmonics() >= 0) sum.c.leftCols(f.c.cols()) += power * f.c.middleRows(2, 3);
-    power *= speed;
-  }
-  return sum;
-}
 
 // Stresses over the turn at places x: of N/F and of M e/J, a row for each place.
 struct Field {
