@@ -49,6 +49,23 @@ std::string column_text(const NumberTable& table, Index column) {
   return "column " + printable(table.header[static_cast<std::size_t>(column)].name, 40);
 }
 
+// What else the angles may be in, where they span a turn of that: "; angles in deg are told by ...", or nothing.
+std::string angle_unit_hint(const Eigen::Ref<const Eigen::VectorXd>& angle, double angle_unit) {
+  struct Turn {
+    const char* name;
+    double size;
+  };
+  const Index n = angle.size();
+  const double span = angle(n - 1) - angle(0);
+  for (const Turn& turn : {Turn{"deg", 360}, Turn{"rad", 2 * pi}, Turn{"rev", 1}}) {
+    const double turns = std::max(1.0, std::round(span / turn.size));  // of two-turn cycles too
+    const bool closes = turns <= 2 && std::abs(span - turns * turn.size) <= 1.5 * turns * turn.size / double(n);
+    if (closes && std::abs(2 * pi / turn.size - angle_unit) > 0.01 * angle_unit)
+      return fmt::format("; angles in {0} are told by the column's name in a first line: angle [{0}]", turn.name);
+  }
+  return "";
+}
+
 // Rows of one turn: all, or all but a last one that repeats the first.
 Index rows_of_a_turn(const NumberTable& table, Index angle_column, const std::vector<Index>& columns, double angle_unit,
                      const std::string& quantity) {
@@ -80,11 +97,11 @@ Index rows_of_a_turn(const NumberTable& table, Index angle_column, const std::ve
   fail(
       table, n - 1,
       fmt::format("found crank angle {}, allowed angles less than one turn ({:.6g} in their unit) after the first, {}, "
-                  "or one last row a turn after it that repeats its {}",
-                  angle(n - 1), per_turn, angle(0), quantity));
+                  "or one last row a turn after it that repeats its {}{}",
+                  angle(n - 1), per_turn, angle(0), quantity, angle_unit_hint(angle, angle_unit)));
 }
 
-void refuse_gaps(const NumberTable& table, const Eigen::VectorXd& angles) {
+void refuse_gaps(const NumberTable& table, const Eigen::VectorXd& angles, const std::string& hint) {
   const Index n = angles.size();
   double widest = angles(0) + 2 * pi - angles(n - 1);
   Index after = n - 1;
@@ -93,8 +110,8 @@ void refuse_gaps(const NumberTable& table, const Eigen::VectorXd& angles) {
   }
   if (widest <= 2 * pi / 3 * (1 + closing)) return;
   fail(table, after,
-       fmt::format("found {} without a row behind this one, allowed rows all over one turn",
-                   widest >= pi * (1 - closing) ? "half a turn or more" : "more than a third of a turn"));
+       fmt::format("found {} without a row behind this one, allowed rows all over one turn{}",
+                   widest >= pi * (1 - closing) ? "half a turn or more" : "more than a third of a turn", hint));
 }
 
 // A step from the last row back to the first that is much larger than any other: a table that is no whole turn.
@@ -126,7 +143,7 @@ FourierSeries sampled_series(const NumberTable& table, std::optional<Index> angl
     n = rows_of_a_turn(table, *angle_column, columns, angle_unit, quantity);
     if (n < 3) fail(table, n - 1, fmt::format("found {} different angles, allowed at least 3", n));
     angles = table.values.col(*angle_column).head(n) * angle_unit;
-    refuse_gaps(table, angles);
+    refuse_gaps(table, angles, angle_unit_hint(table.values.col(*angle_column).head(n), angle_unit));
   } else if (n > 3 && !difference(table, columns, n - 1, 0)) {
     const bool constant = [&] {
       for (Index j = 1; j < n; ++j) {

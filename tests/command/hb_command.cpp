@@ -148,7 +148,7 @@ constexpr WrongFlag wrong_flags[] = {
     {"--rpm -5", "\"-5\"", "positive"},
     {"--rpm nan", "\"nan\"", "positive"},
     {"--rpm inf", "\"inf\"", "positive"},
-    {"--rpm 3e2x", "\"3e2x\"", "positive"},
+    {"--rpm 3e2x", "\"3e2x\"", "unknown unit x"},
     {"--rpm 1e999", "\"1e999\"", "positive"},
     {"--rpm 1:2", "\"1:2\"", "a positive number"},
     {"--omega 0", "--omega", "positive"},

@@ -34,6 +34,20 @@ TEST_F(Sweep, LocatesTheTongueOfTheMathieuScene) {
   EXPECT_NEAR(bands[0][1], 2.3373680000, 1e-10 * 2.4);
 }
 
+// Numbers of a range may have units, as those of a scene: the same bits as the plain numbers they stand for.
+TEST_F(Sweep, NumbersOfARangeMayHaveUnits) {
+  const std::string scene_file = scene("six_link"), less = " --modes 1 --no-search";
+  const auto equal = [&](const std::string& with_units, const std::string& plain) {
+    const Json found = document(scene_file + less + with_units);
+    ASSERT_TRUE(found.is_object());
+    EXPECT_EQ(found, document(scene_file + less + plain));
+  };
+  equal(" --rpm 1500 --x AB.length=250mm:0.26m:'5 mm'", " --rpm 1500 --x AB.length=250:260:5");
+  equal(" --rpm 5Hz:10Hz:x3", " --rpm 300:600:x3");
+  equal(" --rpm 1500 --x '*.E=\"190 GPa\":\"210 GPa\":\"10 GPa\"'", " --rpm 1500 --x *.E=19e7:21e7:1e7");
+  equal(" --rpm 1500 --x gravity=0:9.81m/s^2:x3", " --rpm 1500 --x gravity=0:9810:x3");
+}
+
 TEST_F(Sweep, WhatWasNotAskedForIsNeitherComputedNorClaimed) {
   const std::string range = scene("six_link") + " --rpm 2000:2600:100 --rods AB --stats";
   const Json full = document(range);

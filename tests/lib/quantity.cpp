@@ -4,6 +4,8 @@
 
 #include <numbers>
 
+#include "lib/scene/path_quantity.hpp"
+
 using namespace hb;
 using std::numbers::pi;
 
@@ -95,4 +97,25 @@ TEST(Quantity, WrongTextsSayWhatIsWrong) {
                            "3 ((((((((((m))))))))))", "3 2", "1 2", "3 m^1000000000000", "3 ⁻ m", "3 *m", "1e999 m"}) {
     EXPECT_FALSE(parse_quantity(text, {dimension::length}, si).value) << text;
   }
+}
+
+// Numbers given from outside for a place of the scene, as "--x AB.length=250mm:260mm:x5" does.
+TEST(PathQuantity, IsTheNumberThatStandsPlainlyAtThePath) {
+  const SceneSource six_link(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  EXPECT_EQ(quantity_at(six_link, "AB.length", "0.26 m").value, 260);
+  EXPECT_EQ(quantity_at(six_link, "*.E", "210 GPa").value, 21e7);
+  EXPECT_EQ(quantity_at(six_link, "CD.elastic.J", "45mm^4").value, 45);
+  EXPECT_EQ(quantity_at(six_link, "O2BC.points.C.1", "180 deg").value, pi);
+  EXPECT_EQ(quantity_at(six_link, "rpm", "5 Hz").value, 300);
+  EXPECT_NEAR(*quantity_at(six_link, "omega", "300 rpm").value, 10 * pi, 1e-14);
+}
+
+TEST(PathQuantity, SaysWhatIsWrong) {
+  const SceneSource mathieu(HB_SOURCE_DIR "/tests/scenes/mathieu.toml");
+  const SceneSource six_link(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
+  EXPECT_EQ(quantity_at(six_link, "AB.length", "2 kg").problem,
+            "a mass; allowed: plain numbers or text with a unit as in \"55 mm\"");
+  EXPECT_EQ(quantity_at(mathieu, "hill.mass.0.0", "2 kg").problem,
+            "a number with a unit; allowed: plain numbers, this one has no unit");
+  EXPECT_THROW((void)quantity_at(six_link, "AB.lenght", "2 mm"), SceneError);
 }

@@ -79,6 +79,17 @@ def test_what_is_not_looked_for_is_none_and_not_empty(six_link):
             six_link.map(**grid, **wrong)
 
 
+def test_numbers_of_a_range_may_have_units(six_link):
+    def lengths(x):
+        return six_link.sweep(x=x, rpm=1500, modes=1, search=False).to_dict()
+
+    assert lengths("AB.length=250mm:0.26m:5mm") == lengths("AB.length=250:260:5")
+    grid = dict(y="AB.J=40:60:3", modes=1, boundaries=False)
+    assert six_link.map(x="rpm=5Hz:10Hz:3", **grid).to_dict() == six_link.map(x="rpm=300:600:3", **grid).to_dict()
+    with pytest.raises(hb.RequestError, match="a mass"):
+        lengths("AB.length=250kg:260kg:x3")
+
+
 @pytest.mark.parametrize("field", ["only", "rods"])
 def test_an_empty_list_asks_for_nothing_and_is_refused(six_link, field):
     with pytest.raises(hb.RequestError) as raised:

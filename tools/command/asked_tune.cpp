@@ -12,6 +12,7 @@
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/range_units.hpp"
 #include "tools/command/speed_flags.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/command/tune_heights.hpp"
@@ -43,13 +44,34 @@ std::pair<SpeedSpan, bool> span_of(const TuneFlags& flags, const Scene& scene) {
     if (!flags.rpm.empty() || !flags.omega.empty())
       throw UsageError("--over: found beside --rpm or --omega, allowed: one of them");
     in_rpm = range.path == "rpm";
-    std::tie(from, to) = bounds_flag("--over " + range.path, range.range);
+    const auto read = [&](std::string_view part) { return speed_quantity(part, in_rpm, scene.units); };
+    const std::string flag = "--over " + range.path;
+    std::tie(from, to) = bounds_flag(flag, plain_range(flag, range.range, ThirdNumber::step, read));
   }
   span.from = in_rpm ? speed_from_rpm(from, scene.units) : from;
   span.to = in_rpm ? speed_from_rpm(to, scene.units) : to;
   if (!(span.from >= std::numeric_limits<double>::min() && std::isfinite(span.to)))
     throw UsageError(fmt::format("--over: found speeds from {:g}, allowed: positive ones", from));
   return {span, in_rpm};
+}
+
+// A condition whose bound may have a unit: "deflection<=2 mm", "stress<=200 MPa".
+Keep keep_flag(const std::string& text, const Scene& scene) {
+  const std::size_t sign = text.find_first_of("<>");
+  const std::size_t bound = sign == std::string::npos ? sign : text.find_first_not_of("= ", sign + 1);
+  if (bound == std::string::npos || !has_unit(text.substr(bound))) return parse_keep(text);
+  const NumberText number = *number_and_unit(text.substr(bound));
+  const UnitText unit = parse_unit(std::string(number.unit));
+  const Metric metric = parse_keep(text.substr(0, bound) + "1").metric;
+  const std::optional<Unit> own = parse_unit(unit_of(metric.kind, scene)).unit;
+  if (!unit.unit || !own || !(unit.unit->dimension == own->dimension))
+    throw UsageError(
+        fmt::format("--keep: found \"{}\" with {}, {}; allowed: a plain number{}", text, text.substr(bound),
+                    unit.unit ? words_of(unit.unit->dimension) : unit.problem,
+                    own ? fmt::format(" in {}, or a unit of that kind", unit_of(metric.kind, scene)) : ""));
+  Keep keep = parse_keep(fmt::format("{}{}", text.substr(0, bound), converted(number.value, *unit.unit, *own)));
+  keep.text = text;
+  return keep;
 }
 
 DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) {
@@ -116,13 +138,13 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
                 .heights = {},
                 .settings = {},
                 .options = design_options(flags, flags.vary.size())};
-  for (const std::string& text : flags.keep) task.keeps.push_back(parse_keep(text));
   task.heights = heights_flag(flags.height);
   Remarks remarks;
   task.variables = tune_variables(flags, task.source, remarks);
-  require_algorithm(task);
   close_start(task, remarks);
   const Scene scene = given ? *given : task.source.with(overrides_at(task, start_of(task)));
+  for (const std::string& text : flags.keep) task.keeps.push_back(keep_flag(text, scene));
+  require_algorithm(task);
   task.settings = settings(flags, scene);
   require_heights(task, scene);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);

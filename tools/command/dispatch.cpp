@@ -54,7 +54,11 @@ int say(int status, const std::string& what) {
 
 int run(int argc, char** argv) {
   CLI::App app{
-      "Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.\n"
+      "Periodic vibration and dynamic stability of linkages with elastic links, by harmonic balance.\n\n"
+      "To begin:\n"
+      "  hb new slider-crank crank.toml       a first scene, with comments\n"
+      "  hb sweep crank.toml --out first      vibration, resonances and unstable speeds, pictures in the folder "
+      "first\n\n"
       "Exit status: 0 done, 1 disagreement found by a check or internal error, 2 wrong input or output that cannot be\n"
       "written, 3 a tolerance asked for not reached, 4 data complete but pictures missing, 130 interrupted.",
       "hb"};
@@ -71,6 +75,10 @@ int run(int argc, char** argv) {
   add_tune_command(app, status);
   add_report_command(app, status);
   add_compare_command(app, status);
+  if (argc == 1) {  // nothing asked
+    fmt::print(stderr, "{}", app.help());
+    return exit_wrong_input;
+  }
   try {
     app.parse(argc, argv);
     return status;

@@ -41,7 +41,7 @@ std::string number_hint(const std::string& text) {
   };
   if (const std::size_t comma = text.find(','); comma != std::string::npos && digits(text.substr(comma + 1)))
     return "; the decimal point is a point: " + text.substr(0, comma) + "." + text.substr(comma + 1);
-  const std::size_t unit = text.find_first_not_of("0123456789.+eE");
+  const std::size_t unit = text.find_first_not_of("0123456789.+-eE");
   if (unit != std::string::npos && unit > 0 && parse<double>(text.substr(0, unit)) && std::isalpha(text[unit]))
     return fmt::format("; without a unit: {}", text.substr(0, unit));
   return "";

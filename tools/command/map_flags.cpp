@@ -10,6 +10,7 @@
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/range_units.hpp"
 #include "tools/command/speed_flags.hpp"
 
 namespace hb::tools {
@@ -17,11 +18,12 @@ namespace {
 
 constexpr std::size_t max_points = 4000000;
 
-Along axis_range(const std::string& flag, const std::string& text) {
+Along axis_range(const std::string& flag, const std::string& text, const SceneSource& source) {
   if (text.empty())
     throw UsageError(fmt::format("{}: not given, allowed: PATH=FROM:TO:N, as in rpm=200:6000:100 (100 points)", flag));
   const NamedRange named = named_range(flag, text);
-  Along range{named.path, range_by_count(flag, named.range)};
+  const std::string plain = plain_range(flag + " " + named.path, named.range, ThirdNumber::count, source, named.path);
+  Along range{named.path, range_by_count(flag, plain)};
   for (std::size_t k = 0; k + 1 < range.values.size(); ++k) {
     if (!(range.values[k] < range.values[k + 1])) {
       throw UsageError(
@@ -95,8 +97,8 @@ std::optional<std::array<double, 2>> damping_factors(const std::string& text) {
 
 MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneInput& input) {
   MapRequest request;
-  request.x = axis_range("--x", map.x);
-  request.y = axis_range("--y", map.y);
+  request.x = axis_range("--x", map.x, input.source);
+  request.y = axis_range("--y", map.y, input.source);
   request.damping_range = damping_factors(map.damping_range);
   const std::vector<Override> set = overrides(flags);
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();

@@ -63,10 +63,10 @@ void require_ascending(const std::string& flag, const std::string& text, double 
 
 }  // namespace
 
-NamedRange named_range(const std::string& flag, const std::string& text) {
+NamedRange named_range(const std::string& flag, const std::string& text, const std::string& allowed) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
-    refuse(flag, text, "which names no parameter or no range", "PATH=FROM:TO:..., as in AB.J=30:60:1");
+    refuse(flag, text, "which names no parameter or no range", allowed);
   }
   return {text.substr(0, equals), text.substr(equals + 1)};
 }

@@ -17,7 +17,8 @@ struct NamedRange {
   std::string path;
   std::string range;
 };
-[[nodiscard]] NamedRange named_range(const std::string& flag, const std::string& text);
+[[nodiscard]] NamedRange named_range(const std::string& flag, const std::string& text,
+                                     const std::string& allowed = "PATH=FROM:TO:..., as in AB.J=30:60:1");
 
 // N of "xN", 2 or more and at most max_range_points; nothing if the text does not begin with x.
 [[nodiscard]] std::optional<std::size_t> point_count(const std::string& flag, const std::string& range,

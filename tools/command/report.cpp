@@ -2,6 +2,9 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -40,14 +43,24 @@ std::optional<MapTask> asked_map(const ReportFlags& flags, const SceneInput& inp
                                 asked_map(of_map, map, input), work);
 }
 
+// The file is a web page, and its name says so.
+void require_page(const std::string& file) {
+  if (file.empty()) throw UsageError("--out: not given, allowed: the page's file, as in --out report.html");
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (ending == ".html" || ending == ".htm") return;
+  throw UsageError(fmt::format("--out: found \"{}\", allowed: a file that ends in .html or .htm{}", file,
+                               ending == ".pdf" ? " (a browser prints the page to PDF)" : ""));
+}
+
 int run_report(const ReportFlags& flags) {
   if (const std::string obstacle = report_obstacle(); !obstacle.empty()) throw UsageError("report: " + obstacle);
+  require_page(flags.out.value_or(""));
   const SceneInput input = scene_input(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
   const Scene scene = input.source.with(set);
   const Output out = output(flags);
-  if (!out.folder) throw UsageError("--out: not given, allowed: the page's file, as in --out report.html");
-  const SweepRequest request = asked_sweep(flags, "", scene);
+  const SweepRequest request = asked_sweep(flags, "", input.source, scene);
   const SharedWork geometry(out.threads, nullptr, {}, time_is_up);
   const std::optional<MapTask> task = asked_map(flags, input, geometry);
   const std::shared_ptr<const SweepScene> along = sweep_scene(SceneFamily(input.source, set), request);

@@ -5,12 +5,16 @@
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/range_units.hpp"
 
 namespace hb::tools {
 namespace {
 
-// "A:B:STEP", "A:B:xN" or "N", positive; `single`: only the last.
-Speeds speeds_flag(const std::string& flag, const std::string& text, bool single) {
+// "A:B:STEP", "A:B:xN" or "N", positive, with units or without; `single`: only the last.
+Speeds speeds_flag(const std::string& flag, const std::string& written, bool single, const Units& units) {
+  const std::string text = plain_range(flag, written, ThirdNumber::step, [&](std::string_view part) {
+    return speed_quantity(part, flag == "--rpm", units);
+  });
   std::string allowed = fmt::format("a positive number, {:g} to {:g}{}", slowest, fastest,
                                     single ? "" : ", FROM:TO:STEP or FROM:TO:xN with FROM <= TO, STEP > 0, N points");
   if (text.starts_with('-')) {
@@ -26,12 +30,13 @@ Speeds speeds_flag(const std::string& flag, const std::string& text, bool single
       parts.back() += c;
     }
   }
-  if (parts.size() == 3 && single) refuse_flag(flag, text, "one speed, " + allowed);
+  if (parts.size() == 3 && single) refuse_flag(flag, text, "one speed, " + allowed + "; hb sweep takes a range");
   if (!single && parts.size() == 2) allowed += "; a step is missing: " + text + ":10 or " + text + ":x50";
-  if (const std::size_t dash = text.find('-', 1); !single && parts.size() == 1 && dash != std::string::npos &&
+  if (const std::size_t dash = text.find('-', 1); parts.size() == 1 && dash != std::string::npos &&
                                                   whole_number(text.substr(0, dash)) &&
                                                   whole_number(text.substr(dash + 1)))
-    allowed += fmt::format("; a range is {}:{}:10", text.substr(0, dash), text.substr(dash + 1));
+    allowed += fmt::format("; a range{} is {}:{}:10", single ? ", of hb sweep," : "", text.substr(0, dash),
+                           text.substr(dash + 1));
   if (parts.size() == 1) allowed += number_hint(text);
   if (parts.size() != 1 && parts.size() != 3) refuse_flag(flag, text, allowed);
   const std::optional<std::size_t> count = parts.size() == 3 ? point_count(flag, text, parts[2]) : std::nullopt;
@@ -43,7 +48,7 @@ Speeds speeds_flag(const std::string& flag, const std::string& text, bool single
     numbers.push_back(*value);
   }
   if (numbers.size() == 1) return {numbers[0], numbers[0], 0};
-  if (!(numbers[0] <= numbers[1])) refuse_flag(flag, text, allowed);
+  if (!(numbers[0] <= numbers[1])) refuse_flag(flag, text, allowed + "; this one runs backwards");
   if (!count) return {numbers[0], numbers[1], numbers[2]};
   const int N = static_cast<int>(*count);
   return {numbers[0], numbers[1], (numbers[1] - numbers[0]) / (N - 1), N};
@@ -54,8 +59,8 @@ SpeedRange speeds_of_flags(const CommonFlags& flags, const Scene& scene, bool si
     throw UsageError(
         fmt::format("--omega: found \"{}\" beside --rpm {}, allowed: one of the two", flags.omega, flags.rpm));
   }
-  if (!flags.rpm.empty()) return {speeds_flag("--rpm", flags.rpm, single), true};
-  if (!flags.omega.empty()) return {speeds_flag("--omega", flags.omega, single), false};
+  if (!flags.rpm.empty()) return {speeds_flag("--rpm", flags.rpm, single, scene.units), true};
+  if (!flags.omega.empty()) return {speeds_flag("--omega", flags.omega, single, scene.units), false};
   if (scene.analysis.rpm) return {*scene.analysis.rpm, true};
   if (scene.analysis.omega) return {*scene.analysis.omega, false};
   throw UsageError(fmt::format(

@@ -42,7 +42,7 @@ int run_sweep_command(const SweepFlags& flags) {
   const SceneInput input = scene_input(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
   const Scene scene = input.source.with(set);
-  SweepRequest request = asked_sweep(flags, flags.x, scene);
+  SweepRequest request = asked_sweep(flags, flags.x, input.source, scene);
   request.search = !flags.no_search;
   const Output out = output(flags);
   const bool nonlinear = is_nonlinear(flags.theory);

@@ -7,6 +7,7 @@
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/range_units.hpp"
 #include "tools/command/speed_flags.hpp"
 
 namespace hb::tools {
@@ -19,9 +20,11 @@ void require_speeds(const std::string& flag, const Along& along, const Units& un
 }
 
 // --x PATH=RANGE.
-void set_named(const CommonFlags& flags, const std::string& x, const Scene& scene, SweepRequest& request) {
+void set_named(const CommonFlags& flags, const std::string& x, const SceneSource& source, const Scene& scene,
+               SweepRequest& request) {
   const NamedRange range = named_range("--x", x);
-  request.x = {range.path, range_by_step("--x", range.range)};
+  const std::string plain = plain_range("--x " + range.path, range.range, ThirdNumber::step, source, range.path);
+  request.x = {range.path, range_by_step("--x", plain)};
   for (const Override& set : overrides(flags))
     if (set.path == range.path)
       throw UsageError(fmt::format("--set: found {} beside --x {}, allowed: one of the two", set.path, x));
@@ -34,11 +37,12 @@ void set_named(const CommonFlags& flags, const std::string& x, const Scene& scen
 
 }  // namespace
 
-SweepRequest asked_sweep(const CommonFlags& flags, const std::string& x, const Scene& scene) {
+SweepRequest asked_sweep(const CommonFlags& flags, const std::string& x, const SceneSource& source,
+                         const Scene& scene) {
   SweepRequest request;
   static_cast<Request&>(request) = asked_request(flags, scene);
   if (!x.empty()) {
-    set_named(flags, x, scene, request);
+    set_named(flags, x, source, scene, request);
     return request;
   }
   const SpeedRange range = several_speeds(flags, scene);

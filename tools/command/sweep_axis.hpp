@@ -8,8 +8,9 @@
 
 namespace hb::tools {
 
-// All but --no-search: --rpm or --omega as a range, or a scene number given as `x` ("AB.J=30:60:1") at the one speed.
-// Throws UsageError.
-[[nodiscard]] SweepRequest asked_sweep(const CommonFlags& flags, const std::string& x, const Scene& scene);
+// All but --no-search: --rpm or --omega as a range, or a number of the source given as `x` ("AB.J=30:60:1") at the one
+// speed. `scene`: the source with --set. Throws UsageError, SceneError.
+[[nodiscard]] SweepRequest asked_sweep(const CommonFlags& flags, const std::string& x, const SceneSource& source,
+                                       const Scene& scene);
 
 }  // namespace hb::tools

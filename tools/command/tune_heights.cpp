@@ -16,7 +16,7 @@ std::map<std::string, double> heights_flag(const std::vector<std::string>& texts
   constexpr double largest = std::numeric_limits<double>::max();
   std::map<std::string, double> heights;
   for (const std::string& text : texts) {
-    const NamedRange height = named_range("--height", text);
+    const NamedRange height = named_range("--height", text, "ROD=H, as in AB=12");
     heights[height.path] =
         number_flag("--height", height.range, std::numeric_limits<double>::min(), largest, "ROD=H with H > 0");
   }

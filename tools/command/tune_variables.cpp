@@ -11,6 +11,7 @@
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/range_units.hpp"
 
 namespace hb::tools {
 namespace {
@@ -30,9 +31,18 @@ void require_mechanism(const char* flag, const std::string& path) {
     throw UsageError(fmt::format("{}: found {}, allowed: numbers of the mechanism", flag, path));
 }
 
+// What a bare speed is in: that of --over, of the speed flags or of the scene.
+std::string speed_axis(const TuneFlags& flags, const SceneSource& source) {
+  if (!flags.over.empty()) return flags.over.starts_with("omega") ? "omega" : "rpm";
+  if (!flags.rpm.empty() || !flags.omega.empty()) return flags.rpm.empty() ? "omega" : "rpm";
+  const std::vector<std::string> paths = source.numeric_paths();
+  const auto in_omega = [](const std::string& path) { return path.starts_with("analysis.omega"); };
+  return std::ranges::any_of(paths, in_omega) ? "omega" : "rpm";
+}
+
 void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<TuneVariable>& variables) {
   for (const std::string& text : flags.tie) {
-    const NamedRange tie = named_range("--tie", text);
+    const NamedRange tie = named_range("--tie", text, "PATH=PATH or PATH=FACTOR*PATH, as in CD.J=AB.J");
     const std::size_t star = tie.range.rfind('*');
     const bool scaled = star != std::string::npos && star > 0;
     TiedNumber tied{tie.path, 1};
@@ -51,6 +61,25 @@ void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<Tun
     require_mechanism("--tie", tie.path);
     (void)source.value(tie.path);
     leader->tied.push_back(tied);
+  }
+}
+
+// A second moment that changes while area and mass stay: no section does that.
+void remark_on_second_moments(const std::vector<TuneVariable>& variables, Remarks& remarks) {
+  const auto changed = [&](const std::string& path) {
+    return std::ranges::any_of(variables, [&](const TuneVariable& variable) {
+      return variable.path == path || std::ranges::find(variable.tied, path, &TiedNumber::path) != variable.tied.end();
+    });
+  };
+  for (const TuneVariable& variable : variables) {
+    if (!variable.path.ends_with(".J")) continue;
+    const std::string link = variable.path.substr(0, variable.path.size() - 2);
+    if (changed(link + ".area")) continue;
+    remarks.push_back(
+        fmt::format("{} varies while area and mass stay as the scene gives them; of a link with `section`, its height "
+                    "changes all three",
+                    variable.path));
+    return;
   }
 }
 
@@ -83,8 +112,11 @@ void start_at(TuneVariable& variable, double value, Remarks& remarks) {
 std::vector<TuneVariable> tune_variables(const TuneFlags& flags, const SceneSource& source, Remarks& remarks) {
   std::vector<TuneVariable> result;
   for (const std::string& text : flags.vary) {
-    const NamedRange range = named_range("--vary", text);
-    const auto [a, b] = bounds_flag("--vary " + range.path, range.range);
+    const NamedRange range = named_range("--vary", text, "PATH=FROM:TO, as in AB.J=20:200");
+    const std::string flag = "--vary " + range.path;
+    const bool speed = range.path == range_from || range.path == range_to;
+    const std::string path = speed ? speed_axis(flags, source) : range.path;
+    const auto [a, b] = bounds_flag(flag, plain_range(flag, range.range, ThirdNumber::step, source, path));
     TuneVariable variable{range.path, a, b, a, std::nullopt, {}};
     for (const TuneVariable& other : result)
       if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
@@ -93,6 +125,7 @@ std::vector<TuneVariable> tune_variables(const TuneFlags& flags, const SceneSour
     result.push_back(std::move(variable));
   }
   add_ties(flags, source, result);
+  remark_on_second_moments(result, remarks);
   // Conditions between numbers (a wall within its tube) are the search's business; each alone must be possible at one
   // end at least.
   for (const TuneVariable& variable : result) {

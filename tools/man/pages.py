@@ -45,7 +45,8 @@ out.mkdir(parents=True, exist_ok=True)
 whole = said("--help")
 subcommands = listed(whole, "Subcommands:")
 head = whole.split("Usage:")[0].strip()
-description, _, status = head.partition("Exit status:")
+before, _, status = head.partition("Exit status:")
+description = before.partition("To begin:")[0]
 statuses = [part.strip() for part in status.replace("\n", " ").strip().rstrip(".").split(", ") if part.strip()]
 (out / "hb.1.scd").write_text(filled("hb.1.scd", {
     "DESCRIPTION": description.strip().rstrip(".").lower(),

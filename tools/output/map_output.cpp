@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "lib/scene/scene_keys.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
@@ -370,11 +371,11 @@ std::string map_summary(const MapDocument& document) {
     const std::string unit = of.role == PlaneAxis::Role::rpm     ? ""
                              : of.role == PlaneAxis::Role::omega ? " rad/" + units.time
                                                                  : " " + path_unit(of.path, units);
-    return fmt::format("{} = {} ... {}{}, {} values", of.path, values.front(), values.back(), unit == " " ? "" : unit,
-                       values.size());
+    return fmt::format("{} = {:.10g} ... {:.10g}{}, {} values", of.path, values.front(), values.back(),
+                       unit == " " ? "" : unit, values.size());
   };
   text += fmt::format("  x  {}\n  y  {}\n", axis(r.x_axis, r.x()), axis(r.y_axis, r.y()));
-  text += linkage ? fmt::format("  rods {}, {} modes\n\n", fmt::join(r.rods, ", "), document.num_modes)
+  text += linkage ? fmt::format("  rods {}, {} each\n\n", fmt::join(r.rods, ", "), counted(document.num_modes, "mode"))
                   : fmt::format("  {} {}\n\n", document.num_modes, document.num_modes == 1 ? "unknown" : "unknowns");
   text += fmt::format("  stable {:.4g} %, bounded {:.4g} %, unstable {:.4g} %, undecided {:.4g} %",
                       100 * static_cast<double>(n.stable) / all, 100 * static_cast<double>(n.bounded) / all,

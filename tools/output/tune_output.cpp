@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lib/scene/scene_keys.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
@@ -316,7 +317,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
   if (result.without_response > 0)
     text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
-  if (std::holds_alternative<Linkage>(scene.model)) text += fmt::format("{} modes of each rod\n", result.num_modes);
+  if (std::holds_alternative<Linkage>(scene.model)) text += counted(result.num_modes, "mode") + " of each rod\n";
   if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
   if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)
     text += "conditions hold with the estimated errors of their values\n";

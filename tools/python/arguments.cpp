@@ -253,10 +253,11 @@ std::vector<double> range_values(const std::string& field, py::handle object, Th
   return values;
 }
 
-NamedValues named_values(const std::string& field, py::handle object, Third third) {
+NamedValues named_values(const std::string& field, py::handle object, Third third, const SceneSource& source) {
   if (is_text(object)) {
     const tools::NamedRange named = tools::named_range(field, text(field, object));
-    return {named.path, range_values(field, py::str(named.range), third)};
+    const std::string plain = tools::plain_range(field, named.range, third, source, named.path);
+    return {named.path, range_values(field, py::str(plain), third)};
   }
   if (py::isinstance<py::tuple>(object) && py::len(object) == 2) {
     const auto parts = py::reinterpret_borrow<py::tuple>(object);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hb/analysis/request.hpp"
+#include "tools/command/range_units.hpp"
 #include "tools/python/bindings.hpp"
 
 namespace hb::python {
@@ -36,13 +37,14 @@ namespace hb::python {
 
 // Values of a range: the text of the command line ("200:6000:10", "200:6000:x59"), a tuple (from, to, third), or a list
 // or array of ascending values. `third` says what a bare third number means.
-enum class Third { step, count };
+using Third = tools::ThirdNumber;
 [[nodiscard]] std::vector<double> range_values(const std::string& field, py::handle object, Third third);
 // "PATH=RANGE", or a tuple (path, range).
 struct NamedValues {
   std::string path;
   std::vector<double> values;
 };
-[[nodiscard]] NamedValues named_values(const std::string& field, py::handle object, Third third);
+[[nodiscard]] NamedValues named_values(const std::string& field, py::handle object, Third third,
+                                       const SceneSource& source);
 
 }  // namespace hb::python

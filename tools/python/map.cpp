@@ -21,7 +21,7 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, co
     const char* field = is_x ? "x" : "y";
     const auto range = given(arguments, field);
     if (!range) throw RequestError(field, "nothing", "\"PATH=FROM:TO:COUNT\", as in \"rpm=200:6000:100\"");
-    NamedValues named = named_values(field, *range, Third::count);
+    NamedValues named = named_values(field, *range, Third::count, core.source);
     (is_x ? request.x : request.y) = {std::move(named.path), std::move(named.values)};
   }
   const double points = static_cast<double>(request.x.values.size()) * static_cast<double>(request.y.values.size());

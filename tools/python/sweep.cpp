@@ -17,7 +17,7 @@ namespace {
 // What the sweep goes along: `x`, or a range of rpm or omega, or the scene's own.
 Along axis_of(const SceneCore& core, const py::dict& arguments, Request& request) {
   if (const auto x = given(arguments, "x")) {
-    const NamedValues named = named_values("x", *x, Third::step);
+    const NamedValues named = named_values("x", *x, Third::step, core.source);
     if (const auto rpm = given(arguments, "rpm")) request.rpm = number("rpm", *rpm);
     if (const auto omega = given(arguments, "omega")) request.omega = number("omega", *omega);
     return {named.path, named.values};

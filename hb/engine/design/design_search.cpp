@@ -208,7 +208,9 @@ DesignResult DesignSearch::finish(bool converged) {
   for (const auto& [what, analyses] : said_)
     result_.evidence += fmt::format("{}{} ({} analyses)", result_.evidence.empty() ? "" : ", then ", what, analyses);
   result_.out_of_analyses = left() <= 0;
-  if (result_.out_of_analyses) result_.evidence += ", stopped by the number of analyses";
+  if (result_.out_of_analyses)
+    result_.evidence +=
+        std::string(result_.evidence.empty() ? "the start" : "") + ", stopped by the number of analyses";
   return std::move(result_);
 }
 
