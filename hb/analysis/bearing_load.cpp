@@ -16,7 +16,7 @@ Extremum largest_length(const FourierSeries& force) {
   return peak;
 }
 
-std::vector<BearingLoad> bearing_loads(const JointForces& forces) {
+std::vector<BearingLoad> bearing_loads(const JointForces& forces, int turns) {
   // The length has kinks where the force passes through zero: its mean settles slowly with the samples.
   constexpr Eigen::Index samples_per_harmonic = 64;
   std::vector<BearingLoad> loads;
@@ -28,6 +28,7 @@ std::vector<BearingLoad> bearing_loads(const JointForces& forces) {
       load.mean = length.mean();
       load.rms = std::sqrt(length.squaredNorm() / static_cast<double>(N));
     }
+    for (Extremum* peak : {&load.rigid, &load.elastic}) peak->crank_angle *= turns;
     loads.push_back(std::move(load));
   }
   return loads;

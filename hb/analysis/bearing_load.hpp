@@ -14,7 +14,8 @@ struct BearingLoad {
   double mean = 0, rms = 0;  // of the length, elastic
 };
 
-[[nodiscard]] std::vector<BearingLoad> bearing_loads(const JointForces& forces);
+// Harmonic k of the forces is k/turns times a turn; crank angles are over all turns.
+[[nodiscard]] std::vector<BearingLoad> bearing_loads(const JointForces& forces, int turns = 1);
 
 // Largest length of a force given by its components.
 [[nodiscard]] Extremum largest_length(const FourierSeries& force);

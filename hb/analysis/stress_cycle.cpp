@@ -70,6 +70,7 @@ double largest_between(double a, double b, const std::function<double(double)>& 
 
 double magnitude(const Range& range) { return std::max(range.max.value, -range.min.value); }
 double amplitude(const Range& range) { return (range.max.value - range.min.value) / 2; }
+double mean(const Range& range) { return (range.max.value + range.min.value) / 2; }
 
 struct Place {
   double x = 0;
@@ -78,7 +79,7 @@ struct Place {
 
 // Where `measure` of the turn's range is largest: on a grid, then between its neighbours.
 Place worst_place(const Stresses& stresses, double length, Index points, const MatrixXd (&by_side)[2],
-                  double (*measure)(const Range&)) {
+                  const std::function<double(const Range&)>& measure) {
   double most = -1;
   Index best = 0;
   int side = 1;
@@ -139,7 +140,7 @@ StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double sp
   const Place widest = worst_place(stresses, link.length, points, by_side, amplitude);
   const Range turn = stresses.range(widest.x, widest.side);
   cycle.amplitude = amplitude(turn);
-  cycle.mean = (turn.max.value + turn.min.value) / 2;
+  cycle.mean = mean(turn);
   cycle.amplitude_x = widest.x;
   cycle.amplitude_side = widest.side;
 
@@ -149,6 +150,16 @@ StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double sp
   if (more_modes.c.size() > 0) {
     const MatrixXd finer = rod_field(link, rod, speed, more_modes, grid, N).bending_moment;
     cycle.error += 2 * (e / elastic.second_moment * finer - field.bending).cwiseAbs().maxCoeff();
+  }
+
+  const Strength& strength = elastic.strength;
+  if (strength.yield > 0) cycle.yield = safety_factor(cycle.max_abs / strength.yield, cycle.error / strength.yield);
+  if (fatigue_line(strength) != FatigueLine::none) {
+    const auto usage = [&](const Range& range) { return fatigue_usage(strength, mean(range), amplitude(range)); };
+    const Place worst = worst_place(stresses, link.length, points, by_side, usage);
+    const Range at = stresses.range(worst.x, worst.side);
+    const double error = fatigue_usage(strength, cycle.error, cycle.error);
+    cycle.fatigue = {safety_factor(usage(at), error), mean(at), amplitude(at), worst.x, worst.side};
   }
   return cycle;
 }

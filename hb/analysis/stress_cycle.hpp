@@ -1,13 +1,25 @@
 // What a cross-section carries over a turn: axial and bending stress together, at the outer fibres of the section.
 #pragma once
 
+#include <optional>
+
+#include "hb/analysis/safety.hpp"
 #include "lib/linkage/linkage.hpp"
 #include "lib/rod/rod.hpp"
 
 namespace hb {
 
-// sigma(x, tau) = N/F + side M e/J with N the axial force of the rigid mechanism, M the bending moment, e half of the
-// section's height and side = +1 or -1 the fibre. Stresses mass/(length time^2), tension positive.
+// Where fatigue is nearest: its own place, of all places and fibres.
+struct FatigueSafety {
+  SafetyFactor factor;
+  double mean = 0, amplitude = 0;  // there
+  double x = 0;
+  int side = 1;
+};
+
+// Of (D1), (D2) in hb/analysis/README.md: sigma(x, tau) = N/F + side M e/J with N the axial force of the rigid
+// mechanism, M the bending moment, e half of the section's height and side = +1 or -1 the fibre. Stresses mass/(length
+// time^2), tension positive.
 struct StressCycle {
   double max_abs = 0;  // of all places, fibres and crank angles
   double x = 0, crank_angle = 0;  // where, from joint 0; rad
@@ -17,6 +29,8 @@ struct StressCycle {
   double amplitude_x = 0;
   int amplitude_side = 1;
   double error = 0;  // of each of these stresses, an estimate: modes and harmonics left out
+  std::optional<SafetyFactor> yield;  // S_y/max_abs, where the yield strength is known
+  std::optional<FatigueSafety> fatigue;  // where fatigue_line is known
 };
 
 // `more_modes`: the response with more modes, or empty: then the error is that of `error_bound` alone, which is

@@ -20,6 +20,13 @@ struct Shear {
   double coefficient = 0;  // k
 };
 
+// What a material bears, stresses as magnitudes; 0: unknown.
+struct Strength {
+  double yield = 0;  // S_y, yield strength
+  double tensile = 0;  // S_u, ultimate tensile strength
+  double endurance = 0;  // S_e, amplitude borne for ever at mean stress 0, of this part: surface, size, notches
+};
+
 // Uniform pinned-pinned elastic link (physics of the rod; the paper's letters in brackets).
 struct Elastic {
   double youngs_modulus = 0;  // E
@@ -31,6 +38,7 @@ struct Elastic {
   double damping_y = 0;  // c_y, across the rod
   double section_height = 0;  // in the plane of motion; 0: unknown
   std::optional<Shear> shear;  // none: rigid in shear
+  Strength strength;
 };
 
 struct Body {

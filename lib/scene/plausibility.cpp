@@ -75,6 +75,27 @@ void remark_on_density(const TableView& link, const TableView& elastic, const Bo
   }
 }
 
+void remark_on_strength(const TableView& elastic, const Strength& strength, const SceneContext& context) {
+  constexpr Window solid{1e6, 1e10}, likely{2e7, 3e9};
+  for (const auto& [key, value] : {std::pair("yield", strength.yield), std::pair("tensile", strength.tensile),
+                                   std::pair("endurance", strength.endurance)}) {
+    if (!(value > 0)) continue;
+    const double stress = in_si(value, dimension::pressure, context.units);
+    if (!solid.holds(stress)) {
+      const std::initializer_list<const char*> shown = {"GPa", "MPa", "kPa", "Pa"};
+      remark(elastic, key, Concern::material,
+             fmt::format("found {}{} (solids have 1 MPa to 10 GPa); taken as given", in_best_unit(stress, shown),
+                         likely_slip(elastic, key, likely, {"MPa", "GPa", "ksi", "psi", "kPa", "Pa"}, shown)),
+             context);
+    }
+    if (!elastic.has("section"))
+      remark(elastic, key, Concern::section,
+             "found beside area and J, which do not say how far the outer fibre is from the axis; a safety takes "
+             "section = { shape = \"rectangle\", width, height } in their place",
+             context);
+  }
+}
+
 }  // namespace
 
 void remark_on_elastic(const TableView& link, const TableView& elastic, const Body& body, const SceneContext& context) {
@@ -89,6 +110,7 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
            context);
   }
   remark_on_density(link, elastic, body, context);
+  remark_on_strength(elastic, rod.strength, context);
 
   // A square has J/F^2 = 1/12, a strip on edge or flat h/b times as much or as little.
   constexpr Window solid{1.0 / 240, 4};

@@ -6,8 +6,8 @@
 
 namespace hb {
 
-// Young's modulus outside 1 GPa to 1.5 TPa, a density no solid has, J/area^2 outside 1/240 to 4, length/sqrt(J/area)
-// below 20; shear left out that matters.
+// Young's modulus outside 1 GPa to 1.5 TPa, a strength outside 1 MPa to 10 GPa or without a section, a density no solid
+// has, J/area^2 outside 1/240 to 4, length/sqrt(J/area) below 20; shear left out that matters.
 void remark_on_elastic(const TableView& link, const TableView& elastic, const Body& body, const SceneContext& context);
 
 // Gravity a thousand times off, links of less than half a millimetre or more than 50 m.

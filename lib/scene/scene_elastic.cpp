@@ -150,6 +150,16 @@ std::optional<Shear> read_shear(const TableView& elastic) {
   return Shear{table->need_number("G", positive), table->need_number("k", positive)};
 }
 
+Strength read_strength(const TableView& elastic) {
+  const auto stress = [&](const char* key) { return elastic.number(key, positive).value_or(0); };
+  const Strength strength{stress("yield"), stress("tensile"), stress("endurance")};
+  if (strength.tensile > 0) {
+    at_most(elastic, "yield", strength.yield, strength.tensile, "the tensile strength");
+    at_most(elastic, "endurance", strength.endurance, strength.tensile, "the tensile strength");
+  }
+  return strength;
+}
+
 }  // namespace
 
 void read_elastic(const TableView& table, const TableView& elastic, const SceneContext& context, Body& body) {
@@ -176,6 +186,7 @@ void read_elastic(const TableView& table, const TableView& elastic, const SceneC
   link.damping_x = elastic.number("damping_x", not_negative).value_or(0);
   link.damping_y = elastic.number("damping_y", not_negative).value_or(0);
   link.shear = read_shear(elastic);
+  link.strength = read_strength(elastic);
 
   const double volume = link.area * body.length;
   std::optional<double> density = elastic.number("density", positive);

@@ -59,7 +59,10 @@ constexpr Key elastic_keys[] = {plain("material"),
                                 {"damping_ratio", &damping_ratio, Measure{dimension::none}, {}},
                                 number("damping_x", dimension::damping_per_length),
                                 number("damping_y", dimension::damping_per_length),
-                                sub("shear", &shear)};
+                                sub("shear", &shear),
+                                number("yield", dimension::pressure),
+                                number("tensile", dimension::pressure),
+                                number("endurance", dimension::pressure)};
 constexpr TableKind elastic{"elastic", elastic_keys};
 
 constexpr Key coupler_keys[] = {name_key,    length_key,        mass_key,   com_key,

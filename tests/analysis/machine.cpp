@@ -209,4 +209,65 @@ TEST(StressCycle, IsTheWorstOfAllPlacesFibresAndAngles) {
   EXPECT_LT(cycle.error, 0.01 * cycle.max_abs);
 }
 
+// Shigley: a bar with S_u = 690, S_e = 230 under 120 +- 80 MPa.
+TEST(FatigueSafety, IsTheTextbooksLine) {
+  const Strength goodman{490, 690, 230};
+  ASSERT_EQ(fatigue_line(goodman), FatigueLine::goodman);
+  EXPECT_NEAR(1 / fatigue_usage(goodman, 120, 80), 1 / (80.0 / 230 + 120.0 / 690), 1e-14);
+  const Strength soderberg{490, 0, 230};
+  ASSERT_EQ(fatigue_line(soderberg), FatigueLine::soderberg);
+  EXPECT_NEAR(1 / fatigue_usage(soderberg, 120, 80), 1 / (80.0 / 230 + 120.0 / 490), 1e-14);
+  EXPECT_EQ(fatigue_usage(soderberg, -120, 80), 80.0 / 230);  // a mean that presses does not count
+  EXPECT_EQ(fatigue_line({490, 690, 0}), FatigueLine::none);
+  EXPECT_EQ(fatigue_line({0, 0, 230}), FatigueLine::none);
+  // The error is how far the factor may be off, on its far side.
+  const SafetyFactor factor = safety_factor(0.5, 0.1);
+  EXPECT_EQ(factor.value, 2);
+  EXPECT_NEAR(factor.error, 0.5, 1e-15);
+  EXPECT_TRUE(std::isinf(safety_factor(0.5, 0.5).error));
+  EXPECT_TRUE(std::isinf(safety_factor(0, 0).value));
+}
+
+// At every place and fibre of a fine grid the rod is at least as safe, and somewhere no safer.
+TEST(FatigueSafety, IsThatOfTheWorstPlaceWhichNeedNotHaveTheWidestCycle) {
+  Scene scene = read_scene(scenes + "slider_crank_units.toml");
+  Body& rod = std::get<Linkage>(scene.model).dyads[0].coupler;
+  rod.elastic->strength = {250e6, 0, 200e9};  // the mean alone counts
+  Request request;
+  request.rpm = 3000;
+  request.modes = 3;
+  const SteadyResult found = steady(scene, request);
+  const RodResult& result = found.rods[0];
+  const RodCoefficients& coefficients = found.model->coefficients.rods[0];
+  const StressCycle cycle =
+      stress_cycle(rod, coefficients, found.speed, result.steady->q, result.more_modes, result.steady->error_bound);
+  ASSERT_TRUE(cycle.fatigue && cycle.yield);
+  EXPECT_NEAR(cycle.yield->value, 250e6 / cycle.max_abs, 1e-12 * cycle.yield->value);
+  const StressEnvelope envelope = stress_envelope(rod, coefficients, found.speed, result.steady->q, 401);
+  double most = 0;
+  for (int side = 0; side < 2; ++side)
+    for (Eigen::Index i = 0; i < envelope.x.size(); ++i) {
+      const double high = envelope.largest[side](i), low = envelope.smallest[side](i);
+      most = std::max(most, (high - low) / 2 / 200e9 + std::max(0.0, (high + low) / 2) / 250e6);
+    }
+  EXPECT_NEAR(1 / cycle.fatigue->factor.value, most, 2e-3 * most);
+  const double there = cycle.fatigue->amplitude / 200e9 + std::max(0.0, cycle.fatigue->mean) / 250e6;
+  EXPECT_NEAR(there, most, 2e-3 * most);
+  const double widest = cycle.amplitude / 200e9 + std::max(0.0, cycle.mean) / 250e6;
+  EXPECT_LT(widest, 0.98 * most);
+  EXPECT_GT(cycle.fatigue->factor.error, 0);
+  EXPECT_LT(cycle.fatigue->factor.error, 0.1 * cycle.fatigue->factor.value);
+}
+
+// Of a motion of two turns: half of the harmonics, so that angles and stored energy are over both.
+TEST(Drive, OfTwoTurnsIsThatOfOneRepeated) {
+  FourierSeries one(1, 3), two(1, 6);
+  one.c << 2.0, Complex(0.5, -0.2), Complex(-0.1, 0.3), Complex(0.05, 0.02);
+  for (Eigen::Index k = 0; k <= 3; ++k) two.c(0, 2 * k) = one.c(0, k);
+  const Drive single = drive_of(one, 7), twice = drive_of(two, 7, 2);
+  EXPECT_NEAR(twice.energy_fluctuation, single.energy_fluctuation, 1e-12);
+  EXPECT_NEAR(twice.rms, single.rms, 1e-14);
+  EXPECT_NEAR(twice.largest_power, single.largest_power, 1e-10);
+}
+
 }  // namespace

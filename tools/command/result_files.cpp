@@ -4,6 +4,7 @@
 
 #include "tools/output/branches_output.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/pictures/branch_figure.hpp"
 #include "tools/pictures/figures.hpp"
@@ -37,6 +38,8 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
   if (only.reactions) {
     const CsvFile forces = sweep_forces_csv(scene, result);
     folder.write(forces.name, csv_text(forces));
+    const CsvFile machine = sweep_machine_csv(scene, result);
+    folder.write(machine.name, csv_text(machine));
     for (Figure& figure : sweep_force_figures(scene, result, forces)) figures.push_back(std::move(figure));
   }
   return figures;

@@ -7,9 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "hb/analysis/bearing_load.hpp"
-#include "hb/analysis/drive.hpp"
-#include "hb/analysis/frame_forces.hpp"
+#include "hb/analysis/machine_loads.hpp"
 #include "hb/analysis/slider_motion.hpp"
 #include "hb/analysis/static_deflection.hpp"
 #include "hb/analysis/stress_cycle.hpp"
@@ -23,48 +21,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using Eigen::Index;
-
-FrameForces frame_of(const SceneModel& model, const SpeedResult& result) {
-  std::vector<LinkResponse> responses;
-  for (const RodResult& rod : result.rods) responses.push_back({rod.link, rod.steady->q});
-  return frame_forces(*model.linkage(), result.speed, responses);
-}
-
-// x and y of the force without the moment.
-FourierSeries force_of(const FourierSeries& frame) { return FourierSeries(Eigen::MatrixXcd(frame.c.topRows(2))); }
-
-// Errors of what is a sum over joints: each pivot and guide has that of a joint force, at most that far from the crank.
-struct FrameErrors {
-  double force = 0, moment = 0;
-};
-
-FrameErrors frame_errors(const SceneModel& model, const SpeedResult& result, double largest_force) {
-  if (!result.force_errors) return {};
-  const Linkage& linkage = *model.linkage();
-  const ForceErrors& errors = *result.force_errors;
-  const double each = (errors.force + errors.force_cut) * largest_force;
-  double arm = 0;
-  for (const Dyad& dyad : linkage.dyads) {
-    const auto* rocker = std::get_if<Rocker>(&dyad.closing);
-    const std::complex<double> place = rocker ? rocker->pivot : std::get<Slider>(dyad.closing).guide;
-    arm = std::max(arm, std::abs(place - linkage.crank.pivot) + dyad.coupler.length + linkage.crank.body.length);
-  }
-  const double torque = fourier::max_abs(result.forces->torque, 0).value * (errors.torque + errors.torque_cut);
-  const double joints = 1 + static_cast<double>(linkage.dyads.size());
-  return {std::sqrt(2.0) * joints * each, std::sqrt(2.0) * joints * each * arm + torque};
-}
-
-double largest_bearing(const std::vector<BearingLoad>& loads) {
-  double largest = 0;
-  for (const BearingLoad& load : loads) largest = std::max(largest, load.elastic.value);
-  return largest;
-}
-
-// About its pivot: what the torque's fluctuation accelerates.
-double crank_inertia(const Linkage& linkage) {
-  const Body& crank = linkage.crank.body;
-  return crank.inertia + crank.mass * std::norm(crank.com);
-}
 
 double watt(const Units& units) { return units.torque_in_newton_metre() / units.time_in_s; }
 
@@ -102,6 +58,15 @@ std::optional<StressCycle> cycle_of(const SceneModel& model, const SpeedResult& 
                       entry.steady->q, entry.more_modes, entry.steady->error_bound);
 }
 
+// "safety 2.31 +- 0.01": digits as its error leaves.
+std::string safety_text(const SafetyFactor& safety) {
+  if (!std::isfinite(safety.value)) return "safety without bound: no stress";
+  if (!std::isfinite(safety.error))
+    return fmt::format("safety {:.3g}, not known: the error is as large as the stress", safety.value);
+  return fmt::format("safety {:.{}g}, error {:.1e}", safety.value,
+                     std::min(4, trusted_digits(safety.value, safety.error)), safety.error);
+}
+
 }  // namespace
 
 std::string stress_rows(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
@@ -110,12 +75,24 @@ std::string stress_rows(const SceneModel& model, const SpeedResult& result, std:
   const OutputUnits units = output_units(model.scene);
   // w to the left with w'' > 0 pulls at the right.
   const auto fibre = [](int side) { return side > 0 ? "right" : "left"; };
-  return fmt::format(
+  std::string text = fmt::format(
       "  together          {:.3g} MPa at x = {:.4g} {}, crank angle {:.2f} deg, {} side; error {:.1e} MPa\n"
       "  stress cycle      mean {:.3g} MPa, amplitude {:.3g} MPa at x = {:.4g} {}, {} side\n",
       cycle->max_abs * units.megapascal, cycle->x, units.length, cycle->crank_angle * degrees_per_radian,
       fibre(cycle->side), cycle->error * units.megapascal, cycle->mean * units.megapascal,
       cycle->amplitude * units.megapascal, cycle->amplitude_x, units.length, fibre(cycle->amplitude_side));
+  const Strength& strength = body_at(*model.linkage(), result.rods[rod].link)->elastic->strength;
+  if (cycle->yield)
+    text += fmt::format("  against yielding  {} of {:.4g} MPa{}\n", safety_text(*cycle->yield),
+                        strength.yield * units.megapascal,
+                        cycle->yield->value < 1 ? "; THE ROD YIELDS, beyond this model" : "");
+  if (const auto& fatigue = cycle->fatigue)
+    text += fmt::format(
+        "  against fatigue   {}, {} line: mean {:.3g} MPa, amplitude {:.3g} MPa at x = {:.4g} {}, {} side{}\n",
+        safety_text(fatigue->factor), to_string(fatigue_line(strength)), fatigue->mean * units.megapascal,
+        fatigue->amplitude * units.megapascal, fatigue->x, units.length, fibre(fatigue->side),
+        fatigue->factor.value < 1 ? "; IT FAILS IN THE END" : "");
+  return text;
 }
 
 void add_stress_cycle(Json& stress, const SceneModel& model, const SpeedResult& result, std::size_t rod) {
@@ -130,6 +107,21 @@ void add_stress_cycle(Json& stress, const SceneModel& model, const SpeedResult& 
   stress["amplitude_x"] = cycle->amplitude_x;
   stress["amplitude_side"] = cycle->amplitude_side;
   stress["error"] = cycle->error;
+  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
+  if (cycle->yield) {
+    stress["yield_safety"] = number(cycle->yield->value);
+    stress["yield_safety_error"] = number(cycle->yield->error);
+  }
+  if (const auto& fatigue = cycle->fatigue) {
+    stress["fatigue_safety"] = number(fatigue->factor.value);
+    stress["fatigue_safety_error"] = number(fatigue->factor.error);
+    stress["fatigue_line"] =
+        to_string(fatigue_line(body_at(*model.linkage(), result.rods[rod].link)->elastic->strength));
+    stress["fatigue_mean"] = fatigue->mean;
+    stress["fatigue_amplitude"] = fatigue->amplitude;
+    stress["fatigue_x"] = fatigue->x;
+    stress["fatigue_side"] = fatigue->side;
+  }
 }
 
 std::string static_row(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
@@ -146,42 +138,50 @@ std::string static_row(const SceneModel& model, const SpeedResult& result, std::
       found->peak.crank_angle * degrees_per_radian);
 }
 
-std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
-  if (!result.forces) return "";
-  const OutputUnits units = output_units(model.scene);
-  const Units& scene = model.scene.units;
-  const Linkage& linkage = *model.linkage();
+std::string bearing_rows(const std::vector<BearingLoad>& loads, const OutputUnits& units) {
   std::string text = fmt::format("\n  {:<22}  {:>12}  {:>12}  {:>12}  {:>12}\n", "largest resultant [N]", "rigid",
                                  "elastic", "at [deg]", "mean");
-  for (const BearingLoad& load : bearing_loads(*result.forces))
+  for (const BearingLoad& load : loads)
     text += fmt::format("  {:<22}  {:>12.6g}  {:>12.6g}  {:>12.2f}  {:>12.6g}\n", load.joint,
                         load.rigid.value * units.force, load.elastic.value * units.force,
                         load.elastic.crank_angle * degrees_per_radian, load.mean * units.force);
-  const FrameForces frame = frame_of(model, result);
-  const Extremum shaking = largest_length(force_of(frame.elastic)), rigid = largest_length(force_of(frame.rigid));
+  return text;
+}
+
+std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuation, double torque_error, double speed,
+                       const Scene& scene) {
+  const double moment = output_units(scene).moment, W = watt(scene.units);
+  const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / speed;
+  const double error = size * std::max(1e-13, torque_error);
+  const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what is rounding counts as 0
+  std::string text = fmt::format(
+      "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
+      mean * moment, drive.rms * moment, speed * mean * W, drive.rms_power * W, drive.smallest_power * W,
+      drive.largest_power * W);
+  text += fmt::format("  energy that a flywheel takes up and gives back: {:.6g} J a turn",
+                      drive.energy_fluctuation * moment);
+  if (fluctuation)
+    text += fmt::format("; with the crank's inertia the speed would fluctuate by {:.3g} %{}", 100 * *fluctuation,
+                        *fluctuation > 0.1 ? ", more than this estimate is good for" : "");
+  return text + "\n";
+}
+
+std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
+  const std::optional<MachineLoads> loads = machine_loads(model, result);
+  if (!loads) return "";
+  const OutputUnits units = output_units(model.scene);
+  const FrameForces& frame = loads->frame;
+  const Extremum &shaking = loads->shaking_force, &rigid = loads->shaking_force_rigid;
+  std::string text = bearing_rows(loads->bearings, units);
   text += fmt::format(
       "  shaking force on the frame: x {} N, y {} N, resultant up to {:.6g} N at {:.2f} deg (rigid {:.6g} N)\n"
       "  shaking moment about the crank's pivot: {} N m (rigid {} N m)\n",
       range_of(frame.elastic, 0, units.force, 6), range_of(frame.elastic, 1, units.force, 6),
       shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
       range_of(frame.elastic, 2, units.moment, 6), range_of(frame.rigid, 2, units.moment, 6));
-  const Drive drive = drive_of(result.forces->torque, result.speed);
-  const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / result.speed;
-  const double error = size * std::max(1e-13, result.force_errors ? result.force_errors->torque : 0.0);
-  const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what is rounding counts as 0
-  text += fmt::format(
-      "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
-      mean * units.moment, drive.rms * units.moment, result.speed * mean * watt(scene), drive.rms_power * watt(scene),
-      drive.smallest_power * watt(scene), drive.largest_power * watt(scene));
-  text += fmt::format("  energy that a flywheel takes up and gives back: {:.6g} J a turn",
-                      drive.energy_fluctuation * units.moment);
-  if (const double inertia = crank_inertia(linkage); inertia > 0) {
-    const double fluctuation = speed_fluctuation(drive, inertia, result.speed);
-    text += fmt::format("; with the crank's inertia the speed would fluctuate by {:.3g} %{}", 100 * fluctuation,
-                        fluctuation > 0.1 ? ", more than this estimate is good for" : "");
-  }
-  text += "\n";
-  for (const SliderMotion& slider : slider_motions(linkage, result.speed)) {
+  text += drive_rows(loads->drive, loads->speed_fluctuation, result.force_errors ? result.force_errors->torque : 0.0,
+                     result.speed, model.scene);
+  for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed)) {
     const Range position = fourier::range(slider.position, 0);
     text += fmt::format("  {}: stroke {:.6g} {} ({:.6g} .. {:.6g}), velocity {} {}/{}, acceleration {} {}/{}^2\n",
                         slider.name, position.max.value - position.min.value, units.length, position.min.value,
@@ -199,11 +199,28 @@ Json static_json(const SceneModel& model, const SpeedResult& result, std::size_t
   return json;
 }
 
-void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
-  if (!result.forces) return;
-  const Units& units = model.scene.units;
-  const Linkage& linkage = *model.linkage();
-  const std::vector<BearingLoad> loads = bearing_loads(*result.forces);
+namespace {
+
+Json frame_json(const MachineLoads& loads, bool errors, const Units& units) {
+  Json on_frame;
+  const char* const names[] = {"x", "y", "moment"};
+  for (Index c = 0; c < 3; ++c) {
+    on_frame[names[c]] = range_json(loads.frame.elastic, c);
+    on_frame[std::string(names[c]) + "_rigid"] = range_json(loads.frame.rigid, c);
+  }
+  on_frame["max"] = loads.shaking_force.value;
+  on_frame["crank_angle"] = scene_angle(loads.shaking_force.crank_angle, units);
+  on_frame["max_rigid"] = loads.shaking_force_rigid.value;
+  if (errors) {
+    on_frame["force_error"] = loads.shaking_force_error;
+    on_frame["moment_error"] = loads.shaking_moment_error;
+  }
+  return on_frame;
+}
+
+}  // namespace
+
+Json bearings_json(const std::vector<BearingLoad>& loads, const Units& units) {
   Json bearings = Json::object();
   for (const BearingLoad& load : loads)
     bearings[load.joint] = {{"max", load.elastic.value},
@@ -212,44 +229,32 @@ void add_machine(Json& document, const SceneModel& model, const SpeedResult& res
                             {"rms", load.rms},
                             {"max_rigid", load.rigid.value},
                             {"crank_angle_rigid", scene_angle(load.rigid.crank_angle, units)}};
-  document["bearings"] = std::move(bearings);
+  return bearings;
+}
 
-  const FrameForces frame = frame_of(model, result);
-  const FrameErrors errors = frame_errors(model, result, largest_bearing(loads));
-  Json on_frame;
-  const char* const names[] = {"x", "y", "moment"};
-  for (Index c = 0; c < 3; ++c) {
-    on_frame[names[c]] = range_json(frame.elastic, c);
-    on_frame[std::string(names[c]) + "_rigid"] = range_json(frame.rigid, c);
-  }
-  const Extremum largest = largest_length(force_of(frame.elastic)), rigid = largest_length(force_of(frame.rigid));
-  on_frame["max"] = largest.value;
-  on_frame["crank_angle"] = scene_angle(largest.crank_angle, units);
-  on_frame["max_rigid"] = rigid.value;
-  if (result.force_errors) {
-    on_frame["force_error"] = errors.force;
-    on_frame["moment_error"] = errors.moment;
-  }
-  document["frame"] = std::move(on_frame);
-
-  const Drive drive = drive_of(result.forces->torque, result.speed),
-              drive_rigid = drive_of(result.forces->torque_rigid, result.speed);
+void add_drive(Json& document, const Drive& drive, const Drive& rigid, double inertia,
+               const std::optional<double>& fluctuation) {
   document["torque"]["mean"] = drive.mean;
   document["torque"]["rms"] = drive.rms;
-  document["torque"]["rigid"]["mean"] = drive_rigid.mean;
-  document["torque"]["rigid"]["rms"] = drive_rigid.rms;
+  document["torque"]["rigid"]["mean"] = rigid.mean;
+  document["torque"]["rigid"]["rms"] = rigid.rms;
   document["power"] = {{"min", drive.smallest_power},
                        {"max", drive.largest_power},
                        {"mean", drive.mean_power},
                        {"rms", drive.rms_power}};
-  const double inertia = crank_inertia(linkage);
-  document["flywheel"] = {
-      {"energy_fluctuation", drive.energy_fluctuation},
-      {"inertia", inertia},
-      {"speed_fluctuation", inertia > 0 ? Json(speed_fluctuation(drive, inertia, result.speed)) : Json()}};
+  document["flywheel"] = {{"energy_fluctuation", drive.energy_fluctuation},
+                          {"inertia", inertia},
+                          {"speed_fluctuation", fluctuation ? Json(*fluctuation) : Json()}};
+}
 
+void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
+  const std::optional<MachineLoads> loads = machine_loads(model, result);
+  if (!loads) return;
+  document["bearings"] = bearings_json(loads->bearings, model.scene.units);
+  document["frame"] = frame_json(*loads, result.force_errors.has_value(), model.scene.units);
+  add_drive(document, loads->drive, loads->drive_rigid, loads->inertia, loads->speed_fluctuation);
   Json sliders = Json::object();
-  for (const SliderMotion& slider : slider_motions(linkage, result.speed))
+  for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed))
     sliders[slider.name] = {{"position", range_json(slider.position, 0)},
                             {"velocity", range_json(slider.velocity(), 0)},
                             {"acceleration", range_json(slider.acceleration(), 0)}};
@@ -278,7 +283,7 @@ std::optional<CsvFile> stress_csv(const SceneModel& model, const SpeedResult& re
 
 CsvFile frame_csv(const SceneModel& model, const SpeedResult& result) {
   const OutputUnits units = output_units(model.scene);
-  const FrameForces frame = frame_of(model, result);
+  const FrameForces frame = machine_loads(model, result)->frame;
   const Index N = samples_for(std::max(frame.elastic.num_harmonics(), frame.rigid.num_harmonics()));
   CsvFile file;
   file.name = "frame_forces.csv";

@@ -7,10 +7,23 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/bearing_load.hpp"
+#include "hb/analysis/drive.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/output_units.hpp"
 
 namespace hb::tools {
+
+// Parts of the table and the document that all theories have.
+[[nodiscard]] std::string bearing_rows(const std::vector<BearingLoad>& loads, const OutputUnits& units);
+// `torque_error`: relative, below which a mean is 0.
+[[nodiscard]] std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuation, double torque_error,
+                                     double speed, const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json bearings_json(const std::vector<BearingLoad>& loads, const Units& units);
+// Adds power and flywheel to the document, mean and rms to its torque.
+void add_drive(nlohmann::ordered_json& document, const Drive& drive, const Drive& rigid, double inertia,
+               const std::optional<double>& fluctuation);
 
 // Rows for the table, where joint forces were computed.
 [[nodiscard]] std::string machine_rows(const SceneModel& model, const SpeedResult& result);

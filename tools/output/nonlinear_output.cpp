@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <iterator>
 
+#include "hb/analysis/machine_loads.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/json_parts.hpp"
+#include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/stress_words.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -28,7 +30,7 @@ NamedVerdicts verdict_of(const NonlinearResult& result) { return {{"all rods tog
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json rod_json(const NonlinearRod& rod, const NonlinearResult& result, const Units& units) {
+Json rod_json(const NonlinearRod& rod, const Linkage& linkage, const NonlinearResult& result, const Units& units) {
   Json json;
   json["modes"] = rod.q.num_components();
   json["harmonics"] = rod.q.num_harmonics();
@@ -47,7 +49,11 @@ Json rod_json(const NonlinearRod& rod, const NonlinearResult& result, const Unit
   if (rod.shape) {
     json["deflection"] = peak_json(rod.shape->deflection, units);
     json["bending_moment"] = peak_json(rod.shape->bending_moment, units);
-    if (rod.stress) add_stress(json, *rod.stress);
+    if (rod.stress) {
+      add_stress(json, *rod.stress);
+      if (const std::optional<double> least = least_yield_safety(*rod.stress, *body_at(linkage, rod.link)))
+        json["stress"]["yield_safety"] = number(*least);
+    }
   }
   return json;
 }
@@ -78,7 +84,13 @@ void add_rod(Text& text, const NonlinearRod& rod, const Linkage& linkage, const 
     peak("deflection", rod.shape->deflection, 1, units.length);
     peak("bending moment", rod.shape->bending_moment, units.moment, "N m");
   }
-  if (rod.stress) add(text, "{}", stress_lines(*rod.stress, *body_at(linkage, rod.link), units));
+  if (rod.stress) {
+    const Body& link = *body_at(linkage, rod.link);
+    add(text, "{}", stress_lines(*rod.stress, link, units));
+    if (const std::optional<double> least = least_yield_safety(*rod.stress, link))
+      add(text, "  against yielding  safety at least {:.4g} of {:.4g} MPa, both stresses taken at one place{}\n",
+          *least, link.elastic->strength.yield * units.megapascal, *least < 1 ? "; IT MAY YIELD" : "");
+  }
   add(text, "\n");
 }
 
@@ -103,7 +115,14 @@ void add_stability(Text& text, const NonlinearResult& result, const Scene& scene
   add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene));
 }
 
-void add_forces(Text& text, const NonlinearResult& result, const OutputUnits& units) {
+// Where the crank has inertia.
+std::optional<double> fluctuation_of(const SceneModel& model, const NonlinearResult& result, const Drive& drive) {
+  const double inertia = crank_inertia(*model.linkage());
+  if (!(inertia > 0)) return std::nullopt;
+  return speed_fluctuation(drive, inertia, result.speed);
+}
+
+void add_forces(Text& text, const SceneModel& model, const NonlinearResult& result, const OutputUnits& units) {
   const JointForces& forces = *result.forces;
   const auto range = [&](const FourierSeries& series, Eigen::Index c, double factor) {
     const Range of = fourier::range(series, c);
@@ -124,6 +143,11 @@ void add_forces(Text& text, const NonlinearResult& result, const OutputUnits& un
   if (result.force_errors)
     add(text, "  estimated errors: forces {:.1e} of the largest, torque {:.1e}\n", result.force_errors->force,
         result.force_errors->torque);
+  add(text, "{}", bearing_rows(bearing_loads(forces, result.turns), units));
+  const Drive drive = drive_of(forces.torque, result.speed, result.turns);
+  add(text, "{}",
+      drive_rows(drive, fluctuation_of(model, result, drive), result.force_errors ? result.force_errors->torque : 0.0,
+                 result.speed, model.scene));
 }
 
 }  // namespace
@@ -153,7 +177,7 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   json["folds_passed"] = result.folds;
   Json& rods = json["rods"] = Json::object();
   for (const NonlinearRod& rod : result.rods)
-    if (rod.reported) rods[rod.name] = rod_json(rod, result, units);
+    if (rod.reported) rods[rod.name] = rod_json(rod, *model.linkage(), result, units);
   if (result.stability) {
     json["system"] = stability_json(*result.stability, 2 * result.motion.q.num_components());
     json["verdict"] = to_string(result.stability->verdict);
@@ -164,6 +188,10 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
     json["torque"]["rigid"] = range_json(result.forces->torque_rigid, 0);
     json["joints_error"] = number(result.force_errors->force);
     json["torque_error"] = number(result.force_errors->torque);
+    json["bearings"] = bearings_json(bearing_loads(*result.forces, result.turns), units);
+    const Drive drive = drive_of(result.forces->torque, result.speed, result.turns);
+    add_drive(json, drive, drive_of(result.forces->torque_rigid, result.speed, result.turns),
+              crank_inertia(*model.linkage()), fluctuation_of(model, result, drive));
   }
   Json& others = json["other_motions"] = Json::array();
   for (const OtherMotion& other : result.others) {
@@ -192,7 +220,7 @@ std::string nonlinear_table(const SceneModel& model, const NonlinearResult& resu
   for (const NonlinearRod& rod : result.rods)
     if (rod.reported) add_rod(text, rod, *model.linkage(), units);
   if (result.stability) add_stability(text, result, scene);
-  if (result.forces) add_forces(text, result, units);
+  if (result.forces) add_forces(text, model, result, units);
   for (const OtherMotion& other : result.others) {
     add(text, "Another motion at this speed{}:",
         other.verdict ? fmt::format(", {}", to_string(*other.verdict)) : std::string());

@@ -87,6 +87,13 @@ void add_elastic(Text& text, const Body& body, const Units& units) {
       elastic.section_height > 0 ? fmt::format(", height {:.6g} {}", elastic.section_height, units.length) : "");
   add(text, "           buckling as a pinned rod at {:.4g} N, axial stress {:.4g} MPa\n",
       EJ * k * k * units.force_in_newton(), EJ * k * k / elastic.area * pascal * 1e-6);
+  const Strength& strength = elastic.strength;
+  std::string strengths;
+  for (const auto& [name, value] : {std::pair("yield", strength.yield), std::pair("tensile", strength.tensile),
+                                    std::pair("endurance", strength.endurance)})
+    if (value > 0)
+      strengths += fmt::format("{}{} {:.6g} MPa", strengths.empty() ? "" : ", ", name, value * pascal * 1e-6);
+  if (!strengths.empty()) add(text, "           strength: {}\n", strengths);
   if (elastic.shear) {
     add(text, "           shear: G {:.6g} GPa, k {:.6g}\n", elastic.shear->modulus * pascal * 1e-9,
         elastic.shear->coefficient);
@@ -190,6 +197,9 @@ Json body_json(const Body& body, const Units& units) {
                        {"damping_y", elastic.damping_y}};
     if (elastic.shear) json["elastic"]["shear"] = {{"G", elastic.shear->modulus}, {"k", elastic.shear->coefficient}};
     if (elastic.section_height > 0) json["elastic"]["section_height"] = elastic.section_height;
+    if (elastic.strength.yield > 0) json["elastic"]["yield"] = elastic.strength.yield;
+    if (elastic.strength.tensile > 0) json["elastic"]["tensile"] = elastic.strength.tensile;
+    if (elastic.strength.endurance > 0) json["elastic"]["endurance"] = elastic.strength.endurance;
     json["elastic"]["slenderness"] = body.length / std::sqrt(elastic.second_moment / elastic.area);
     const std::vector<double> frequencies = natural_frequencies(body, num_frequencies);
     json["natural_frequencies"] = frequencies;

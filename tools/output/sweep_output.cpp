@@ -13,6 +13,7 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
+#include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -65,6 +66,7 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
     json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment.value_or(nan)); });
     json["buckling_share"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share.value_or(nan)); });
     json["strain"] = of_rod([](const RodPoint& rod) { return number(rod.strain.value_or(nan)); });
+    add_stress(json, r, points);
   }
   if (scene.first().linkage())
     json["theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.theory_error.value_or(nan)); });
@@ -108,6 +110,7 @@ void add_forces(Json& json, const SweepResult& result) {
   json["torque"] = ranges_json(result.points, [](const SweepPoint& p) { return p.torque ? &*p.torque : nullptr; });
   json["torque"]["rigid"] =
       ranges_json(result.points, [](const SweepPoint& p) { return p.torque_rigid ? &*p.torque_rigid : nullptr; });
+  add_machine(json, result);
 }
 
 Json critical_json(const SweepResult& result, const CriticalPoint& point, const SweepScene& scene) {
@@ -309,6 +312,8 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
       file.columns.push_back(fmt::format("growth of mode {}{}", i, bracketed(units.rate)));
     }
   }
+  const std::vector<std::string> stress = stress_columns(result, r);
+  file.columns.insert(file.columns.end(), stress.begin(), stress.end());
   file.rows.setConstant(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(file.columns.size()), nan);
   std::vector<std::vector<ModeState>> modes;
   if (only.stability) modes = tracks(result, r, points);
@@ -347,6 +352,9 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
         row(column++) = mode.growth;
       }
     }
+    Eigen::RowVectorXd stresses = row.tail(static_cast<Eigen::Index>(stress.size()));
+    fill_stress(here, units.megapascal, stress, stresses);
+    row.tail(stresses.size()) = stresses;
   }
   return file;
 }

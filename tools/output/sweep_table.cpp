@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "tools/output/output_units.hpp"
+#include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/theory_words.hpp"
@@ -185,6 +186,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     for (const std::size_t k : rows) add_point(text, scene, result, r, result.points[k], distances);
     if (rows.size() < values.size())
       add(text, "  ({} of {} points; --json and --out have all)\n", rows.size(), values.size());
+    if (result.computed.shape) add(text, "{}", stress_rows(scene, result, r));
     if (result.searched_bands)
       add_bands(text, scene, rod);
     else if (result.computed.stability)
@@ -194,6 +196,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     else if (result.computed.steady)
       add(text, "  resonance peaks between the points were not looked for\n");
   }
+  if (result.computed.reactions) add(text, "{}", machine_rows(scene, result));
   const auto closed = static_cast<std::size_t>(std::count_if(
       result.points.begin(), result.points.end(), [](const SweepPoint& point) { return point.problem.empty(); }));
   if (closed < result.points.size()) {

@@ -286,8 +286,43 @@ void add_rod(py::module_& module) {
       });
 }
 
+using SeriesOf = const FourierSeries* ForceView::*;
+
+// One number of each component over the turn.
+template <class Number>
+auto over_the_turn(SeriesOf series, Number number) {
+  return [series, number](const ForceView& force) {
+    const FourierSeries& of = *(force.*series);
+    Eigen::VectorXd values(of.num_components());
+    for (Eigen::Index c = 0; c < values.size(); ++c) values(c) = number(of, c);
+    return shaped(values, of.num_components() == 1, true);
+  };
+}
+
+double mean_square(const FourierSeries& series, Eigen::Index component) {
+  return std::norm(series.c(component, 0)) + 2 * series.c.row(component).tail(series.num_harmonics()).squaredNorm();
+}
+
+void add_numbers(py::class_<ForceView>& force, const std::string& suffix, const std::string& of, SeriesOf series) {
+  const auto add = [&](const char* name, const char* what, auto number) {
+    const std::string doc = what + of + ": (2,); guides and torque a number.";
+    force.def_property_readonly((name + suffix).c_str(), over_the_turn(series, number), doc.c_str());
+  };
+  add("min", "Smallest value over the turn",
+      [](const FourierSeries& s, Eigen::Index c) { return fourier::range(s, c).min.value; });
+  add("max", "Largest value over the turn",
+      [](const FourierSeries& s, Eigen::Index c) { return fourier::range(s, c).max.value; });
+  add("mean", "Mean over the turn", [](const FourierSeries& s, Eigen::Index c) { return s.c(c, 0).real(); });
+  add("rms", "Root of the mean square over the turn",
+      [](const FourierSeries& s, Eigen::Index c) { return std::sqrt(mean_square(s, c)); });
+}
+
 void add_force(py::module_& module) {
-  py::class_<ForceView>(module, "Force", "A joint's force, or the driving torque, over the turn, in the scene's units.")
+  py::class_<ForceView> force(module, "Force",
+                              "A joint's force, or the driving torque, over the turn, in the scene's units.");
+  add_numbers(force, "", "", &ForceView::elastic);
+  add_numbers(force, "_rigid", " of the rigid mechanism", &ForceView::rigid);
+  force
       .def(
           "elastic", [](const ForceView& f, const py::object& angle) { return force_at(f, *f.elastic, angle); },
           py::arg("angle"), "With the links' elasticity: (2, len(angle)); guides and torque (len(angle),).")

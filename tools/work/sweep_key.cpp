@@ -39,6 +39,16 @@ std::uint64_t sweep_key(const SweepScene& scene) {
       add(key, rod.system.stiffness);
       add(key, rod.system.load);
     }
+    if (const Linkage* linkage = place.model->linkage()) {
+      // What stresses and the flywheel are judged by does not reach the rods.
+      const Body& crank = linkage->crank.body;
+      key.add(crank.inertia + crank.mass * std::norm(crank.com));
+      for (const RodModel& rod : place.model->rods) {
+        const Elastic& elastic = *body_at(*linkage, rod.link)->elastic;
+        key.add(elastic.section_height).add(elastic.strength.yield).add(elastic.strength.tensile);
+        key.add(elastic.strength.endurance);
+      }
+    }
     if (settings.only.reactions && place.model->linkage()) {
       // Masses of rigid links do not reach the rods.
       const JointForces forces = joint_forces(*place.model->linkage(), place.speed, {});

@@ -13,6 +13,27 @@ void visit_range(Visit& visit, TurnRange& range) {
 }
 
 template <class Visit>
+void visit_stress(Visit& visit, StressPoint& stress) {
+  visit(stress.max_abs);
+  visit(stress.mean);
+  visit(stress.amplitude);
+  visit_if_there(visit, stress.yield_safety, visit);
+  visit_if_there(visit, stress.fatigue_safety, visit);
+}
+
+template <class Visit>
+void visit_machine(Visit& visit, MachinePoint& machine) {
+  visit_elements(visit, machine.bearings, visit);
+  visit(machine.shaking_force);
+  visit_range(visit, machine.shaking_moment);
+  Drive& drive = machine.drive;
+  for (double* value : {&drive.mean, &drive.rms, &drive.mean_power, &drive.rms_power, &drive.largest_power,
+                        &drive.smallest_power, &drive.energy_fluctuation})
+    visit(*value);
+  visit_if_there(visit, machine.speed_fluctuation, visit);
+}
+
+template <class Visit>
 void visit_point(Visit& visit, SweepPoint& point) {
   visit(point.x);
   visit(point.speed);
@@ -28,6 +49,7 @@ void visit_point(Visit& visit, SweepPoint& point) {
     visit_if_there(visit, rod.bending_moment, visit);
     visit_if_there(visit, rod.buckling_share, visit);
     visit_if_there(visit, rod.strain, visit);
+    visit_if_there(visit, rod.stress, [&](StressPoint& stress) { visit_stress(visit, stress); });
     visit_if_there(visit, rod.theory_error, visit);
     visit_if_there(visit, rod.stability, [&](StabilitySample& sample) { visit_sample(visit, sample); });
   });
@@ -35,6 +57,7 @@ void visit_point(Visit& visit, SweepPoint& point) {
   visit_elements(visit, point.joints_rigid, [&](TurnRange& range) { visit_range(visit, range); });
   visit_if_there(visit, point.torque, [&](TurnRange& range) { visit_range(visit, range); });
   visit_if_there(visit, point.torque_rigid, [&](TurnRange& range) { visit_range(visit, range); });
+  visit_if_there(visit, point.machine, [&](MachinePoint& machine) { visit_machine(visit, machine); });
 }
 
 template <class Visit>

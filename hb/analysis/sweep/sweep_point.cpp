@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/machine_loads.hpp"
 #include "hb/analysis/rod_steady.hpp"
+#include "hb/analysis/stress_cycle.hpp"
 
 namespace hb {
 namespace {
@@ -14,6 +16,23 @@ TurnRange turn_range(const FourierSeries& series, Eigen::Index component) {
   if (series.num_harmonics() < 0) return {};
   const Range range = fourier::range(series, component);
   return {range.min.value, range.max.value};
+}
+
+StressPoint stress_point(const StressCycle& cycle) {
+  StressPoint point{cycle.max_abs, cycle.mean, cycle.amplitude, {}, {}};
+  if (cycle.yield) point.yield_safety = cycle.yield->value;
+  if (cycle.fatigue) point.fatigue_safety = cycle.fatigue->factor.value;
+  return point;
+}
+
+MachinePoint machine_point(const MachineLoads& loads) {
+  MachinePoint point;
+  for (const BearingLoad& bearing : loads.bearings) point.bearings.push_back(bearing.elastic.value);
+  point.shaking_force = loads.shaking_force.value;
+  point.shaking_moment = turn_range(loads.frame.elastic, 2);
+  point.drive = loads.drive;
+  point.speed_fluctuation = loads.speed_fluctuation;
+  return point;
 }
 
 RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
@@ -37,6 +56,8 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
         const RodStress stress = rod_stress(link, coefficients, speed, *point.bending_moment);
         point.buckling_share = stress.buckling_share();
         point.strain = stress.strain;
+        if (stress.height_known)
+          point.stress = stress_point(stress_cycle(link, coefficients, speed, state.q, {}, state.error_bound));
       }
       q = std::move(state.q);
     }
@@ -94,6 +115,7 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
     }
     point.torque = turn_range(forces.torque, 0);
     point.torque_rigid = turn_range(forces.torque_rigid, 0);
+    point.machine = machine_point(machine_loads(*place.model->linkage(), place.speed, forces, responses, std::nullopt));
   }
   return point;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/drive.hpp"
 #include "hb/analysis/sweep/sweep_scene.hpp"
 #include "hb/engine/boundaries/stability_sample.hpp"
 
@@ -15,6 +16,21 @@ struct TurnRange {
   double min = 0, max = 0;
 };
 
+// StressCycle in short, scene's units; safeties infinite without stress.
+struct StressPoint {
+  double max_abs = 0, mean = 0, amplitude = 0;
+  std::optional<double> yield_safety, fatigue_safety;
+};
+
+// MachineLoads in short, elastic.
+struct MachinePoint {
+  std::vector<double> bearings;  // largest resultant of each joint
+  double shaking_force = 0;  // largest resultant
+  TurnRange shaking_moment;
+  Drive drive;
+  std::optional<double> speed_fluctuation;
+};
+
 struct RodPoint {
   std::optional<SteadyStatus> steady;  // empty: not asked for
   int num_harmonics = 0;
@@ -22,6 +38,7 @@ struct RodPoint {
   std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
   std::optional<double> deflection, bending_moment;  // largest over rod and turn
   std::optional<double> buckling_share, strain;  // RodStress, beside them
+  std::optional<StressPoint> stress;  // with a section
   std::optional<double> theory_error;  // TheoryErrors::Rod::q; empty: beyond the linear theory, or q not asked for
   std::optional<StabilitySample> stability;
 };
@@ -33,6 +50,7 @@ struct SweepPoint {
   std::string theory_reason;  // TheoryErrors::reason
   std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
   std::optional<TurnRange> torque, torque_rigid;
+  std::optional<MachinePoint> machine;
 };
 
 // What of `only` the model has.

@@ -6,6 +6,8 @@ import pandas
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
+from .loads import AxialForce, NearestResonance, Peak, Stress
+
 version: str
 
 _Table = tuple[list[str], NDArray[Any]]
@@ -121,6 +123,72 @@ class Rod:
     @property
     def verdict(self) -> Optional[str]:
         """ "stable", "bounded", "unstable" or "undecided"; None: not computed."""
+    @property
+    def deflection_peak(self) -> Optional[Peak]:
+        """Largest |w| over rod and turn, and where; relative error: modes_error. None: not computed."""
+    @property
+    def bending_moment_peak(self) -> Optional[Peak]:
+        """Largest bending moment over rod and turn, and where; None: not computed."""
+    @property
+    def static_deflection(self) -> Optional[Peak]:
+        """Largest deflection of the mechanism at rest, with its error; None: not computed, or the rod would buckle."""
+    @property
+    def axial_force(self) -> Optional[AxialForce]:
+        """Largest pull and push, and the share of the buckling load; None: not computed."""
+    @property
+    def stress(self) -> Optional[Stress]:
+        """Largest stress, widest cycle, safeties against yielding and fatigue, with errors; None: not computed."""
+    @property
+    def nearest_resonance(self) -> Optional[NearestResonance]:
+        """The nearest speed at which a natural frequency is met; None: not computed, or none."""
+    @property
+    def frequencies(self) -> Any:
+        """Frequency of each exponent, unfolded, rad per unit time, read-only; None: not computed."""
+    @property
+    def multipliers(self) -> Any:
+        """Floquet multiplier of each exponent, complex, read-only; None: not computed."""
+    @property
+    def strain(self) -> Optional[float]:
+        """Largest strain, axial and bending added; None: not computed."""
+    @property
+    def amplification(self) -> Optional[float]:
+        """Largest |q| against that of the same load applied slowly; None: no value."""
+    @property
+    def resonance_distance(self) -> Optional[float]:
+        """Smallest singular value of the scaled balance: 0 at a resonance."""
+    @property
+    def status(self) -> Optional[str]:
+        """Of the periodic solution, in words; None: not computed."""
+    @property
+    def steady_method(self) -> Optional[str]:
+        """How the periodic solution was found."""
+    @property
+    def residual(self) -> Optional[float]:
+        """Relative residual of the periodic solution."""
+    @property
+    def error_bound_proved(self) -> Optional[bool]:
+        """Whether error_bound is proved, not estimated."""
+    @property
+    def more_modes_needed(self) -> Optional[bool]:
+        """Whether modes_error is above 0.01; None: not asked."""
+    @property
+    def theory(self) -> Optional[str]:
+        """ "within", "beyond" or "not judged"; None of a [hill] system."""
+    @property
+    def deflection_theory_error(self) -> Optional[float]:
+        """theory_error of the deflection; None: beyond, or not judged."""
+    @property
+    def theory_axial_share(self) -> Optional[float]:
+        """What axial elasticity would change of theory_error, a share of it, a rough estimate; or None."""
+    @property
+    def exponents_unresolved(self) -> Optional[int]:
+        """How many exponents were looked for and not resolved."""
+    @property
+    def exponents_uncertain(self) -> Any:
+        """Exponents with bars too wide, as in the document: exponent and error of each; None: not computed."""
+    @property
+    def growth_modes_error(self) -> Optional[float]:
+        """Estimated relative error of the growth rate from the modes left out; None: not asked."""
     def response(self, angle: ArrayLike) -> NDArray[Any]:
         """q_i at crank angles in the scene's unit: (I, len(angle))."""
     def deflection(self, x: ArrayLike, angle: ArrayLike) -> Any:
@@ -153,9 +221,34 @@ class Force:
     @property
     def rigid_series(self) -> NDArray[Any]:
         """Fourier coefficients of the rigid mechanism."""
+    @property
+    def min(self) -> Any:
+        """Smallest value over the turn: (2,); guides and torque a number."""
+    @property
+    def max(self) -> Any:
+        """Largest value over the turn: (2,); guides and torque a number."""
+    @property
+    def mean(self) -> Any:
+        """Mean over the turn: (2,); guides and torque a number."""
+    @property
+    def rms(self) -> Any:
+        """Root of the mean square over the turn: (2,); guides and torque a number."""
+    @property
+    def min_rigid(self) -> Any:
+        """Smallest value over the turn of the rigid mechanism: (2,); guides and torque a number."""
+    @property
+    def max_rigid(self) -> Any:
+        """Largest value over the turn of the rigid mechanism: (2,); guides and torque a number."""
+    @property
+    def mean_rigid(self) -> Any:
+        """Mean over the turn of the rigid mechanism: (2,); guides and torque a number."""
+    @property
+    def rms_rigid(self) -> Any:
+        """Root of the mean square over the turn of the rigid mechanism: (2,); guides and torque a number."""
 
 class Answer:
     origin: tuple[Any, tuple[Any, ...]]
+    document: dict[str, Any]
     @property
     def omega(self) -> float: ...
     @property

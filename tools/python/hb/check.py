@@ -42,6 +42,61 @@ class RodCheck:
         return self._entry.get("exponent_allowed")
 
     @property
+    def q1_difference(self) -> Any:
+        """Largest difference of dq/dt, relative to the largest."""
+        return self._entry.get("q1_difference")
+
+    @property
+    def q1_allowed(self) -> Any:
+        """What the error bars allow for q1_difference."""
+        return self._entry.get("q1_allowed")
+
+    @property
+    def deflection_difference(self) -> Any:
+        """Largest difference of the deflection over rod and turn, relative to the largest; None of a [hill] system."""
+        return self._entry.get("deflection_difference")
+
+    @property
+    def deflection_allowed(self) -> Any:
+        """What the error bars allow for deflection_difference."""
+        return self._entry.get("deflection_allowed")
+
+    @property
+    def marching_difference(self) -> Any:
+        """With march=True: difference of q after the transient has died out; else None."""
+        return self._entry.get("marching_difference")
+
+    @property
+    def marching_allowed(self) -> Any:
+        """What the error bars allow for marching_difference."""
+        return self._entry.get("marching_allowed")
+
+    @property
+    def harmonic_balance(self) -> Any:
+        """What harmonic balance took and gave, with the keys of the document."""
+        return self._entry.get("harmonic_balance")
+
+    @property
+    def shooting(self) -> Any:
+        """What shooting took and gave, with the keys of the document."""
+        return self._entry.get("shooting")
+
+    @property
+    def marching(self) -> Any:
+        """What marching took and gave, with the keys of the document; None where it was not asked for."""
+        return self._entry.get("marching")
+
+    @property
+    def theory_error(self) -> Any:
+        """By how much the linear theory itself is off, relative; None: beyond it, or not judged."""
+        return self._entry.get("theory_error")
+
+    @property
+    def verdict(self) -> Any:
+        """At several speeds, a list of the verdicts of shooting; else None: see harmonic_balance and shooting."""
+        return self._entry.get("verdict")
+
+    @property
     def not_compared(self) -> Optional[str]:
         """Why there is no comparison; None where there is one."""
         return self._entry.get("not_compared")
@@ -68,6 +123,32 @@ class Check(Result):
     def agrees(self) -> bool:
         """Whether both paths agree in everything that could be compared."""
         return bool(self._document["agrees"])
+
+    @property
+    def verdict(self) -> Any:
+        """Of the mechanism, by harmonic balance: "stable", "bounded", "unstable" or "undecided"; at several speeds a list.
+        None where stability was not asked for."""
+        return self._document.get("verdict")
+
+    @property
+    def rpm(self) -> Any:
+        """Speed, turns per minute; at several speeds a list."""
+        return self._document["rpm"]
+
+    @property
+    def omega(self) -> Any:
+        """Speed, rad per unit time; at several speeds a list."""
+        return self._document["omega"]
+
+    @property
+    def joints(self) -> Any:
+        """`difference`, `allowed`, `agrees` of joint forces, relative to the largest; None where not compared."""
+        return self._document.get("joints")
+
+    @property
+    def torque(self) -> Any:
+        """The same of the driving torque."""
+        return self._document.get("torque")
 
     @property
     def shortfalls(self) -> list[str]:

@@ -36,6 +36,26 @@ class Result:
         return self._handle
 
     @property
+    def title(self) -> str:
+        """The scene's title."""
+        return str(self._document.get("title", ""))
+
+    @property
+    def units(self) -> dict[str, Any]:
+        """The scene's units, and what its units of force and torque are in N and N m."""
+        return dict(self._document.get("units", {}))
+
+    @property
+    def notes(self) -> list[str]:
+        """What missed its tolerance, and what is known less well than usual."""
+        return list(self._document.get("notes", []))
+
+    @property
+    def tolerance(self) -> Optional[float]:
+        """The relative error asked for; None where the document does not say."""
+        return self._document.get("tolerance")
+
+    @property
     def warnings(self) -> list[str]:
         """What is odd, and where an answer is beyond the linear theory."""
         return list(self._document.get("warnings", []))

@@ -15,7 +15,14 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
+    from .loads import AxialForce, Bearing, Flywheel, Frame, NearestResonance, Peak, Power, SliderMotion, Stress
     from .scene import Scene
+
+
+def _document(answer: _core.Answer) -> dict[str, Any]:
+    if not hasattr(answer, "document"):
+        answer.document = json.loads(answer.json())
+    return answer.document
 
 
 class _Forces(dict[str, Force]):
@@ -36,7 +43,6 @@ class Steady:
         answer.origin = (_answer, (scene, arguments))
         self._rods: dict[str, Rod] = answer.rods()
         self._joints = _Forces(answer.joints())
-        self._document: Optional[dict[str, Any]] = None
 
     @property
     def scene(self) -> "Scene":
@@ -90,15 +96,149 @@ class Steady:
         return self._answer.shortfalls
 
     @property
+    def title(self) -> str:
+        """The scene's title."""
+        return str(self._doc["title"])
+
+    @property
+    def status(self) -> str:
+        """"reached", or "tolerance not reached"."""
+        return str(self._doc["status"])
+
+    @property
+    def notes(self) -> list[str]:
+        """`shortfalls`, and what is known less well than usual though no tolerance was asked for it."""
+        return list(self._doc.get("notes", []))
+
+    @property
+    def tolerance(self) -> float:
+        """The relative error asked for."""
+        return float(self._doc["tolerance"])
+
+    @property
+    def units(self) -> dict[str, Any]:
+        """The scene's units, and what its units of force and torque are in N and N m."""
+        return dict(self._doc["units"])
+
+    @property
+    def bearings(self) -> "dict[str, Bearing]":
+        """Length of each joint's force by the joint's name: its largest value, where, mean and rms; empty where joint
+        forces were not computed."""
+        from .loads import Bearing, made_by_name
+
+        return made_by_name(Bearing, self._doc.get("bearings"))
+
+    @property
+    def frame(self) -> "Optional[Frame]":
+        """Shaking force and moment; None where not computed, and of a motion without linearisation."""
+        from .loads import Frame, made
+
+        return made(Frame, self._doc.get("frame"))
+
+    @property
+    def power(self) -> "Optional[Power]":
+        """Power of the drive; None where not computed."""
+        from .loads import Power, made
+
+        return made(Power, self._doc.get("power"))
+
+    @property
+    def flywheel(self) -> "Optional[Flywheel]":
+        """What a flywheel takes up, and the fluctuation of the speed; None where not computed."""
+        from .loads import Flywheel, made
+
+        return made(Flywheel, self._doc.get("flywheel"))
+
+    @property
+    def sliders(self) -> "dict[str, SliderMotion]":
+        """Motion of each slider by name; empty where there is none or it was not computed."""
+        from .loads import SliderMotion, made_by_name
+
+        return made_by_name(SliderMotion, self._doc.get("sliders"))
+
+    @property
+    def joints_error(self) -> Optional[float]:
+        """Estimated error of joint forces for the modes kept, relative to the largest; None: not computed."""
+        return self._doc.get("joints_error")
+
+    @property
+    def torque_error(self) -> Optional[float]:
+        """The same of the torque."""
+        return self._doc.get("torque_error")
+
+    @property
+    def joints_modes_error(self) -> Optional[float]:
+        """Estimated error of joint forces from the modes left out, relative to the largest."""
+        return self._doc.get("joints_modes_error")
+
+    @property
+    def torque_modes_error(self) -> Optional[float]:
+        """The same of the torque."""
+        return self._doc.get("torque_modes_error")
+
+    @property
+    def joints_theory_error(self) -> Optional[float]:
+        """What the first nonlinear correction changes of joint forces, relative; None: no value, or not judged."""
+        return self._doc.get("joints_theory_error")
+
+    @property
+    def torque_theory_error(self) -> Optional[float]:
+        """The same of the torque."""
+        return self._doc.get("torque_theory_error")
+
+    @property
+    def theory(self) -> str:
+        """"linear" or "nonlinear"."""
+        return str(self._doc.get("theory", "linear"))
+
+    @property
+    def period(self) -> int:
+        """Number of turns after which the motion repeats."""
+        return int(self._doc.get("period", 1))
+
+    @property
+    def found(self) -> bool:
+        """Whether there is a motion; False only where the motion without linearisation was not found."""
+        return bool(self._doc.get("found", True))
+
+    @property
+    def other_motions(self) -> list[dict[str, Any]]:
+        """Other motions without linearisation met at this speed: `rods`, `verdict`."""
+        return list(self._doc.get("other_motions", []))
+
+    @property
+    def last_motion(self) -> Optional[dict[str, Any]]:
+        """No motion found: the last one on the way, `rpm`, `omega`, `rods`; else None."""
+        return self._doc.get("last_motion")
+
+    @property
+    def followed_from_rpm(self) -> Optional[float]:
+        """Where the branch began; None where the linear answer is near at all lower speeds, or of the linear theory."""
+        return self._doc.get("followed_from_rpm")
+
+    @property
+    def folds_passed(self) -> int:
+        """Folds on the way along the branch."""
+        return int(self._doc.get("folds_passed", 0))
+
+    @property
+    def motion_tolerance(self) -> Optional[float]:
+        """What a motion without linearisation was solved to, relative; else None."""
+        return self._doc.get("motion_tolerance")
+
+    @property
+    def modes_tolerance(self) -> Optional[float]:
+        """With modes="auto", what modes_error was brought below; else None."""
+        return self._doc.get("modes_tolerance")
+
+    @property
     def warnings(self) -> list[str]:
         """What is odd about the scene, and where the answer is beyond the linear theory."""
         return list(self._doc.get("warnings", []))
 
     @property
     def _doc(self) -> dict[str, Any]:
-        if self._document is None:
-            self._document = json.loads(self._answer.json())
-        return self._document
+        return _document(self._answer)
 
     def to_dict(self) -> dict[str, Any]:
         """The document of `hb steady --json`."""
@@ -198,6 +338,115 @@ def _rod_to_frame(self: Rod, what: str = "response") -> "pandas.DataFrame":
 
     return frames.of_table(self._table(what))
 
+
+def _entry(rod: Rod) -> dict[str, Any]:
+    entry: dict[str, Any] = _document(rod._owner)["rods"][rod.name]
+    return entry
+
+
+def _peak(rod: Rod, key: str) -> "Optional[Peak]":
+    from .loads import Peak, made
+
+    return made(Peak, _entry(rod).get(key))
+
+
+def _deflection_peak(self: Rod) -> "Optional[Peak]":
+    """Largest |w| over rod and turn, and where; relative error: modes_error. None: not computed."""
+    return _peak(self, "deflection")
+
+
+def _bending_moment_peak(self: Rod) -> "Optional[Peak]":
+    """Largest bending moment over rod and turn, and where; None: not computed."""
+    return _peak(self, "bending_moment")
+
+
+def _static_deflection(self: Rod) -> "Optional[Peak]":
+    """Largest deflection of the mechanism at rest, with its error; None: not computed, or the rod would buckle."""
+    return _peak(self, "static_deflection")
+
+
+def _axial_force(self: Rod) -> "Optional[AxialForce]":
+    """Largest pull and push, and the share of the buckling load; None: not computed."""
+    from .loads import AxialForce, made
+
+    return made(AxialForce, _entry(self).get("axial_force"))
+
+
+def _stress(self: Rod) -> "Optional[Stress]":
+    """Largest stress, widest cycle, safeties against yielding and fatigue, with errors; None: not computed."""
+    from .loads import Stress, made
+
+    return made(Stress, _entry(self).get("stress"))
+
+
+def _nearest_resonance(self: Rod) -> "Optional[NearestResonance]":
+    """The nearest speed at which a natural frequency is met; None: not computed, or none."""
+    from .loads import NearestResonance, made
+
+    return made(NearestResonance, _entry(self).get("nearest_resonance"))
+
+
+def _frequencies(self: Rod) -> Any:
+    """Frequency of each exponent, unfolded, rad per unit time, read-only; None: not computed."""
+    from .result import floats
+
+    values = _entry(self).get("frequencies")
+    return None if values is None else floats(values)
+
+
+def _multipliers(self: Rod) -> Any:
+    """Floquet multiplier of each exponent, complex, read-only; None: not computed."""
+    import numpy
+
+    values = _entry(self).get("multipliers")
+    if values is None:
+        return None
+    array = numpy.array([complex(*pair) for pair in values])
+    array.flags.writeable = False
+    return array
+
+
+def _of_entry(key: str, doc: str) -> property:
+    def get(self: Rod) -> Any:
+        return _entry(self).get(key)
+
+    get.__doc__ = doc
+    return property(get)
+
+
+for _key, _attribute in {
+    "deflection_peak": property(_deflection_peak),
+    "bending_moment_peak": property(_bending_moment_peak),
+    "static_deflection": property(_static_deflection),
+    "axial_force": property(_axial_force),
+    "stress": property(_stress),
+    "nearest_resonance": property(_nearest_resonance),
+    "frequencies": property(_frequencies),
+    "multipliers": property(_multipliers),
+    "strain": _of_entry("strain", "Largest strain, axial and bending added; None: not computed."),
+    "amplification": _of_entry("amplification", "Largest |q| against that of the same load applied slowly; None: no value."),
+    "resonance_distance": _of_entry("resonance_distance", "Smallest singular value of the scaled balance: 0 at a resonance."),
+    "status": _of_entry("status", "Of the periodic solution, in words; None: not computed."),
+    "steady_method": _of_entry("steady_method", "How the periodic solution was found."),
+    "residual": _of_entry("residual", "Relative residual of the periodic solution."),
+    "error_bound_proved": _of_entry("error_bound_proved", "Whether error_bound is proved, not estimated."),
+    "more_modes_needed": _of_entry("more_modes_needed", "Whether modes_error is above 0.01; None: not asked."),
+    "theory": _of_entry("theory", '"within", "beyond" or "not judged"; None of a [hill] system.'),
+    "deflection_theory_error": _of_entry(
+        "deflection_theory_error", "theory_error of the deflection; None: beyond, or not judged."
+    ),
+    "theory_axial_share": _of_entry(
+        "theory_axial_share", "What axial elasticity would change of theory_error, a share of it, a rough estimate; or None."
+    ),
+    "exponents_unresolved": _of_entry("exponents_unresolved", "How many exponents were looked for and not resolved."),
+    "exponents_uncertain": _of_entry(
+        "exponents_uncertain", "Exponents with bars too wide, as in the document: exponent and error of each; None: not computed."
+    ),
+    "growth_modes_error": _of_entry(
+        "growth_modes_error", "Estimated relative error of the growth rate from the modes left out; None: not asked."
+    ),
+}.items():
+    setattr(Rod, _key, _attribute)
 
 for _name, _function in {
     "to_dict": _rod_to_dict,

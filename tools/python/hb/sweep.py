@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from .loads import Bearing, Flywheel, Frame, Power, Stress, Torque
+
 
 class CriticalPoint(dict[str, Any]):
     """A resonance peak, with the keys of the command's document as attributes too; float() of it is its place."""
@@ -75,6 +77,34 @@ class SweepRod:
     def bending_moment(self) -> "NDArray[Any]":
         """Largest bending moment over rod and turn, (points,)."""
         return floats(self._list("bending_moment"))
+
+    @cached_property
+    def resonance_distance(self) -> "NDArray[Any]":
+        """Smallest singular value of the scaled balance, (points,): 0 at a resonance."""
+        return floats(self._list("resonance_distance"))
+
+    @cached_property
+    def buckling_share(self) -> "NDArray[Any]":
+        """Largest push over the rod's buckling load, (points,)."""
+        return floats(self._list("buckling_share"))
+
+    @cached_property
+    def strain(self) -> "NDArray[Any]":
+        """Largest strain, axial and bending added, (points,)."""
+        return floats(self._list("strain"))
+
+    @cached_property
+    def stress(self) -> "Optional[Stress]":
+        """max_abs, mean, amplitude, yield_safety, fatigue_safety as arrays, (points,); None where the scene gives no
+        `section`, or shapes were not computed."""
+        from .loads import Stress, made
+
+        return made(Stress, self._entry.get("stress"), floats)
+
+    @cached_property
+    def distance_to_boundary(self) -> "NDArray[Any]":
+        """To the nearest end of an unstable band of this rod, along the axis, (points,); NaN where there is none."""
+        return floats(self._list("distance_to_boundary"))
 
     @cached_property
     def growth_rate(self) -> "NDArray[Any]":
@@ -153,6 +183,11 @@ class Sweep(Result):
         """What it goes along: "rpm", "omega" or a path."""
         return str(self._document["x"]["path"])
 
+    @property
+    def status(self) -> str:
+        """"reached", or "tolerance not reached"."""
+        return str(self._document["status"])
+
     @cached_property
     def x(self) -> "NDArray[Any]":
         """Values along the axis, (points,)."""
@@ -194,6 +229,16 @@ class Sweep(Result):
         return {name: rod.unstable_bands for name, rod in self._rods.items()}
 
     @property
+    def not_excluded(self) -> dict[str, Optional[list[list[float]]]]:
+        """[from, to] of each place where further bands or gaps are not excluded, by rod."""
+        return {name: rod.not_excluded for name, rod in self._rods.items()}
+
+    @property
+    def band_details(self) -> dict[str, Optional[list[dict[str, Any]]]]:
+        """The unstable bands with kind and error of their ends and the fastest growth inside, by rod."""
+        return {name: rod.band_details for name, rod in self._rods.items()}
+
+    @property
     def branches(self) -> list[dict[str, Any]]:
         """Of the motion without linearisation, along the arc, with the keys of the document; else empty."""
         return [dict(branch) for branch in self._document.get("branches", [])]
@@ -217,6 +262,71 @@ class Sweep(Result):
     def joints(self) -> dict[str, Any]:
         """Smallest and largest joint forces at each point, as in the document."""
         return dict(self._document.get("joints", {}))
+
+    @cached_property
+    def torque(self) -> "Optional[Torque]":
+        """Driving torque: min, max, mean, rms, (points,), and `rigid` with min and max; None where not computed."""
+        from .loads import Torque, made
+
+        return made(Torque, self._document.get("torque"), floats)
+
+    @cached_property
+    def bearings(self) -> "dict[str, Bearing]":
+        """Largest resultant at each joint: `max`, (points,); empty where joint forces were not computed."""
+        from .loads import Bearing, made_by_name
+
+        return made_by_name(Bearing, self._document.get("bearings"), floats)
+
+    @cached_property
+    def frame(self) -> "Optional[Frame]":
+        """Largest shaking force, `max`, and `moment`, (points,); None where not computed."""
+        from .loads import Frame, made
+
+        return made(Frame, self._document.get("frame"), floats)
+
+    @cached_property
+    def power(self) -> "Optional[Power]":
+        """Power of the drive, (points,) each; None where not computed."""
+        from .loads import Power, made
+
+        return made(Power, self._document.get("power"), floats)
+
+    @cached_property
+    def flywheel(self) -> "Optional[Flywheel]":
+        """energy_fluctuation, speed_fluctuation, (points,); None where not computed."""
+        from .loads import Flywheel, made
+
+        return made(Flywheel, self._document.get("flywheel"), floats)
+
+    @property
+    def problems(self) -> list[dict[str, Any]]:
+        """Points without an answer: `index`, `x`, `reason`."""
+        return deepcopy(self._document.get("problems", []))
+
+    @property
+    def refined(self) -> dict[str, Any]:
+        """Points between those asked for, at peaks and boundaries: `x` and `rods`, as in the document; empty: none."""
+        return deepcopy(self._document.get("refined", {}))
+
+    @property
+    def fold_details(self) -> list[dict[str, Any]]:
+        """Folds of the motion without linearisation: `rpm` or `x`, `error`, `branch`."""
+        return deepcopy(self._document.get("fold_details", []))
+
+    @property
+    def jumps(self) -> list[dict[str, Any]]:
+        """Where a stable motion without linearisation ends when the number is moved slowly, and what it jumps to."""
+        return deepcopy(self._document.get("jumps", []))
+
+    @property
+    def system(self) -> Optional[dict[str, Any]]:
+        """Of all rods together, without linearisation, by points as in the document; else None."""
+        return deepcopy(self._document.get("system"))
+
+    @property
+    def linear_verdict(self) -> Optional[list[Any]]:
+        """Beside a motion without linearisation, the linear theory's verdict at each point; else None."""
+        return deepcopy(self._document.get("linear_verdict"))
 
     @property
     def rods(self) -> dict[str, SweepRod]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -62,6 +63,111 @@ class Tune(Result):
     def status(self) -> str:
         """How the search ended."""
         return str(self._document["status"])
+
+    @property
+    def verdict(self) -> Optional[str]:
+        """Of the mechanism with the design found, over all speeds; None where it has none."""
+        return self._document.get("verdict")
+
+    @property
+    def verdict_before(self) -> Optional[str]:
+        """Of the mechanism with the design before, over all speeds; None where it has none."""
+        return self._document.get("verdict_before")
+
+    @property
+    def over(self) -> Any:
+        """The range of speeds of the design found, as in the document."""
+        return deepcopy(self._document.get("over"))
+
+    @property
+    def over_before(self) -> Any:
+        """The range of speeds of the design before."""
+        return deepcopy(self._document.get("over_before"))
+
+    @property
+    def modes(self) -> Any:
+        """Ritz terms of the elastic links."""
+        return deepcopy(self._document.get("modes"))
+
+    @property
+    def variables(self) -> list[dict[str, Any]]:
+        """Each number varied: path, before, after, bounds, unit, and those tied to it."""
+        return deepcopy(self._document["variables"])
+
+    @property
+    def before_differs(self) -> Any:
+        """Whether the design before is not the scene's own, and why."""
+        return deepcopy(self._document.get("before_differs"))
+
+    @property
+    def metrics(self) -> Any:
+        """Quantities of the goal and the conditions before and after, with errors and places."""
+        return deepcopy(self._document.get("metrics"))
+
+    @property
+    def without_effect(self) -> Any:
+        """Numbers varied that change nothing."""
+        return deepcopy(self._document.get("without_effect"))
+
+    @property
+    def worst_at_once(self) -> Any:
+        """Rods that are worst at once: where the goal has a kink."""
+        return deepcopy(self._document.get("worst_at_once"))
+
+    @property
+    def damping_sensitivity(self) -> Any:
+        """How the goal depends on damping at the design found."""
+        return deepcopy(self._document.get("damping_sensitivity"))
+
+    @property
+    def damping_sensitivity_of_best(self) -> Any:
+        """The same of the best design of those tried."""
+        return deepcopy(self._document.get("damping_sensitivity_of_best"))
+
+    @property
+    def slope_left_over(self) -> Any:
+        """What the slopes of goal and conditions do not balance, relative; None: not known."""
+        return self._document.get("slope_left_over")
+
+    @property
+    def analyses(self) -> Any:
+        """Designs analysed."""
+        return self._document.get("analyses")
+
+    @property
+    def confirmations(self) -> Any:
+        """Analyses on four times the speeds."""
+        return self._document.get("confirmations")
+
+    @property
+    def gradients(self) -> Any:
+        """Designs whose slopes were computed."""
+        return self._document.get("gradients")
+
+    @property
+    def not_closing(self) -> Any:
+        """Designs whose linkage does not close."""
+        return self._document.get("not_closing")
+
+    @property
+    def refused(self) -> Any:
+        """Designs that cannot be."""
+        return deepcopy(self._document.get("refused"))
+
+    @property
+    def without_response(self) -> Any:
+        """Designs without a periodic answer at some speed."""
+        return self._document.get("without_response")
+
+    @property
+    def evidence(self) -> Any:
+        """One sentence: what was done."""
+        return self._document.get("evidence")
+
+    @property
+    def shortfall(self) -> Optional[str]:
+        """What was not reached, in one sentence; None: nothing."""
+        return self._document.get("shortfall")
 
     @property
     def verified(self) -> bool:

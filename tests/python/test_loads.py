@@ -1,0 +1,163 @@
+"""Stress, safety, bearings, frame, drive: every key of the command's documents is an attribute with the same bits."""
+
+import dataclasses
+import math
+
+import numpy
+import pytest
+from conftest import SCENES, command
+
+import hb
+
+STRENGTH = {"rod.yield": 350e6, "rod.tensile": 520e6, "rod.endurance": 200e6}
+SETTING = [word for path, value in STRENGTH.items() for word in ("--set", f"{path}={value!r}")]
+
+
+@pytest.fixture(scope="module")
+def compressor():
+    return hb.load(SCENES / "slider_crank_units.toml").with_(STRENGTH)
+
+
+@pytest.fixture(scope="module")
+def steady(compressor):
+    return compressor.steady(rpm=3000)
+
+
+@pytest.fixture(scope="module")
+def sweep(compressor):
+    return compressor.sweep(rpm=(1000, 3000, 1000))
+
+
+def same(found, document):
+    """An attribute beside the document's entry, to the last bit."""
+    if dataclasses.is_dataclass(found):
+        for key, value in document.items():
+            same(getattr(found, key), value)
+        known = {field.name for field in dataclasses.fields(found)}
+        assert not set(document) - known
+    elif isinstance(document, dict):
+        assert set(found) == set(document)
+        for key, value in document.items():
+            same(found[key], value)
+    elif isinstance(found, numpy.ndarray) and found.dtype.kind in "fc":
+        flat = [complex(*v) if found.dtype.kind == "c" else math.nan if v is None else v for v in document]
+        numpy.testing.assert_array_equal(found, numpy.array(flat))
+        assert not found.flags.writeable
+    elif isinstance(found, numpy.ndarray):
+        assert list(found) == document
+    else:
+        assert found == document
+
+
+# Keys whose attribute has another name or is found elsewhere.
+ELSEWHERE_IN_ROD = {
+    "deflection": lambda rod: rod.deflection_peak,
+    "bending_moment": lambda rod: rod.bending_moment_peak,
+    "growth_interval": lambda rod: list(rod.stability.growth_interval),
+    "exponent_error": lambda rod: rod.growth_error,
+    "stability_method": lambda rod: rod.stability.method,
+    "stability_converged": lambda rod: rod.stability.converged,
+}
+
+
+def test_every_key_of_a_rod_is_an_attribute(steady):
+    document = command("steady", SCENES / "slider_crank_units.toml", "--rpm", 3000, *SETTING)["rods"]["rod"]
+    rod = steady["rod"]
+    for key, value in document.items():
+        if key == "q":
+            assert list(rod.max_abs) == value["max_abs"]
+            assert list(rod.crank_angle) == value["crank_angle"]
+        elif key in ELSEWHERE_IN_ROD:
+            same(ELSEWHERE_IN_ROD[key](rod), value)
+        else:
+            assert hasattr(rod, key), key
+            same(getattr(rod, key), value)
+    assert rod.stress.yield_safety == 350e6 / rod.stress.max_abs
+    assert rod.stress.fatigue_line == "Goodman"
+
+
+def test_every_key_of_one_speed_is_an_attribute(steady):
+    document = command("steady", SCENES / "slider_crank_units.toml", "--rpm", 3000, *SETTING)
+    for key, value in document.items():
+        assert hasattr(steady, key), key
+        if key in ("rods", "torque", "joints"):
+            continue
+        same(getattr(steady, key), value)
+    for key in ("min", "max", "mean", "rms"):
+        assert getattr(steady.torque, key) == document["torque"][key]
+        assert getattr(steady.torque, f"{key}_rigid") == document["torque"]["rigid"][key]
+    for name, components in document["joints"].items():
+        joint = steady.joints[name]
+        if "n" in components:
+            assert (joint.min, joint.max) == (components["n"]["min"], components["n"]["max"])
+            assert joint.max_rigid == components["n_rigid"]["max"]
+        else:
+            assert list(joint.min) == [components["x"]["min"], components["y"]["min"]]
+            assert list(joint.max_rigid) == [components["x_rigid"]["max"], components["y_rigid"]["max"]]
+    assert steady.bearings["rod.0"].max >= abs(steady.joints["rod.0"].max).max()
+
+
+def test_what_was_not_asked_is_none_or_empty(compressor):
+    little = compressor.steady(rpm=3000, only="stability")
+    assert little.bearings == {} and little.sliders == {}
+    assert little.frame is None and little.power is None and little.flywheel is None and little.joints_error is None
+    rod = little["rod"]
+    assert rod.stress is None and rod.static_deflection is None and rod.deflection_peak is None and rod.status is None
+
+
+def test_every_key_along_the_speed_is_an_attribute(sweep):
+    document = command("sweep", SCENES / "slider_crank_units.toml", "--rpm", "1000:3000:1000", *SETTING)
+    for key, value in document.items():
+        if key == "x":
+            assert list(sweep.x) == value["values"]
+        elif key not in ("rods", "status"):
+            assert hasattr(sweep, key), key
+            same(getattr(sweep, key), value)
+    rod = sweep["rod"]
+    for key, value in document["rods"]["rod"].items():
+        assert hasattr(rod, key), key
+        if key not in ("max_abs", "exponents"):
+            same(getattr(rod, key), value)
+    assert (numpy.diff(rod.stress.yield_safety) < 0).all()
+    assert sweep.bearings["rod.0"].max.shape == (3,)
+    assert sweep.bearings["rod.0"].mean is None
+
+
+def test_a_motion_without_linearisation_has_its_keys(compressor):
+    s = compressor.steady(rpm=1000, theory="nonlinear")
+    document = s.to_dict()
+    for key, value in document.items():
+        assert hasattr(s, key), key
+        if key not in ("rods", "torque", "joints", "system", "theory"):
+            same(getattr(s, key), value)
+    assert s.theory == "nonlinear" and s.frame is None and s.period == 1 and s.found
+    same(s["rod"].stress, document["rods"]["rod"]["stress"])
+    assert s["rod"].stress.yield_safety == 350e6 / (s["rod"].stress.axial + s["rod"].stress.bending)
+
+
+def test_check_has_every_key(compressor):
+    c = compressor.check(rpm=1500, modes=1)
+    document = c.to_dict()
+    for key in document:
+        assert hasattr(c, key), key
+    for key, value in document["rods"]["rod"].items():
+        assert hasattr(c["rod"], key), key
+        same(getattr(c["rod"], key), value)
+    assert c.verdict == "stable"
+
+
+def test_tune_has_every_key(compressor):
+    t = compressor.tune(minimise="mass", vary={"rod.section.flange": (3e-3, 5e-3)}, keep=["stable>=5"], over=(1000, 1500), analyses=6)
+    document = t.to_dict()
+    for key, value in document.items():
+        if key != "minimise":
+            assert hasattr(t, key), key
+            if key not in ("status", "shortfall"):
+                same(getattr(t, key), value)
+    assert t.verdict == "stable" and t.verdict_before == "stable"
+
+
+def test_strengths_that_cannot_be_name_key_and_bound(compressor):
+    with pytest.raises(hb.SceneError, match="tensile strength") as refused:
+        compressor.with_({"rod.yield": 600e6})
+    assert "yield" in str(refused.value)

@@ -1,0 +1,29 @@
+// What a machine's designer reads along a sweep: stress and safety of each rod, bearings, frame, drive.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/sweep_analysis.hpp"
+#include "tools/output/csv_output.hpp"
+
+namespace hb::tools {
+
+// Adds `stress` of one rod, arrays over the points; nothing where no section is given.
+void add_stress(nlohmann::ordered_json& rod, std::size_t r, const std::vector<SweepPoint>& points);
+// Adds bearings, frame, power, flywheel to the document, mean and rms to its torque.
+void add_machine(nlohmann::ordered_json& document, const SweepResult& result);
+
+// Lines of the table: the worst of the points and where.
+[[nodiscard]] std::string stress_rows(const SweepScene& scene, const SweepResult& result, std::size_t rod);
+[[nodiscard]] std::string machine_rows(const SweepScene& scene, const SweepResult& result);
+
+// Columns of sweep_rod_csv, its last; empty where no section is given.
+[[nodiscard]] std::vector<std::string> stress_columns(const SweepResult& result, std::size_t rod);
+void fill_stress(const RodPoint& point, double megapascal, const std::vector<std::string>& columns,
+                 Eigen::Ref<Eigen::RowVectorXd> values);
+// Of each point and refined point the largest resultants at bearings and frame, torque, power, fluctuation.
+[[nodiscard]] CsvFile sweep_machine_csv(const SweepScene& scene, const SweepResult& result);
+
+}  // namespace hb::tools
