@@ -69,7 +69,8 @@ std::vector<Figure> polar_figures(const SceneModel& model, const SpeedResult& re
     figure.height = 520;
     figure.commands = fmt::format(
         "set multiplot layout 1,{} title {}\nset size ratio 1\nset tmargin 2.2\nset key at graph 1, graph 1.02 right "
-        "bottom horizontal samplen 3\n{}unset multiplot\nset size noratio\nset tmargin -1\nunset xlabel\nunset "
+        "bottom horizontal Left reverse samplen 3\n{}unset multiplot\nset size noratio\nset tmargin -1\nunset "
+        "xlabel\nunset "
         "ylabel\nset xrange [*:*]\nset yrange [*:*]\nset xtics autofreq\nset ytics autofreq\nset key default\n",
         num_panels, scene_title(model, result, "joint forces as vectors over the turn; dot: crank angle 0"), panels);
     figures.push_back(std::move(figure));
@@ -113,7 +114,7 @@ std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& re
     figure.height = 130 + 230 * num_rows;
     figure.commands = fmt::format(
         "set multiplot layout {},2 title {}\nset tmargin 2.2\nset key at graph 1, graph 1.02 right bottom horizontal "
-        "samplen 3\n{}{}"
+        "Left reverse samplen 3\n{}{}"
         "set ytics autofreq\n{}unset multiplot\nset tmargin -1\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset "
         "xtics autofreq\n"
         "set key default\n",

@@ -19,10 +19,17 @@ constexpr const char* palette =
     "set palette defined (-1 '#2166ac', -0.5 '#67a9cf', -0.12 '#d1e5f0', 0 '#f7f7f7', 0.12 '#fddbc7', 0.5 '#ef8a62', "
     "1 '#b2182b')\n";
 
+// "mm^4" as it is printed: mm⁴.
+std::string raised_powers(std::string text) {
+  for (const auto& [written, raised] : {std::pair("^2", "²"), {"^3", "³"}, {"^4", "⁴"}})
+    for (std::size_t at = 0; (at = text.find(written, at)) != std::string::npos;) text.replace(at, 2, raised);
+  return text;
+}
+
 std::string axis_label(const MapDocument& document, const PlaneAxis& axis) {
   if (axis.role == PlaneAxis::Role::rpm) return quoted("speed [rpm]");
   if (axis.role == PlaneAxis::Role::omega) return quoted("speed [rad/" + document.scene.units.time + "]");
-  return quoted(axis.path + bracketed(path_unit(axis.path, document.scene.units)));
+  return quoted(axis.path + raised_powers(bracketed(path_unit(axis.path, document.scene.units))));
 }
 
 struct ColourScale {
@@ -128,10 +135,10 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
   };
   figure.commands = fmt::format(
       "set title '{{/:Bold {}}}'.\"\\n\".{}\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {}\n"
+      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {} offset 1.5,0\n"
       "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
-      "set bmargin at screen 0.2\nset key at screen 0.46, screen 0.015 center bottom vertical maxrows 3 samplen 3 "
-      "width 1\n"
+      "set bmargin at screen 0.2\nset key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
+      "samplen 3 width -4 font ',12'\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(short_name(document.scene) + ", " + map_verdict(document)),
       quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(), r.y().front(), r.y().back(),
@@ -141,27 +148,29 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
   }
+  // Cell by cell, cut off at the frame; of large grids one image, whose half cells stand beyond it.
+  constexpr std::size_t most_cells = 8000;
+  const char* pixels = r.x().size() * r.y().size() <= most_cells ? " pixels" : "";
   std::vector<std::string> layers = {
-      fmt::format("'{}' using 1:2:(asinh({}/{})) with image notitle", files.grid, c.value, c.scale)};
+      fmt::format("'{}' using 1:2:(asinh({}/{})) with image{} notitle", files.grid, c.value, c.scale, pixels)};
   if (some(Verdict::bounded)) {
-    layers.push_back(fmt::format("'{}' using 1:2:(190):(174):(212):($6 == {} ? 255 : 0) with rgbalpha notitle",
-                                 files.grid, verdict_number(Verdict::bounded)));
+    layers.push_back(fmt::format("'{}' using 1:2:(190):(174):(212):($6 == {} ? 255 : 0) with rgbalpha{} notitle",
+                                 files.grid, verdict_number(Verdict::bounded), pixels));
     layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#beaed4' title 'bounded: no damping'");
   }
   if (some(Verdict::undecided)) {
-    layers.push_back(
-        fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha notitle", files.grid));
+    layers.push_back(fmt::format("'{}' using 1:2:(150):(150):(150):($6 == 0 ? 110 : 0) with rgbalpha{} notitle",
+                                 files.grid, pixels));
     layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#c6c6c6' title 'undecided'");
   }
   if (some_missing) {
     layers.push_back(
-        "keyentry with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system: the linkage does not "
-        "turn through'");
+        "keyentry with points pointtype 5 pointsize 1.6 linecolor '#8a8a8a' title 'no system (does not close)'");
   }
   if (!r.lines.empty()) {
     layers.push_back(
         fmt::format("'{}' using 2:3 with lines linewidth 0.8 dashtype (6,6) linecolor '#444444' title "
-                    "'resonance lines of the mean frequencies (speed = ...)'",
+                    "'resonance, speed = label'",
                     files.resonance));
   }
   struct Kind {

@@ -464,7 +464,7 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
     figure.height = 130 + 230 * rows;
     figure.commands = fmt::format(
         "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'{}'\nset tmargin 2.2\nset key at graph 1, graph 1.02 "
-        "right bottom horizontal samplen "
+        "right bottom horizontal Left reverse samplen "
         "3\nset format '%g'\n"
         "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset tmargin -1\nset xtics autofreq\nset ytics "
         "autofreq\n",
