@@ -368,7 +368,7 @@ RitzSamples ritz_samples(std::span<const FourierSeries> q, double speed, Index n
 std::string describe(const ExactBreakdown& breakdown, const Linkage& linkage) {
   const double turn = breakdown.crank_angle * 180 / std::numbers::pi;
   if (breakdown.kind == ExactBreakdown::Kind::slope)
-    return fmt::format("{} is bent to a slope of {:.3g} at crank angle {:.4g} deg, 1 stands across its chord",
+    return fmt::format("{} is bent to a slope of {:.3g} at crank angle {:.4g} deg; at 1 it stands across its chord",
                        body_name(linkage, breakdown.body), breakdown.slope, turn);
   return fmt::format("the dyad of {} and {} does not close with its links bent, at crank angle {:.4g} deg",
                      body_name(linkage, breakdown.body), body_name(linkage, breakdown.body + 1), turn);

@@ -129,8 +129,8 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
   if (!rod.shear && !(size <= most_left_out) && (elastic.has("section") || solid.holds(J / (F * F)))) {
     remark(
         elastic, elastic.has("J") ? "J" : "section", Concern::slenderness,
-        fmt::format("found length/sqrt(J/area) = {:.3g}; shear, left out, adds about {:.2g} % to the deflection of so "
-                    "thick a rod, which the elastic data take as shear = {{ G, k }}",
+        fmt::format("found length/sqrt(J/area) = {:.3g}, a thick rod: shear, left out, would add about {:.2g} % to its "
+                    "deflection; shear = {{ G, k }} in its elastic table takes it into account",
                     body.length / std::sqrt(J / F), 100 * per_size * size),
         context);
   }

@@ -85,7 +85,7 @@ void add_elastic(Text& text, const Body& body, const Units& units) {
   add(text, "           section: radius of gyration {:.4g} {}, slenderness {:.4g}{}\n", gyration, units.length,
       body.length / gyration,
       elastic.section_height > 0 ? fmt::format(", height {:.6g} {}", elastic.section_height, units.length) : "");
-  add(text, "           buckling as a pinned rod at {:.4g} N, axial stress {:.4g} MPa\n",
+  add(text, "           buckling load {:.4g} N (pinned ends, elastic), which is {:.4g} MPa\n",
       EJ * k * k * units.force_in_newton(), EJ * k * k / elastic.area * pascal * 1e-6);
   const Strength& strength = elastic.strength;
   std::string strengths;
@@ -113,7 +113,7 @@ void add_elastic(Text& text, const Body& body, const Units& units) {
     speeds.push_back(fmt::format("{:.6g}", rpm_from_speed(frequency, units)));
   }
   add(text, "           natural frequencies at rest, {}: {} Hz (as crank speeds: {} rpm)\n",
-      elastic.shear ? "with shear" : "slender", fmt::join(hertz, ", "), fmt::join(speeds, ", "));
+      elastic.shear ? "with shear" : "without shear", fmt::join(hertz, ", "), fmt::join(speeds, ", "));
   if (!elastic.shear) add_shear_left_out(text, body);
 }
 
