@@ -14,6 +14,9 @@ using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
+// max |A_ij|; 0 of an empty matrix.
+[[nodiscard]] inline double largest(const Eigen::MatrixXd& A) { return A.size() > 0 ? A.cwiseAbs().maxCoeff() : 0.0; }
+
 // P A = L U with row pivoting, A square. Scalar: double or std::complex<double>.
 template <class Scalar>
 class Lu {

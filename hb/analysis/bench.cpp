@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "hb/analysis/nonlinear/nonlinear_bench.hpp"
-#include "hb/analysis/stopwatch.hpp"
 #include "lib/rod/time_domain_rod.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {

@@ -12,13 +12,12 @@
 
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/engine/time/fixed_step.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Of q, the first rows, at the reference's angles, from N samples of which N is a multiple or a divisor.
 double error_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& reference) {

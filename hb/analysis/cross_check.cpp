@@ -6,19 +6,18 @@
 #include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
+#include "lib/constants.hpp"
+#include "lib/dense.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/rod/time_domain_rod.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
-
-double largest(const Eigen::MatrixXd& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0; }
-
 double relative(const Eigen::MatrixXd& difference, const Eigen::MatrixXd& reference) {
-  const double size = largest(reference);
-  return size > 0 ? largest(difference) / size : largest(difference);
+  const double size = dense::largest(reference);
+  return size > 0 ? dense::largest(difference) / size : dense::largest(difference);
 }
 
 // Samples at the N angles of the other path; a series with more harmonics than N carries is summed at each angle.
@@ -26,7 +25,7 @@ Eigen::MatrixXd samples(const FourierSeries& series, Eigen::Index N) {
   if (N > 2 * series.num_harmonics()) return fourier::synthesise(series, N);
   Eigen::MatrixXd values(series.num_components(), N);
   for (Eigen::Index j = 0; j < N; ++j)
-    values.col(j) = fourier::evaluate(series, turn * static_cast<double>(j) / static_cast<double>(N));
+    values.col(j) = fourier::evaluate(series, two_pi * static_cast<double>(j) / static_cast<double>(N));
   return values;
 }
 
@@ -78,7 +77,7 @@ void compare_states(RodCheck& rod, bool deflection) {
   const Eigen::MatrixXd q = samples(series, N), q1 = samples(fourier::derivative(series), N);
   const double rounding = rounding_of_models(rod.steady), bound = rod.steady.error_bound;
   rod.q = {"q / max |q|", relative(q - orbit.q, orbit.q), bound + rod.shooting.q_error + rounding};
-  const double q_over_q1 = largest(orbit.q1) > 0 ? largest(orbit.q) / largest(orbit.q1) : 1;
+  const double q_over_q1 = dense::largest(orbit.q1) > 0 ? dense::largest(orbit.q) / dense::largest(orbit.q1) : 1;
   rod.q1 = {"q' / max |q'|", relative(q1 - orbit.q1, orbit.q1),
             once(harmonics(rod.steady)) * q_over_q1 * (bound + rounding) + rod.shooting.q1_error + rounding};
   if (deflection) {
@@ -90,7 +89,7 @@ void compare_states(RodCheck& rod, bool deflection) {
     const Eigen::MatrixXd w = shapes * orbit.q;
     // Errors of the modes may add up.
     const double modes = static_cast<double>(orbit.q.rows());
-    const double q_over_w = largest(w) > 0 ? largest(orbit.q) / largest(w) : 1;
+    const double q_over_w = dense::largest(w) > 0 ? dense::largest(orbit.q) / dense::largest(w) : 1;
     rod.deflection = Comparison{"w / max |w|", relative(shapes * (q - orbit.q), w), modes * q_over_w * rod.q.allowed};
   }
   if (rod.marching && rod.marching->status == ShootingStatus::converged) {
@@ -110,10 +109,6 @@ double share(const Comparison& c) {
 void keep_deflection(PeriodicOrbit& orbit, Eigen::Index num_modes) {
   for (Eigen::MatrixXd* samples : {&orbit.q, &orbit.q1, &orbit.q2})
     if (samples->rows() > num_modes) *samples = samples->topRows(num_modes).eval();
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -141,7 +136,7 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
   }
   for (Eigen::Index a = 0; a < num_angles; ++a) {
     const Eigen::Index j = a * N / num_angles;
-    const double tau = turn * static_cast<double>(j) / static_cast<double>(N);
+    const double tau = two_pi * static_cast<double>(j) / static_cast<double>(N);
     std::vector<LinkDeflection> fine, coarse;
     for (std::size_t r = 0; r < rods.size(); ++r) {
       fine.push_back(at(rods[r].shooting.orbit, links[r], j));
@@ -160,7 +155,8 @@ JointCheck compare_joints(const Linkage& linkage, const JointForces& series, con
     for (std::size_t r = 0; r < rods.size(); ++r) {
       const RodCheck& rod = rods[r];
       const double H = harmonics(rod.steady);
-      const double error = (rod.steady.error_bound + rounding_of_models(rod.steady)) * largest(rod.shooting.orbit.q);
+      const double error =
+          (rod.steady.error_bound + rounding_of_models(rod.steady)) * dense::largest(rod.shooting.orbit.q);
       const Eigen::Index I = rod.shooting.orbit.q.rows();
       for (Eigen::Index i = 0; i < I; ++i) {
         const Eigen::VectorXd unit = error * Eigen::VectorXd::Unit(I, i), none = Eigen::VectorXd::Zero(I);

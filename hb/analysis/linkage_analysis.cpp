@@ -9,9 +9,9 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/rod_steady.hpp"
-#include "hb/analysis/stopwatch.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {
@@ -23,12 +23,6 @@ constexpr double degrees_per_radian = 180 / std::numbers::pi;
 bool wants_modes_error(const Only& only) { return only.steady || only.shape; }
 
 bool wants_response(const Only& only) { return only.steady || only.shape || only.reactions; }
-
-// What was asked for and exists in the scene: a [hill] system has no joints and no shape.
-Only available(const SceneModel& model, Only only) {
-  if (!model.linkage()) only.reactions = only.shape = false;
-  return only;
-}
 
 bool is_auto(const Settings& settings) { return std::holds_alternative<AutoModes>(settings.modes); }
 
@@ -248,6 +242,11 @@ void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
 }
 
 }  // namespace
+
+Only available(const SceneModel& model, Only only) {
+  if (!model.linkage()) only.reactions = only.shape = false;
+  return only;
+}
 
 Eigen::Index comparison_modes(Eigen::Index num_modes) { return num_modes + std::max<Eigen::Index>(3, num_modes / 2); }
 

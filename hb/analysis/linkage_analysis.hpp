@@ -48,6 +48,9 @@ struct SceneModel {
   const Linkage* linkage() const { return std::get_if<Linkage>(&scene.model); }
 };
 
+// What of `only` the model has: a [hill] system has no joints and no shape.
+[[nodiscard]] Only available(const SceneModel& model, Only only);
+
 struct RodResult {
   std::string name;
   int link = -1;

@@ -12,19 +12,22 @@ namespace hb {
 namespace {
 
 constexpr std::size_t lattice = 97;  // places per side where the frequencies are computed
-constexpr int max_modes = 2;
+constexpr int modes_with_lines = 2;
 constexpr int max_order = 8;
 
-using Place = std::array<double, 2>;
+using PlanePoint = std::array<double, 2>;
 
-Place between(const Place& p, const Place& q, double f) { return {p[0] + (q[0] - p[0]) * f, p[1] + (q[1] - p[1]) * f}; }
+PlanePoint between(const PlanePoint& p, const PlanePoint& q, double f) {
+  return {p[0] + (q[0] - p[0]) * f, p[1] + (q[1] - p[1]) * f};
+}
 
 // Pieces of the line where `values` (lattice x lattice, NaN: unknown) are zero, straight inside each cell.
-std::vector<std::vector<Place>> zero_lines(const std::vector<Place>& places, const std::vector<double>& values) {
+std::vector<std::vector<PlanePoint>> zero_lines(const std::vector<PlanePoint>& places,
+                                                const std::vector<double>& values) {
   // Crossings on the edges that leave a node to the right (2 node) and upward (2 node + 1).
   const std::size_t num_nodes = lattice * lattice;
   std::vector<std::size_t> number(2 * num_nodes, SIZE_MAX);
-  std::vector<Place> crossings;
+  std::vector<PlanePoint> crossings;
   const auto cross = [&](std::size_t slot, std::size_t a, std::size_t b) {
     if ((values[a] > 0) == (values[b] > 0) || !std::isfinite(values[a]) || !std::isfinite(values[b])) return;
     number[slot] = crossings.size();
@@ -48,7 +51,7 @@ std::vector<std::vector<Place>> zero_lines(const std::vector<Place>& places, con
       if (rim.size() == 2) links.push_back({{rim[0], rim[1]}, node});
     }
   }
-  std::vector<std::vector<Place>> pieces;
+  std::vector<std::vector<PlanePoint>> pieces;
   for (const CurveChain& chain : chains(crossings.size(), links)) {
     pieces.emplace_back();
     for (const std::size_t p : chain.points) pieces.back().push_back(crossings[p]);
@@ -68,17 +71,17 @@ std::string ResonanceLine::name(bool subscripts) const {
 
 std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<double, 2> x, std::array<double, 2> y,
                                            std::size_t max_lines) {
-  std::vector<Place> places;
-  std::array<std::vector<double>, max_modes> w;  // frequencies over the speed
+  std::vector<PlanePoint> places;
+  std::array<std::vector<double>, modes_with_lines> w;  // frequencies over the speed
   for (std::size_t j = 0; j < lattice; ++j) {
     for (std::size_t i = 0; i < lattice; ++i) {
-      const Place place = {x[0] + (x[1] - x[0]) * static_cast<double>(i) / (lattice - 1),
-                           y[0] + (y[1] - y[0]) * static_cast<double>(j) / (lattice - 1)};
+      const PlanePoint place = {x[0] + (x[1] - x[0]) * static_cast<double>(i) / (lattice - 1),
+                                y[0] + (y[1] - y[0]) * static_cast<double>(j) / (lattice - 1)};
       places.push_back(place);
       const std::optional<ScaledSystem> system = at(place[0], place[1]);
       Eigen::VectorXd squares = system ? system->mean_diagonal() : Eigen::VectorXd();
       std::sort(squares.begin(), squares.end());
-      for (int m = 0; m < max_modes; ++m) {
+      for (int m = 0; m < modes_with_lines; ++m) {
         w[static_cast<std::size_t>(m)].push_back(
             m < squares.size() && squares(m) >= 0 ? std::sqrt(squares(m)) : std::numeric_limits<double>::quiet_NaN());
       }

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "hb/analysis/accuracy.hpp"
-#include "hb/analysis/stopwatch.hpp"
 #include "hb/analysis/sweep/resonances.hpp"
 #include "hb/analysis/sweep/rod_along.hpp"
 #include "hb/analysis/sweep/sweep_parts.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "hb/engine/steady/rough_state.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/dense.hpp"
 #include "lib/exact/exact_forces.hpp"
 #include "lib/rod/shear.hpp"
 
@@ -92,8 +93,6 @@ std::optional<FourierSeries> response(const HillSystem& system, double speed, co
   return ritz_coordinates(state.q, load.rows());
 }
 
-double largest(const MatrixXd& values) { return values.size() > 0 ? values.cwiseAbs().maxCoeff() : 0.0; }
-
 double ratio(double change, double size) { return change == 0 ? 0 : change / size; }
 
 // Largest |sum_i q_i sin(i pi x/l)| over the samples and points of the rod.
@@ -103,7 +102,7 @@ double largest_deflection(const MatrixXd& q) {
   for (Index k = 0; k <= points; ++k)
     for (Index i = 0; i < I; ++i)
       shapes(k, i) = std::sin(std::numbers::pi * static_cast<double>((i + 1) * k) / static_cast<double>(points));
-  return largest(shapes * q);
+  return dense::largest(shapes * q);
 }
 
 // Largest |q_i| over the turn: of components that can have it, their values at four angles a wave being at least 0.7 of
@@ -134,8 +133,8 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
   if (exact.breakdown || !exact.values.allFinite()) return;
   const MatrixXd size = force_samples(linear, angles.size()), change = exact.values - size;
   const Index last = size.rows() - 1;
-  errors.force = ratio(largest(change.topRows(last)), largest(size.topRows(last)));
-  errors.torque = ratio(largest(change.row(last)), largest(size.row(last)));
+  errors.force = ratio(dense::largest(change.topRows(last)), dense::largest(size.topRows(last)));
+  errors.torque = ratio(dense::largest(change.row(last)), dense::largest(size.row(last)));
 }
 
 // The exact model at q, and what the linear rods answer to what their model leaves out there (T1).

@@ -1,13 +1,12 @@
 #include "lib/exact/rod_quadrature.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 // P_0 .. P_n at s by (k+1) P_{k+1} = (2k+1) s P_k - k P_{k-1}.
 Eigen::VectorXd legendre(Eigen::Index n, double s) {

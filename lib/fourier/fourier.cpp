@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 
+#include "lib/constants.hpp"
 #include "lib/fourier/short_transform.hpp"
 
 namespace hb::fourier {
@@ -21,8 +21,6 @@ std::mutex& planner_mutex() {
   static std::mutex mutex;
   return mutex;
 }
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 // e^{i k tau}-sums of one component: f, f', f'' at tau (real function from its half spectrum).
 struct Jet {

@@ -4,15 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <complex>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
-using std::numbers::pi;
-
 namespace {
-
-constexpr double eps = 2.220446049250313e-16;
 
 FourierSeries without_rounding(const FourierSeries& series) {
   return fourier::resized(series, fourier::significant_harmonics(series, eps / 4));

@@ -12,8 +12,6 @@ using Complex = std::complex<double>;
 double dot(Complex a, Complex b) { return (std::conj(a) * b).real(); }
 double cross(Complex a, Complex b) { return (std::conj(a) * b).imag(); }
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 // The applied force's series, nullptr if there is none.
 const FourierSeries* slider_force(const Dyad& dyad) {
   const auto* slider = std::get_if<Slider>(&dyad.closing);

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "lib/linkage/joint_forces.hpp"
 
 namespace hb {
+
+// Bodies and dyads are counted by int, their containers by std::size_t.
+[[nodiscard]] inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // As the functions of the same name, into memory that is kept from one crank angle to the next; slider_forces holds
 // the applied force of each dyad's slider (0 for a rocker).

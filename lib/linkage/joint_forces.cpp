@@ -14,8 +14,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 // Samples of q, q', q'' of one link, I x N each.
 struct ResponseSamples {
   int link = 0;

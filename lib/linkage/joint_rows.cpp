@@ -2,12 +2,6 @@
 
 namespace hb {
 
-namespace {
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
-}  // namespace
-
 std::vector<JointRow> joint_rows(const Linkage& linkage) {
   using Kind = JointRow::Kind;
   std::vector<JointRow> rows;

@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
 
 // Position, first and second derivative of a dyad's driving joint.
 struct Joint {

@@ -37,8 +37,8 @@ struct Elastic {
   double damping_x = 0;  // c_x, external damping per length, along the rod
   double damping_y = 0;  // c_y, across the rod
   double section_height = 0;  // in the plane of motion; 0: unknown
-  std::optional<Shear> shear;  // none: rigid in shear
-  Strength strength;
+  std::optional<Shear> shear = std::nullopt;  // none: rigid in shear
+  Strength strength = {};
 };
 
 struct Body {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/fourier/turn_sampling.hpp"
 #include "lib/linkage/balance.hpp"
 #include "lib/rod/shear.hpp"
@@ -14,10 +14,7 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
 constexpr Eigen::Index often = 256;  // crank angles or harmonics between two looks at the wish to stop
-
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // Axial force on a link at its joint 1, tension positive.
 double axial_force(const std::vector<BodyMotion>& motion, const MechanismForces& forces, int link) {

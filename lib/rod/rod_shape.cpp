@@ -12,9 +12,9 @@
 #include <array>
 #include <cmath>
 #include <deque>
-#include <numbers>
 #include <vector>
 
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/shear.hpp"
@@ -24,7 +24,6 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
 
 // A(s) + Im( P(s) e^{iKs} ) on s = x/l in [0, 1].
 struct Shape {

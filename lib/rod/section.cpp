@@ -1,10 +1,8 @@
 #include "lib/rod/section.hpp"
 
-#include <numbers>
+#include "lib/constants.hpp"
 
 namespace hb {
-
-using std::numbers::pi;
 
 SectionValues rectangular_section(double width, double height) {
   return {width * height, width * height * height * height / 12, height};

@@ -4,9 +4,9 @@
 #include <cassert>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <stdexcept>
 
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 #include "lib/linkage/kinematics.hpp"
 #include "lib/rod/shear.hpp"
@@ -16,7 +16,6 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
 
 double cross(Complex a, Complex b) { return a.real() * b.imag() - a.imag() * b.real(); }
 

@@ -7,14 +7,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <numbers>
 
+#include "lib/constants.hpp"
+#include "lib/scene/characters.hpp"
 #include "lib/scene/scene_keys.hpp"
 #include "lib/scene/scene_reader.hpp"
 
 namespace hb {
-
-using std::numbers::pi;
 
 namespace {
 
@@ -102,8 +101,7 @@ double scaled(double value, int ten) {
   return ten >= 0 ? value * powers[static_cast<std::size_t>(ten)] : value / powers[static_cast<std::size_t>(-ten)];
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) {
+bool is_unit_letter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '%' || static_cast<unsigned char>(c) >= 0x80;
 }
 
@@ -183,7 +181,7 @@ class UnitParser {
 
   bool symbol(Unit& unit) {
     std::size_t end = 0;
-    while (end < rest_.size() && is_letter(rest_[end]) && !at_mark(end)) ++end;
+    while (end < rest_.size() && is_unit_letter(rest_[end]) && !at_mark(end)) ++end;
     if (end == 0) return wrong();
     const std::string_view name = rest_.substr(0, end);
     const std::optional<Unit> found = unit_of_symbol(name);

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/fourier/periodic_samples.hpp"
 #include "lib/scene/quantity.hpp"
 #include "lib/scene/scene.hpp"
@@ -15,7 +15,6 @@
 namespace hb {
 
 using Eigen::Index;
-using std::numbers::pi;
 
 namespace {
 

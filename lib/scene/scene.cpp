@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <span>
 
+#include "lib/constants.hpp"
 #include "lib/linkage/kinematics.hpp"
 #include "lib/scene/plausibility.hpp"
 #include "lib/scene/quantity.hpp"
@@ -15,8 +15,6 @@
 #include "lib/scene/scene_paths.hpp"
 
 namespace hb {
-
-using std::numbers::pi;
 
 namespace {
 

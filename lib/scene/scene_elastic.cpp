@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "lib/constants.hpp"
 #include "lib/rod/section.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/scene/material.hpp"
@@ -14,8 +14,6 @@
 namespace hb {
 
 namespace {
-
-using std::numbers::pi;
 
 struct Shape {
   std::string_view name;

@@ -1,16 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/scene/sample_file.hpp"
 #include "lib/scene/scene_parts.hpp"
 
 namespace hb {
 
 namespace {
-
-using std::numbers::pi;
 
 void add(FourierSeries& sum, const FourierSeries& term) {
   if (term.num_components() == 0) return;

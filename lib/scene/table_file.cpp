@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "lib/scene/characters.hpp"
 #include "lib/scene/scene.hpp"
 #include "lib/scene/scene_reader.hpp"
 
@@ -19,12 +20,6 @@ namespace {
 constexpr Eigen::Index max_rows = 20001;
 
 constexpr std::string_view blanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
 
 // Fields between commas or semicolons (then an empty field stays a field), else between blanks.
 std::vector<std::string_view> fields_of(std::string_view line) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "lib/scene/characters.hpp"
 #include "lib/scene/quantity.hpp"
 #include "lib/scene/scene_reader.hpp"
 
@@ -11,14 +12,7 @@ namespace hb {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
 
 // Offset of the last '=' outside quotes at or before `column`.
 std::size_t last_equals(std::string_view line, std::size_t column) {

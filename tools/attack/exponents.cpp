@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hb/engine/exponents/stability.hpp"
+#include "lib/stopwatch.hpp"
 #include "tools/attack/families.hpp"
 #include "tools/attack/quad_floquet.hpp"
 
@@ -18,8 +19,6 @@ namespace hb::attack {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 struct Tally {
   int cases = 0, exponents = 0, uncovered = 0, missing = 0, infinite = 0, undecided = 0, wrong = 0,
       without_reference = 0;

@@ -21,8 +21,6 @@
 namespace hb::tools {
 namespace {
 
-constexpr double largest = std::numeric_limits<double>::max();
-
 // --over rpm=A:B, else the scene's or the flags' speed.
 std::pair<SpeedSpan, bool> span_of(const TuneFlags& flags, const Scene& scene) {
   SpeedSpan span;

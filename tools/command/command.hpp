@@ -1,7 +1,7 @@
-// What the subcommands of `hb` share: exit codes, the errors that `main` turns into sentences, and their registration.
+// What the subcommands of `hb` share: exit codes, errors and their registration.
 #pragma once
 
-#include <stdexcept>
+#include "tools/work/errors.hpp"
 
 namespace CLI {
 class App;
@@ -15,18 +15,6 @@ enum ExitCode {
   exit_wrong_input = 2,  // scene, flags or output folder
   exit_not_reached = 3,  // a result, marked: the tolerance was not reached
   exit_no_pictures = 4,  // data complete, pictures missing
-};
-
-// A wrong flag: what() names the flag, what was found and what is allowed.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-// Output that cannot be written: what() names the path and the reason.
-class OutputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
 };
 
 // Each adds one subcommand; running it stores the exit code in `status`, which outlives the parse.

@@ -20,6 +20,7 @@
 #include "tools/command/speed_flags.hpp"
 #include "tools/command/version.hpp"
 #include "tools/output/compare_output.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/pictures/figure_text.hpp"
@@ -28,7 +29,6 @@
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 struct CompareFlags : CommonFlags {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,8 @@ namespace hb::tools {
 [[nodiscard]] std::string number_hint(const std::string& text);
 // " (verdict meant?)", or nothing.
 [[nodiscard]] std::string meant(const std::string& found, const std::vector<std::string>& names);
+
+inline constexpr double largest_number = std::numeric_limits<double>::max();
 
 // A finite number that satisfies lowest <= value <= highest; else UsageError with `allowed`.
 [[nodiscard]] double number_flag(const std::string& flag, const std::string& text, double lowest, double highest,

@@ -30,7 +30,7 @@ const SceneTemplate& template_of(const std::string& kind) {
     if (one.name == kind) return one;
   }
   const std::string near = nearest_name(kind, kinds());
-  throw UsageError(fmt::format("KIND: found \"{}\"{}, allowed: {}", printable(kind, 60),
+  throw UsageError(fmt::format("KIND: found \"{}\"{}, allowed: {}", hb::printable(kind, 60),
                                near.empty() ? "" : " (" + near + " meant?)", fmt::join(kinds(), ", ")));
 }
 
@@ -38,8 +38,8 @@ const SceneTemplate& template_of(const std::string& kind) {
 void write_new_file(const std::string& name, std::string_view text) {
   const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file < 0 && errno == EEXIST)
-    throw UsageError(fmt::format("FILE: found {}, which is there already, allowed: a new file", printable(name)));
-  if (file < 0) throw OutputError(fmt::format("{} cannot be written: {}", printable(name), std::strerror(errno)));
+    throw UsageError(fmt::format("FILE: found {}, which is there already, allowed: a new file", hb::printable(name)));
+  if (file < 0) throw OutputError(fmt::format("{} cannot be written: {}", hb::printable(name), std::strerror(errno)));
   std::size_t written = 0;
   while (written < text.size()) {
     const ssize_t count = write(file, text.data() + written, text.size() - written);
@@ -51,14 +51,14 @@ void write_new_file(const std::string& name, std::string_view text) {
   if (written == text.size() && closed) return;
   const std::string why = std::strerror(errno);
   unlink(name.c_str());
-  throw OutputError(fmt::format("{} cannot be written: {}", printable(name), why));
+  throw OutputError(fmt::format("{} cannot be written: {}", hb::printable(name), why));
 }
 
 int run_new(const std::string& kind, const std::string& file) {
   const SceneTemplate& scene = template_of(kind);
   const std::string name = file.empty() ? kind + ".toml" : file;
   write_new_file(name, scene.text);
-  fmt::print("{0} written. Next: hb scene {0}, hb steady {0}\n", printable(name));
+  fmt::print("{0} written. Next: hb scene {0}, hb steady {0}\n", hb::printable(name));
   return exit_ok;
 }
 

@@ -13,12 +13,11 @@
 namespace hb::tools {
 
 std::map<std::string, double> heights_flag(const std::vector<std::string>& texts) {
-  constexpr double largest = std::numeric_limits<double>::max();
   std::map<std::string, double> heights;
   for (const std::string& text : texts) {
     const NamedRange height = named_range("--height", text, "ROD=H, as in AB=12");
     heights[height.path] =
-        number_flag("--height", height.range, std::numeric_limits<double>::min(), largest, "ROD=H with H > 0");
+        number_flag("--height", height.range, std::numeric_limits<double>::min(), largest_number, "ROD=H with H > 0");
   }
   return heights;
 }

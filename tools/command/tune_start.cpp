@@ -50,7 +50,7 @@ void close_start(TuneTask& task, Remarks& remarks) {
   std::string start;
   for (std::size_t i = 0; i < n; ++i) {
     TuneVariable& variable = task.variables[i];
-    if (is_speed(variable)) continue;
+    if (is_speed_range(variable)) continue;
     if (!variable.moved_from) variable.moved_from = variable.start;
     variable.start = (*found)[i];
     start += fmt::format("{}{} = {:.6g}", start.empty() ? "" : ", ", variable.path, variable.start);
@@ -63,7 +63,7 @@ void start_speeds(TuneTask& task, Remarks& remarks) {
   double lowest_to = task.span.to / task.speed_unit, highest_from = task.span.from / task.speed_unit;
   bool any = false;
   for (TuneVariable& variable : task.variables) {
-    if (!is_speed(variable)) continue;
+    if (!is_speed_range(variable)) continue;
     any = true;
     const bool from = variable.path == range_from;
     if (!(variable.lower > 0))

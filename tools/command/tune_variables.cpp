@@ -16,8 +16,6 @@
 namespace hb::tools {
 namespace {
 
-constexpr double largest = std::numeric_limits<double>::max();
-
 // The scene with one number replaced must be a scene, turning through or not.
 void require_scene(const SceneSource& source, const std::string& path, double value) {
   try {
@@ -48,7 +46,8 @@ void add_ties(const TuneFlags& flags, const SceneSource& source, std::vector<Tun
     TiedNumber tied{tie.path, 1};
     const std::string path = scaled ? tie.range.substr(star + 1) : tie.range;
     if (scaled)
-      tied.factor = number_flag("--tie", tie.range.substr(0, star), -largest, largest, "PATH=PATH or PATH=FACTOR*PATH");
+      tied.factor = number_flag("--tie", tie.range.substr(0, star), -largest_number, largest_number,
+                                "PATH=PATH or PATH=FACTOR*PATH");
     const auto leader = std::ranges::find(variables, path, &TuneVariable::path);
     if (leader == variables.end())
       throw UsageError(fmt::format("--tie: found \"{}\", allowed: PATH=FACTOR*VARIED with one of --vary, {}", text,
@@ -90,8 +89,8 @@ std::pair<double, double> bounds_flag(const std::string& flag, const std::string
   const std::string allowed = "FROM:TO, two finite numbers with FROM < TO";
   if (colon == std::string::npos)
     throw UsageError(fmt::format("{}: found \"{}\", a single value; allowed: {}", flag, text, allowed));
-  const double a = number_flag(flag, text.substr(0, colon), -largest, largest, allowed);
-  const double b = number_flag(flag, text.substr(colon + 1), -largest, largest, allowed);
+  const double a = number_flag(flag, text.substr(0, colon), -largest_number, largest_number, allowed);
+  const double b = number_flag(flag, text.substr(colon + 1), -largest_number, largest_number, allowed);
   if (a == b) throw UsageError(fmt::format("{}: found \"{}\", an empty range; allowed: {}", flag, text, allowed));
   if (!(a < b) || !std::isfinite(b - a))
     throw UsageError(
@@ -99,7 +98,7 @@ std::pair<double, double> bounds_flag(const std::string& flag, const std::string
   return {a, b};
 }
 
-bool is_speed(const TuneVariable& variable) { return variable.path == range_from || variable.path == range_to; }
+bool is_speed_range(const TuneVariable& variable) { return variable.path == range_from || variable.path == range_to; }
 
 void start_at(TuneVariable& variable, double value, Remarks& remarks) {
   variable.start = std::clamp(value, variable.lower, variable.upper);
@@ -121,7 +120,7 @@ std::vector<TuneVariable> tune_variables(const TuneFlags& flags, const SceneSour
     for (const TuneVariable& other : result)
       if (other.path == range.path) throw UsageError(fmt::format("--vary: found {} twice, allowed: once", range.path));
     require_mechanism("--vary", range.path);
-    if (!is_speed(variable)) start_at(variable, source.value(range.path), remarks);
+    if (!is_speed_range(variable)) start_at(variable, source.value(range.path), remarks);
     result.push_back(std::move(variable));
   }
   add_ties(flags, source, result);
@@ -129,7 +128,7 @@ std::vector<TuneVariable> tune_variables(const TuneFlags& flags, const SceneSour
   // Conditions between numbers (a wall within its tube) are the search's business; each alone must be possible at one
   // end at least.
   for (const TuneVariable& variable : result) {
-    if (is_speed(variable)) continue;
+    if (is_speed_range(variable)) continue;
     try {
       require_scene(source, variable.path, variable.lower);
     } catch (const SceneError& problem) {

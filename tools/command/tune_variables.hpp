@@ -17,7 +17,7 @@ using Remarks = std::vector<std::string>;
 [[nodiscard]] std::pair<double, double> bounds_flag(const std::string& flag, const std::string& text);
 
 // An end of the speed range.
-[[nodiscard]] bool is_speed(const TuneVariable& variable);
+[[nodiscard]] bool is_speed_range(const TuneVariable& variable);
 
 // Moved into the bounds if need be.
 void start_at(TuneVariable& variable, double value, Remarks& remarks);

@@ -9,14 +9,13 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr double accuracies[] = {1e-3, 1e-6, 1e-9, 1e-12};
 

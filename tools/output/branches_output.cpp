@@ -6,31 +6,20 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "lib/constants.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/output/sweep_words.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
-using Text = fmt::memory_buffer;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-bool is_speed(const SweepScene& scene) { return scene.axis().kind != Axis::Kind::parameter; }
 
 double rpm_at(const SweepScene& scene, double x, double speed) {
   return scene.axis().kind == Axis::Kind::rpm ? x : rpm_from_speed(speed, scene.scene().units);

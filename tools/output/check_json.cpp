@@ -4,16 +4,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json.hpp"
+#include "tools/output/json_parts.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
 
 Json difference(const RodCheck& rod, const std::optional<Comparison>& c) {
   return rod.compared() && c ? number(c->difference) : Json();
@@ -25,12 +23,6 @@ Json allowed(const RodCheck& rod, const std::optional<Comparison>& c) {
 
 // null where nothing could be compared.
 Json agrees(const RodCheck& rod) { return rod.compared() || rod.both_singular ? Json(rod.agrees()) : Json(); }
-
-Json exponents_json(const std::vector<Exponent>& exponents) {
-  Json list = Json::array();
-  for (const Exponent& e : exponents) list.push_back({number(e.value.real()), number(e.value.imag())});
-  return list;
-}
 
 Json shooting_json(const ShootingResult& shooting) {
   const bool has_exponents = !shooting.exponents.empty();

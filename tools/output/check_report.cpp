@@ -8,19 +8,13 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Text = fmt::memory_buffer;
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
 
 // Exponents are the only comparison that is not relative.
 std::string with_unit(const Comparison& c, const OutputUnits& units) {
@@ -112,7 +106,7 @@ void add_times(Text& text, const std::vector<SpeedCheck>& checks) {
 }
 
 // "Six-link mechanism, 1500 rpm: stable (AB, CD); harmonic balance and time integration agree"
-std::string first_line(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+std::string verdict_line(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
   const std::string verdict = check_verdict(checks);
   return fmt::format("{}{}: {}{}harmonic balance and time integration {}\n", scene_name(model.scene),
                      checks.size() == 1 ? ", " + speed_text(checks.front().speed, model.scene) : "", verdict,
@@ -199,7 +193,7 @@ std::string check_verdict(const std::vector<SpeedCheck>& checks) {
 std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings,
                          bool stats) {
   Text text;
-  add(text, "{}", first_line(model, checks));
+  add(text, "{}", verdict_line(model, checks));
   if (checks.size() > 1)
     add_range(text, model, checks);
   else

@@ -9,14 +9,13 @@
 #include <map>
 #include <numbers>
 
+#include "tools/output/json.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Factors from the units of a document to mm, N, N m, MPa, Hz, W.
 struct Factors {

@@ -11,17 +11,13 @@
 #include <ctime>
 #include <sstream>
 
-#include "tools/command/command.hpp"
+#include "tools/work/errors.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* first_line = "hb";  // of a lock file; then command, process, start, temporary folder
-
-[[noreturn]] void fail(const fs::path& folder, const std::string& reason) {
-  throw OutputError(fmt::format("--out: {} cannot be written: {}", folder.string(), reason));
-}
+constexpr const char* lock_mark = "hb";  // of a lock file; then command, process, start, temporary folder
 
 std::string now() {
   const std::time_t time = std::time(nullptr);
@@ -45,7 +41,7 @@ std::optional<Holder> holder(const std::string& text) {
   std::istringstream lines(text);
   std::string first;
   Holder result;
-  if (!std::getline(lines, first) || first != first_line || !std::getline(lines, result.command) ||
+  if (!std::getline(lines, first) || first != lock_mark || !std::getline(lines, result.command) ||
       !std::getline(lines, result.process) || !std::getline(lines, result.start))
     return std::nullopt;
   std::getline(lines, result.scratch);
@@ -79,7 +75,7 @@ FolderLock::FolderLock(const fs::path& folder, const std::string& command)
     : file_(beside(folder, ".lock")), command_(command) {
   for (;;) {
     descriptor_ = open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666);
-    if (descriptor_ < 0) fail(folder, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
+    if (descriptor_ < 0) refuse_output(folder, fmt::format("{}: {}", file_.string(), std::strerror(errno)));
     if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       const std::optional<Holder> other = holder(contents(descriptor_));
       close(descriptor_);
@@ -111,7 +107,7 @@ void FolderLock::take_over(const fs::path& folder) {
   const std::string text = contents(descriptor_);
   if (text.empty()) return;
   const std::optional<Holder> killed = holder(text);
-  if (!killed) fail(folder, fmt::format("{} was not written by hb; allowed: to move it away", file_.string()));
+  if (!killed) refuse_output(folder, fmt::format("{} was not written by hb; allowed: to move it away", file_.string()));
   fmt::print(stderr, "hb: {} (process {}, started {}) did not end by itself; its lock on {} is taken\n",
              killed->command, killed->process, killed->start, folder.string());
   // Only what this run would have made itself, whatever the file says.
@@ -132,8 +128,7 @@ void FolderLock::note_scratch(const fs::path& scratch) {
 
 void FolderLock::write() {
   static const std::string start = now();
-  const std::string text =
-      fmt::format("{}\n{}\n{}\n{}\n{}\n", first_line, command_, getpid(), start, scratch_.string());
+  const std::string text = fmt::format("{}\n{}\n{}\n{}\n{}\n", lock_mark, command_, getpid(), start, scratch_.string());
   // On a full disk the lock holds all the same; only its words are missing.
   if (ftruncate(descriptor_, 0) == 0) [[maybe_unused]]
     const ssize_t size = pwrite(descriptor_, text.data(), text.size(), 0);

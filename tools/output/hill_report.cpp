@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,10 +11,12 @@
 #include <optional>
 #include <vector>
 
+#include "lib/dense.hpp"
+#include "tools/output/json.hpp"
+
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
@@ -87,9 +87,9 @@ MeanFrequencies mean_frequencies(const HillSystem& system, const Scene& scene) {
     if (mean.size() > 0) C += mean * std::pow(speed.value_or(1), static_cast<double>(p));
   }
   if (at_speed) result.speed = speed;
-  const Eigen::EigenSolver<MatrixXd> solver(system.mass.partialPivLu().solve(C), false);
-  if (solver.info() != Eigen::Success) return result;
-  for (const std::complex<double>& square : solver.eigenvalues()) result.squares.push_back(square);
+  const auto pairs = dense::eigenpairs(dense::Lu<double>(system.mass).solve(C));
+  if (!pairs) return result;
+  for (const std::complex<double>& square : pairs->values) result.squares.push_back(square);
   std::ranges::sort(result.squares, {}, [](std::complex<double> z) { return z.real(); });
   return result;
 }

@@ -67,4 +67,10 @@ Json joints_json(const JointForces& forces) {
   return joints;
 }
 
+Json exponents_json(const std::vector<Exponent>& exponents) {
+  Json list = Json::array();
+  for (const Exponent& e : exponents) list.push_back({number(e.value.real()), number(e.value.imag())});
+  return list;
+}
+
 }  // namespace hb::tools

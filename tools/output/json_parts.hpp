@@ -8,10 +8,9 @@
 #include "lib/linkage/joint_forces.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
+#include "tools/output/json.hpp"
 
 namespace hb::tools {
-
-using Json = nlohmann::ordered_json;
 
 // [re, im], no "-0.0".
 [[nodiscard]] Json pair(std::complex<double> value);
@@ -20,6 +19,8 @@ using Json = nlohmann::ordered_json;
 // Per component [[re, im], ...].
 [[nodiscard]] Json fourier_json(const FourierSeries& series);
 [[nodiscard]] Json peak_json(const RodPeak& peak, const Units& units);
+// [[re, im], ...].
+[[nodiscard]] Json exponents_json(const std::vector<Exponent>& exponents);
 // Exponents with their errors, growth rate, verdict; of `num_exponents` that there are.
 [[nodiscard]] Json stability_json(const Stability& stability, Eigen::Index num_exponents);
 // By joint and component, elastic beside rigid.

@@ -11,6 +11,7 @@
 #include "hb/analysis/slider_motion.hpp"
 #include "hb/analysis/static_deflection.hpp"
 #include "hb/analysis/stress_cycle.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
@@ -19,7 +20,6 @@
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Eigen::Index;
 
 double watt(const Units& units) { return units.torque_in_newton_metre() / units.time_in_s; }

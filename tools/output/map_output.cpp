@@ -7,11 +7,12 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/scene/scene_keys.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
@@ -20,10 +21,6 @@
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool missing(const MapPoint& point) { return point.source == MapSource::missing; }
 
@@ -124,12 +121,12 @@ Json axis_json(const PlaneAxis& axis, const std::vector<double>& values) {
   return {{"path", axis.path}, {"values", values}};
 }
 
-std::string first_line(const MapDocument& document, const std::string& what) {
+std::string comment_line(const MapDocument& document, const std::string& what) {
   const MapResult& r = document.result;
   return fmt::format("{}: {} over {} and {}", scene_name(document.scene), what, r.x_axis.path, r.y_axis.path);
 }
 
-struct Counts {
+struct NodeCounts {
   std::size_t stable = 0, bounded = 0, undecided = 0, unstable = 0, missing = 0, interpolated = 0;
 
   std::size_t& of(Verdict verdict) {
@@ -147,8 +144,8 @@ struct Counts {
   }
 };
 
-Counts counts(const std::vector<MapPoint>& points) {
-  Counts n;
+NodeCounts counts(const std::vector<MapPoint>& points) {
+  NodeCounts n;
   for (const MapPoint& p : points) {
     if (missing(p)) {
       ++n.missing;
@@ -202,7 +199,7 @@ MapDocument document_of(const Map& map) {
 std::string map_text(const MapDocument& document) {
   const MapResult& r = document.result;
   const StabilityMap& first = r.maps.front();
-  const Counts n = counts(r.worst);
+  const NodeCounts n = counts(r.worst);
   Members json;
   json.add("title", document.scene.title);
   json.add("status", document.complete ? "reached" : "tolerance not reached");
@@ -266,7 +263,7 @@ CsvFile map_grid_csv(const MapDocument& document) {
   const std::string time = document.scene.units.time;
   CsvFile file;
   file.name = "map_grid.csv";
-  file.comment = {first_line(document, "growth rate, largest over the rods"),
+  file.comment = {comment_line(document, "growth rate, largest over the rods"),
                   std::string(verdict_numbers) + "; interpolated 1: inside a cell of one verdict; nan: no system"};
   file.columns = {
       r.x_axis.path, r.y_axis.path, "growth [1/" + time + "]", "growth per turn", "tenfold time [" + time + "]",
@@ -296,7 +293,7 @@ CsvFile map_boundary_csv(const MapDocument& document, const std::vector<RodCurve
   const MapResult& r = document.result;
   CsvFile file;
   file.name = name;
-  file.comment = {first_line(document, what), fmt::format("rods: {}", fmt::join(r.rods, ", ")),
+  file.comment = {comment_line(document, what), fmt::format("rods: {}", fmt::join(r.rods, ", ")),
                   "kind 1: +1, -1: period doubling, 0: complex; error: half of the bracket that is left"};
   file.columns = {"curve", "rod", "kind", r.x_axis.path, r.y_axis.path, "error"};
   std::size_t count = 0;
@@ -318,7 +315,7 @@ CsvFile map_resonance_csv(const MapDocument& document) {
   const MapResult& r = document.result;
   CsvFile file;
   file.name = "map_resonance.csv";
-  file.comment = {first_line(document, "parametric resonance lines of the mean frequencies of " + r.rods.front())};
+  file.comment = {comment_line(document, "parametric resonance lines of the mean frequencies of " + r.rods.front())};
   std::size_t count = 0;
   for (std::size_t k = 0; k < r.lines.size(); ++k) {
     file.comment.push_back(fmt::format("line {}: speed = {}", k + 1, r.lines[k].name(false)));
@@ -338,7 +335,7 @@ CsvFile map_resonance_csv(const MapDocument& document) {
 
 std::string map_verdict(const MapDocument& document) {
   const MapResult& r = document.result;
-  const Counts n = counts(r.worst);
+  const NodeCounts n = counts(r.worst);
   const double all = static_cast<double>(r.worst.size() - n.missing);
   if (all == 0) return document.complete ? "no system at any point" : "no answer yet at any point";
   std::vector<std::string> because;
@@ -362,7 +359,7 @@ std::string map_verdict(const MapDocument& document) {
 
 std::string map_summary(const MapDocument& document) {
   const MapResult& r = document.result;
-  const Counts n = counts(r.worst);
+  const NodeCounts n = counts(r.worst);
   const Units& units = document.scene.units;
   const double all = static_cast<double>(r.worst.size());
   const bool linkage = std::holds_alternative<Linkage>(document.scene.model);

@@ -8,30 +8,18 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json.hpp"
+#include "tools/output/json_parts.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-using Text = fmt::memory_buffer;
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 Json difference(const std::optional<Comparison>& c) { return c ? number(c->difference) : Json(); }
 Json allowed(const std::optional<Comparison>& c) { return c ? number(c->allowed) : Json(); }
-
-Json exponents_json(const std::vector<Exponent>& exponents) {
-  Json list = Json::array();
-  for (const Exponent& e : exponents) list.push_back({number(e.value.real()), number(e.value.imag())});
-  return list;
-}
 
 bool compared(const NonlinearCheck& check) { return check.not_compared.empty(); }
 

@@ -7,28 +7,21 @@
 #include <iterator>
 
 #include "hb/analysis/machine_loads.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/stress_words.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
 
-using Text = fmt::memory_buffer;
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
-
 // All rods have one verdict together.
 NamedVerdicts verdict_of(const NonlinearResult& result) { return {{"all rods together", result.stability->verdict}}; }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json rod_json(const NonlinearRod& rod, const Linkage& linkage, const NonlinearResult& result, const Units& units) {
   Json json;

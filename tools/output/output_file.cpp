@@ -9,26 +9,18 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "tools/command/command.hpp"
+#include "tools/work/errors.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;
-namespace {
-
-[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
-  throw OutputError(fmt::format("--out: {} cannot be written: {}", path.string(), reason));
-}
-
-}  // namespace
-
 OutputFile::OutputFile(fs::path path, const std::string& command) : path_(std::move(path)) {
   std::error_code error;
-  if (fs::is_directory(path_, error)) fail(path_, "it is a folder");
-  if (!path_.has_filename()) fail(path_, "it names no file");
+  if (fs::is_directory(path_, error)) refuse_output(path_, "it is a folder");
+  if (!path_.has_filename()) refuse_output(path_, "it names no file");
   lock_.emplace(path_, command);
   std::string name = (fs::absolute(path_).parent_path() / (".hb-" + path_.filename().string() + "-XXXXXX")).string();
   file_ = mkostemp(name.data(), O_CLOEXEC);
-  if (file_ < 0) fail(path_, std::strerror(errno));
+  if (file_ < 0) refuse_output(path_, std::strerror(errno));
   scratch_ = name;
   removed_on_signal_.emplace(scratch_, Unfinished::Kind::file);
   lock_->note_scratch(scratch_);
@@ -49,16 +41,16 @@ void OutputFile::commit(const std::string& text) {
   for (std::size_t left = text.size(); left > 0;) {
     const ssize_t written = ::write(file_, next, left);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_, std::strerror(errno));
+    if (written < 0) refuse_output(path_, std::strerror(errno));
     next += written;
     left -= static_cast<std::size_t>(written);
   }
   const int closed = close(file_);
   file_ = -1;
-  if (closed != 0) fail(path_, std::strerror(errno));
+  if (closed != 0) refuse_output(path_, std::strerror(errno));
   std::error_code error;
   fs::rename(scratch_, path_, error);
-  if (error) fail(path_, error.message());
+  if (error) refuse_output(path_, error.message());
   removed_on_signal_.reset();
   scratch_.clear();
 }

@@ -14,21 +14,17 @@
 #include <fstream>
 #include <system_error>
 
-#include "tools/command/command.hpp"
 #include "tools/output/printable.hpp"
+#include "tools/work/errors.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;
 namespace {
 
-[[noreturn]] void fail(const fs::path& path, const std::string& reason) {
-  throw OutputError(fmt::format("--out: {} cannot be written: {}", path.string(), reason));
-}
-
 // A new empty folder `parent`/.hb-XXXXXX.
 fs::path make_temporary(const fs::path& parent, const fs::path& wanted) {
   std::string name = (parent / ".hb-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) fail(wanted, std::strerror(errno));
+  if (mkdtemp(name.data()) == nullptr) refuse_output(wanted, std::strerror(errno));
   // mkdtemp gives 0700; the folder is to have what mkdir would have given.
   const mode_t mask = umask(0);
   umask(mask);
@@ -39,7 +35,7 @@ fs::path make_temporary(const fs::path& parent, const fs::path& wanted) {
 
 void write_file(const fs::path& path, const std::string& text, const fs::path& wanted) {
   const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail(wanted, std::strerror(errno));
+  if (file < 0) refuse_output(wanted, std::strerror(errno));
   const char* next = text.data();
   std::size_t left = text.size();
   while (left > 0) {
@@ -48,12 +44,12 @@ void write_file(const fs::path& path, const std::string& text, const fs::path& w
     if (written < 0) {
       const int reason = errno;
       close(file);
-      fail(wanted, std::strerror(reason));
+      refuse_output(wanted, std::strerror(reason));
     }
     next += written;
     left -= static_cast<std::size_t>(written);
   }
-  if (close(file) != 0) fail(wanted, std::strerror(errno));
+  if (close(file) != 0) refuse_output(wanted, std::strerror(errno));
 }
 
 bool is_plain(const fs::path& path) {
@@ -105,21 +101,22 @@ OutputFolder::OutputFolder(fs::path folder, const std::string& command, Provenan
   // "out/" is out.
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
   absolute_ = fs::absolute(folder_, error);
-  if (error) fail(folder_, error.message());
+  if (error) refuse_output(folder_, error.message());
   const fs::file_status status = fs::status(absolute_, error);
-  if (error && status.type() != fs::file_type::not_found) fail(folder_, error.message());
-  if (fs::exists(status) && !fs::is_directory(status)) fail(folder_, "it exists and is not a folder");
+  if (error && status.type() != fs::file_type::not_found) refuse_output(folder_, error.message());
+  if (fs::exists(status) && !fs::is_directory(status)) refuse_output(folder_, "it exists and is not a folder");
   if (!fs::exists(status) && is_there(absolute_)) {
-    fail(folder_, fmt::format("it is a link to {}, which does not exist", fs::read_symlink(absolute_, error).string()));
+    refuse_output(folder_,
+                  fmt::format("it is a link to {}, which does not exist", fs::read_symlink(absolute_, error).string()));
   }
   std::vector<fs::path> missing;  // parents to make, innermost first
   for (fs::path parent = absolute_.parent_path(); !fs::exists(parent, error); parent = parent.parent_path()) {
-    if (error) fail(folder_, error.message());
+    if (error) refuse_output(folder_, error.message());
     missing.push_back(parent);
   }
   try {
     for (auto parent = missing.rbegin(); parent != missing.rend(); ++parent) {
-      if (!fs::create_directory(*parent, error) && error) fail(folder_, error.message());
+      if (!fs::create_directory(*parent, error) && error) refuse_output(folder_, error.message());
       made_parents_.push_back(*parent);
       parents_on_signal_.push_back(std::make_unique<Unfinished>(*parent, Unfinished::Kind::empty_folder));
     }
@@ -162,7 +159,7 @@ fs::path OutputFolder::scratch_with_links() {
   std::error_code error;
   for (const std::string& name : committed_) {
     fs::create_symlink(absolute_ / name, scratch_->path / name, error);
-    if (error) fail(folder_, error.message());
+    if (error) refuse_output(folder_, error.message());
   }
   return scratch_->path;
 }
@@ -181,14 +178,16 @@ void OutputFolder::write_list(const fs::path& place, const std::set<std::string>
   write_file(scratch_->path / list_, fmt::format("{}\n", fmt::join(names, "\n")), folder_ / list_);
   std::error_code error;
   fs::rename(scratch_->path / list_, place / list_, error);
-  if (error) fail(folder_ / list_, error.message());
+  if (error) refuse_output(folder_ / list_, error.message());
 }
 
 void OutputFolder::refuse_folders(const fs::path& place, const std::vector<std::string>& names) const {
   std::error_code ignored;
   for (const std::string& name : names)
-    if (fs::is_directory(fs::symlink_status(place / name, ignored))) fail(folder_ / name, "a folder has that name");
-  if (is_there(place / list_) && !is_plain(place / list_)) fail(folder_ / list_, "it exists and is not a file");
+    if (fs::is_directory(fs::symlink_status(place / name, ignored)))
+      refuse_output(folder_ / name, "a folder has that name");
+  if (is_there(place / list_) && !is_plain(place / list_))
+    refuse_output(folder_ / list_, "it exists and is not a file");
 }
 
 void OutputFolder::merge(const fs::path& place, const std::vector<std::string>& names) {
@@ -207,11 +206,11 @@ void OutputFolder::merge(const fs::path& place, const std::vector<std::string>& 
     if (!before.contains(name) && is_there(place / name)) {
       const fs::path kept = free_name_beside(place / name);
       fs::rename(place / name, kept, error);
-      if (error) fail(folder_ / name, error.message());
+      if (error) refuse_output(folder_ / name, error.message());
       said.push_back(fmt::format("{} (not of hb {}) is now {}", name, command_, kept.filename().string()));
     }
     fs::rename(scratch_->path / name, place / name, error);
-    if (error) fail(folder_ / name, error.message());
+    if (error) refuse_output(folder_ / name, error.message());
   }
   if (first_stage_) {
     for (const std::string& name : before)
@@ -237,7 +236,7 @@ void OutputFolder::commit() {
   }
   if (!moved) {
     std::error_code error;
-    if (!fs::is_directory(absolute_, error)) fail(folder_, "it was made meanwhile and is not a folder");
+    if (!fs::is_directory(absolute_, error)) refuse_output(folder_, "it was made meanwhile and is not a folder");
     merge(absolute_, names);
   }
   committed_.insert(names.begin(), names.end());

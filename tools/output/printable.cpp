@@ -8,14 +8,14 @@
 namespace hb::tools {
 namespace {
 
-struct Range {
+struct CodeRange {
   char32_t first, last;
 };
 
 // Unicode's control characters and those that change the direction of writing, end lines or are never shown.
-constexpr Range hidden[] = {{0x00, 0x09},     {0x0b, 0x1f},     {0x7f, 0x9f},      {0x61c, 0x61c},
-                            {0x200e, 0x200f}, {0x2028, 0x202e}, {0x2066, 0x2069},  {0xfeff, 0xfeff},
-                            {0xfff9, 0xfffb}, {0xd800, 0xdfff}, {0xe0000, 0xe007f}};
+constexpr CodeRange hidden[] = {{0x00, 0x09},     {0x0b, 0x1f},     {0x7f, 0x9f},      {0x61c, 0x61c},
+                                {0x200e, 0x200f}, {0x2028, 0x202e}, {0x2066, 0x2069},  {0xfeff, 0xfeff},
+                                {0xfff9, 0xfffb}, {0xd800, 0xdfff}, {0xe0000, 0xe007f}};
 
 constexpr char32_t least_of_length[] = {0, 0, 0x80, 0x800, 0x10000};
 
@@ -34,7 +34,7 @@ CodePoint code_point_at(const std::string& text, std::size_t at) {
   }
   if (value < least_of_length[length] || value > 0x10ffff) return broken;
   const bool is_hidden = std::any_of(std::begin(hidden), std::end(hidden),
-                                     [&](const Range& r) { return value >= r.first && value <= r.last; });
+                                     [&](const CodeRange& r) { return value >= r.first && value <= r.last; });
   return {value, length, !is_hidden};
 }
 

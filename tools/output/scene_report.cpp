@@ -13,14 +13,15 @@
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
 #include "tools/output/hill_report.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 constexpr int num_frequencies = 3;
 
 std::string modes_text(const AnalysisDefaults& analysis) {
@@ -46,13 +47,6 @@ std::complex<double> cleaned(std::complex<double> point) {
 std::string point_text(std::complex<double> given) {
   const std::complex<double> point = cleaned(given);
   return fmt::format("({:.6g}, {:.6g})", point.real(), point.imag());
-}
-
-using Text = fmt::memory_buffer;
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
 }
 
 // By how much shear, with Poisson's ratio 0.3 and k = 5/6, would lower the frequencies of the first and the last mode.

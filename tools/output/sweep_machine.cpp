@@ -13,11 +13,11 @@
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/output/json.hpp"
 
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 

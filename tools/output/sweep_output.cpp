@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "lib/constants.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
@@ -22,13 +23,7 @@
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // A number, or null where it is not finite.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 template <class Value>
 Json over_points(const std::vector<SweepPoint>& points, const Value& value) {
   Json array = Json::array();

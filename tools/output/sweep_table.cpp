@@ -6,28 +6,20 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <limits>
 #include <optional>
 
+#include "lib/constants.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_words.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Text = fmt::memory_buffer;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
 
 // The axis as the head of a narrow column: "rpm", "AB.J [mm^4]".
 std::string axis_column(const SweepScene& scene) {

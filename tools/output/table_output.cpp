@@ -12,6 +12,7 @@
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/stress_words.hpp"
+#include "tools/output/text.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
@@ -20,13 +21,6 @@ namespace hb::tools {
 namespace {
 
 constexpr std::size_t max_modes_shown = 10;
-
-using Text = fmt::memory_buffer;
-
-template <class... Args>
-void add(Text& text, fmt::format_string<Args...> format, Args&&... args) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);
-}
 
 // How far the speed is from where a natural frequency is met, and what that does to the response.
 void add_resonance(Text& text, const SceneModel& model, const RodModel& rod_model, const RodResult& rod, double speed) {

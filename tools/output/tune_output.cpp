@@ -9,14 +9,13 @@
 #include <nlohmann/json.hpp>
 
 #include "lib/scene/scene_keys.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 double positive_degrees(double angle) {
   const double degrees = std::fmod(angle * degrees_per_radian, 360);
@@ -156,8 +155,6 @@ std::string bound_text(const Keep& keep, const Scene& scene) {
   return fmt::format("{} {:g}{}{}", keep.at_least ? ">=" : "<=", keep.bound, unit.empty() ? "" : " ", unit);
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
 Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed, const Units& units) {
   Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
   if (!value.where.empty()) json["at"] = value.where;
@@ -175,7 +172,7 @@ std::string not_met(const TuneResult& result) {
 }
 
 // "Six-link mechanism: the design found is stable (AB, CD) over 300 to 3000 rpm; before: UNSTABLE because of AB"
-std::string first_line(const TuneTask& task, const TuneResult& result, const Scene& scene) {
+std::string outcome_line(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const std::string after = mechanism_verdict(tune_verdicts(result.margins_after)),
                     before = mechanism_verdict(tune_verdicts(result.margins_before));
   std::string line = scene_name(scene);
@@ -217,7 +214,7 @@ NamedVerdicts tune_verdicts(const std::vector<RodMargin>& margins) {
 
 std::string tune_table(const TuneTask& task, const TuneResult& result, const Scene& scene) {
   const Units& units = scene.units;
-  std::string text = first_line(task, result, scene);
+  std::string text = outcome_line(task, result, scene);
   text += fmt::format("{} {}", task.goal.maximise ? "maximise" : "minimise", task.goal.text);
   text += result.span_after.from == result.span_after.to ? " at " : " over ";
   text += span_text(task, result.span_after, units);

@@ -18,8 +18,8 @@
 #include <optional>
 #include <sstream>
 
-#include "tools/command/command.hpp"
 #include "tools/output/printable.hpp"
+#include "tools/work/errors.hpp"
 #include "tools/work/interrupts.hpp"
 
 namespace hb::tools {

@@ -26,7 +26,7 @@ std::string raised_powers(std::string text) {
   return text;
 }
 
-std::string axis_label(const MapDocument& document, const PlaneAxis& axis) {
+std::string map_axis_label(const MapDocument& document, const PlaneAxis& axis) {
   if (axis.role == PlaneAxis::Role::rpm) return quoted("speed [rpm]");
   if (axis.role == PlaneAxis::Role::omega) return quoted("speed [rad/" + document.scene.units.time + "]");
   return quoted(axis.path + raised_powers(bracketed(path_unit(axis.path, document.scene.units))));
@@ -142,8 +142,8 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(short_name(document.scene) + ", " + map_verdict(document)),
       quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(), r.y().front(), r.y().back(),
-      axis_label(document, r.x_axis), axis_label(document, r.y_axis), quoted(c.label), -limit, limit, ticks(c, colour),
-      palette, line_labels(r));
+      map_axis_label(document, r.x_axis), map_axis_label(document, r.y_axis), quoted(c.label), -limit, limit,
+      ticks(c, colour), palette, line_labels(r));
   if (some_missing) {
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";

@@ -2,12 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json.hpp"
 #include "tools/report/page_values.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // max |q_i| of each rod shown, a column for each mode.
 Json peak_columns(const NonlinearSweep& sweep, const NonlinearBranch& branch, ByteBlock& block) {

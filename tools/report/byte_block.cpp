@@ -6,12 +6,11 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json.hpp"
 #include "tools/report/base64.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // Beyond a float's range: no number, rather than infinity.
 float as_float(double value) {

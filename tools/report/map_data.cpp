@@ -5,11 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "tools/output/json.hpp"
 #include "tools/report/page_values.hpp"
 
 namespace hb::tools {
-
-using Json = nlohmann::ordered_json;
 
 Json map_data(Json map, const SceneSource& source, const Units& units, ByteBlock& block) {
   const auto grid = [&](Json& rows) {

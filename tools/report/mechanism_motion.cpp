@@ -6,10 +6,9 @@
 #include "lib/exact/exact_model.hpp"
 #include "lib/linkage/kinematics.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/json.hpp"
 
 namespace hb::tools {
-
-using Json = nlohmann::ordered_json;
 
 namespace {
 

@@ -2,12 +2,12 @@
 
 #include <limits>
 
+#include "tools/output/json.hpp"
+
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-enum Leaf { number = 0, word = 1, truth = 2 };
+enum Leaf { number_mark = 0, word = 1, truth = 2 };
 
 std::string dumped(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -36,7 +36,7 @@ Json PackedNumbers::shape_of(const Json& part) {
     return truth;
   }
   numbers_.push_back(part.is_number() ? part.get<double>() : std::numeric_limits<double>::quiet_NaN());
-  return number;
+  return number_mark;
 }
 
 PackedNumbers::Place PackedNumbers::add(const Json& document) {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tools/command/command.hpp"
+#include "tools/work/errors.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;

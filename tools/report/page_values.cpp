@@ -3,11 +3,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/json.hpp"
 #include "tools/output/path_unit.hpp"
 
 namespace hb::tools {
-
-using Json = nlohmann::ordered_json;
 
 char letter(const Json& verdict) {
   if (!verdict.is_string()) return '-';

@@ -4,13 +4,12 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "tools/output/json.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/report/mechanism_motion.hpp"
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const RodModel* rod_model(const SceneModel& model, const std::string& name) {
   const auto rod = std::ranges::find(model.rods, name, &RodModel::name);

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "lib/constants.hpp"
 #include "tools/output/branches_output.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/output/output_units.hpp"
@@ -25,10 +26,6 @@
 
 namespace hb::tools {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> at(const std::vector<double>& values, const std::vector<std::size_t>& indices) {
   std::vector<double> chosen;

@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "tools/output/json.hpp"
 #include "tools/report/base64.hpp"
 #include "tools/report/page_parts.hpp"
 
 namespace hb::tools {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Values = std::map<std::string, std::string, std::less<>>;
 
 constexpr std::size_t longest_title = 300, longest_text = 200000;

@@ -4,9 +4,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-namespace hb::tools {
+#include "tools/output/json.hpp"
 
-using Json = nlohmann::ordered_json;
+namespace hb::tools {
 
 // Rigid forces are F0 + Omega F1 + Omega^2 F2: three speeds give the three series, by divided differences.
 Json rigid_forces_json(const std::vector<ReportPlace>& places, ByteBlock& block) {

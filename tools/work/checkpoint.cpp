@@ -12,8 +12,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "tools/command/command.hpp"
 #include "tools/command/version.hpp"
+#include "tools/work/errors.hpp"
 
 namespace hb::tools {
 namespace fs = std::filesystem;
@@ -33,10 +33,6 @@ struct Head {
 };
 
 std::uint64_t hash_of(const std::string& bytes) { return TaskKey().add(bytes).value(); }
-
-[[noreturn]] void fail(const fs::path& file, int reason) {
-  throw OutputError(fmt::format("--out: {} cannot be written: {}", file.string(), std::strerror(reason)));
-}
 
 [[noreturn]] void refuse_foreign(const fs::path& file) {
   throw UsageError(
@@ -141,11 +137,11 @@ Checkpoint::Checkpoint(fs::path file, std::uint64_t key, EarlierParts earlier) :
       }
       // Goes on in the same file: what is there stays whatever happens, and no room for a copy is needed.
       descriptor_ = open(file_.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW);
-      if (descriptor_ < 0) fail(file_, errno);
+      if (descriptor_ < 0) refuse_output(file_, std::strerror(errno));
       if (ftruncate(descriptor_, static_cast<off_t>(good_bytes_)) != 0 || lseek(descriptor_, 0, SEEK_END) < 0) {
         const int reason = errno;
         close(descriptor_);
-        fail(file_, reason);
+        refuse_output(file_, std::strerror(reason));
       }
       return;
     }
@@ -163,7 +159,7 @@ void Checkpoint::start_anew(std::uint64_t key) {
   append(bytes, key);
   std::string fresh = file_.string() + "-XXXXXX";
   descriptor_ = mkostemp(fresh.data(), O_CLOEXEC);
-  if (descriptor_ < 0) fail(file_, errno);
+  if (descriptor_ < 0) refuse_output(file_, std::strerror(errno));
   const mode_t mask = umask(0);
   umask(mask);
   fchmod(descriptor_, 0666 & ~mask);
@@ -172,7 +168,7 @@ void Checkpoint::start_anew(std::uint64_t key) {
     const int reason = written != 0 ? written : errno;
     close(descriptor_);
     unlink(fresh.c_str());
-    fail(file_, reason);
+    refuse_output(file_, std::strerror(reason));
   }
   good_bytes_ = bytes.size();
 }
@@ -224,7 +220,7 @@ void Checkpoint::store(std::uint64_t index, const std::vector<double>& numbers) 
                file_.string(), std::strerror(reason));
   }
   complained_ = true;
-  if (!back) fail(file_, errno);
+  if (!back) refuse_output(file_, std::strerror(errno));
 }
 
 void Checkpoint::remove() {

@@ -39,7 +39,7 @@ void remove_tree(const char* path) {
   if (child > 0) waitpid(child, nullptr, 0);
 }
 
-void write_all(int descriptor, const std::string& text) {
+void write_message(int descriptor, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t written = write(descriptor, text.data() + done, text.size() - done);
     if (written <= 0) return;
@@ -73,8 +73,8 @@ void on_alarm(int) {
   }
   if (interrupt_seen != 0) remove_unfinished_and_exit(exit_interrupted);
   if (phase != drawing) {
-    write_all(STDERR_FILENO, time_message);
-    write_all(STDOUT_FILENO, time_document);
+    write_message(STDERR_FILENO, time_message);
+    write_message(STDOUT_FILENO, time_document);
   }
   remove_unfinished_and_exit(status_at_end);
 }

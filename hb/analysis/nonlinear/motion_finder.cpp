@@ -21,8 +21,6 @@ constexpr double weakly_bent = 0.01;
 constexpr double way_tolerance = 1e-5, doubling_tolerance = 1e-8;
 // A resonance curve with its folds takes some hundred.
 constexpr int most_points = 600;
-// Two motions are the same if their largest |q_i| agree to this.
-constexpr double same_motion = 1e-4;
 
 }  // namespace
 
@@ -272,8 +270,8 @@ void MotionFinder::note_last(const Branch& branch) {
   result_.last_max_abs = sizes(branch.points.back().motion.q);
 }
 
-std::vector<std::vector<double>> MotionFinder::sizes(const FourierSeries& q) const {
-  std::vector<std::vector<double>> values(modes_.size());
+RodPeaks MotionFinder::sizes(const FourierSeries& q) const {
+  RodPeaks values(modes_.size());
   for (std::size_t r = 0; r < modes_.size(); ++r)
     for (Index i = 0; i < modes_[r]; ++i) values[r].push_back(fourier::max_abs(q, exact_->first_mode(r) + i).value);
   return values;
@@ -281,18 +279,10 @@ std::vector<std::vector<double>> MotionFinder::sizes(const FourierSeries& q) con
 
 void MotionFinder::add_other(const PeriodicMotion& motion) {
   if (motion.status != MotionStatus::converged) return;
-  const auto same = [&](const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b) {
-    for (std::size_t r = 0; r < a.size(); ++r) {
-      const double size = *std::ranges::max_element(a[r]);
-      for (std::size_t i = 0; i < a[r].size(); ++i)
-        if (!(std::abs(a[r][i] - b[r][i]) <= same_motion * size)) return false;
-    }
-    return true;
-  };
   OtherMotion other{sizes(motion.q), std::nullopt};
-  if (result_.search == MotionSearch::found && same(other.max_abs, sizes(result_.motion.q))) return;
+  if (result_.search == MotionSearch::found && same_motion(other.max_abs, sizes(result_.motion.q))) return;
   for (const OtherMotion& known : result_.others)
-    if (same(other.max_abs, known.max_abs)) return;
+    if (same_motion(other.max_abs, known.max_abs)) return;
   if (result_.computed.stability) other.verdict = motion_stability(system_, motion).verdict;
   result_.others.push_back(std::move(other));
 }

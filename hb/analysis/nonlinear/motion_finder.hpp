@@ -63,7 +63,7 @@ class MotionFinder {
   double rpm(double speed) const { return rpm_from_speed(speed, model_.scene.units); }
   void note_last(const Branch& branch);
   // Largest |q_i| by rod and mode.
-  std::vector<std::vector<double>> sizes(const FourierSeries& q) const;
+  RodPeaks sizes(const FourierSeries& q) const;
   void add_other(const PeriodicMotion& motion);
 
   const SceneModel& model_;

@@ -9,6 +9,7 @@
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
 #include "hb/engine/nonlinear/motion_shooting.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {
@@ -23,8 +24,6 @@ constexpr double shooting_tolerances[] = {1e-2, 1e-4, 1e-6, 1e-8};
 constexpr double reference_tolerance = 1e-10;
 // Of the motion that every method starts from, in harmonics of the crank's speed.
 constexpr Index start_harmonics = 6;
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 MatrixXd at_samples(const FourierSeries& series, Index N) {
   Index factor = 1;

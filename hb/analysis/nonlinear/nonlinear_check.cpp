@@ -6,8 +6,8 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/nonlinear/exact_system.hpp"
-#include "hb/analysis/stopwatch.hpp"
 #include "hb/engine/nonlinear/motion_shooting.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {

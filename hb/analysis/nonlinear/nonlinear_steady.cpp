@@ -7,10 +7,10 @@
 #include <numbers>
 
 #include "hb/analysis/nonlinear/motion_finder.hpp"
-#include "hb/analysis/stopwatch.hpp"
 #include "hb/engine/nonlinear/motion_stability.hpp"
 #include "lib/exact/exact_forces.hpp"
 #include "lib/exact/rod_tension.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {

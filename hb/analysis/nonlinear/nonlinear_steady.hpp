@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/nonlinear/rod_peaks.hpp"
 #include "hb/engine/nonlinear/periodic_motion.hpp"
 
 namespace hb {
@@ -22,18 +23,18 @@ struct NonlinearRod {
   std::string name;
   int link = -1;
   bool reported = true;
-  FourierSeries q;  // harmonic k is k Omega/T
-  std::vector<Extremum> max_abs;  // of each q_i; crank angles over the T turns
+  FourierSeries q = {};  // harmonic k is k Omega/T
+  std::vector<Extremum> max_abs = {};  // of each q_i; crank angles over the T turns
   double error_bound = 0;  // estimate of max |error of q_i| / max |q_i|, for the number of modes kept
   // Estimated max |error of w| / max |w| from cutting the Ritz series: the motion once more with more modes.
-  std::optional<double> modes_error;
-  std::optional<RodShape> shape;  // the moment EJ kappa, kappa = w''/cos psi
-  std::optional<RodStress> stress;  // beside it, with the axial force along the bent rod
+  std::optional<double> modes_error = std::nullopt;
+  std::optional<RodShape> shape = std::nullopt;  // the moment EJ kappa, kappa = w''/cos psi
+  std::optional<RodStress> stress = std::nullopt;  // beside it, with the axial force along the bent rod
 };
 
 // Another motion of as many turns at the same speed.
 struct OtherMotion {
-  std::vector<std::vector<double>> max_abs;  // by rod and mode
+  RodPeaks max_abs;  // by rod and mode
   std::optional<Verdict> verdict;
 };
 

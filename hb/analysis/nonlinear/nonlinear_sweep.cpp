@@ -8,7 +8,7 @@
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
-#include "hb/analysis/stopwatch.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 using Eigen::Index;
 
 // Two motions are the same if their largest |q_i| agree to this, of the largest.
-constexpr double same_motion = 1e-4;
 // Bifurcations of two branches are the same one if they lie within this of the range.
 constexpr double same_place = 1e-4;
 constexpr std::size_t most_branches = 16;
@@ -126,15 +125,6 @@ class Sweeper {
     return values;
   }
 
-  static bool same(const RodPeaks& a, const RodPeaks& b) {
-    for (std::size_t r = 0; r < a.size(); ++r) {
-      const double size = *std::ranges::max_element(a[r]);
-      for (std::size_t i = 0; i < a[r].size(); ++i)
-        if (!(std::abs(a[r][i] - b[r][i]) <= same_motion * size)) return false;
-    }
-    return true;
-  }
-
   void start_from_below() {
     Stopwatch watch;
     const ScenePlace place = scene_.at(options_.low);
@@ -164,7 +154,7 @@ class Sweeper {
     const RodPeaks there = peaks(motion.q);
     for (const NonlinearBranch& branch : result_.branches)
       for (const NonlinearPoint& point : branch.points)
-        if (point.x == options_.high && same(point.max_abs, there)) return;
+        if (point.x == options_.high && same_motion(point.max_abs, there)) return;
     add_branch(follow(motion, -1), nullptr);
   }
 

@@ -8,13 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/nonlinear/rod_peaks.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "hb/engine/nonlinear/continuation.hpp"
 
 namespace hb {
-
-// Largest |q_i| over the motion, by rod and mode.
-using RodPeaks = std::vector<std::vector<double>>;
 
 struct NonlinearPoint {
   double x = 0, speed = 0;  // along the axis; rad per unit time

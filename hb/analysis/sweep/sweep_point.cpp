@@ -78,11 +78,6 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
 
 }  // namespace
 
-Only available(const SceneModel& model, Only only) {
-  if (!model.linkage()) only.reactions = only.shape = false;
-  return only;
-}
-
 SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) {
   const ScenePlace place = scene.at(x);
   SweepPoint point;

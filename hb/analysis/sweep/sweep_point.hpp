@@ -53,9 +53,6 @@ struct SweepPoint {
   std::optional<MachinePoint> machine;
 };
 
-// What of `only` the model has.
-[[nodiscard]] Only available(const SceneModel& model, Only only);
-
 [[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted);
 
 }  // namespace hb

@@ -5,20 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/design/worst_case.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
-using std::numbers::pi;
-
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Modes whose resonances get a sample of their own, and their highest order: above, the load's harmonics have decayed.
 constexpr std::size_t resonant_modes = 2;

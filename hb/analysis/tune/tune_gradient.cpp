@@ -4,11 +4,11 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 
 #include "hb/analysis/tune/tune_quantities.hpp"
 #include "hb/engine/design/differences.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
+#include "lib/constants.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/shear.hpp"
 
@@ -18,8 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double pi = std::numbers::pi;
 
 // Of a number: differences of coefficients lose its square (truncation) and their rounding over it.
 constexpr double relative_step = 1e-5;

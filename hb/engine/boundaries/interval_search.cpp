@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <queue>
 
 #include "hb/engine/boundaries/encounters.hpp"
 #include "hb/engine/boundaries/growth_model.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -16,7 +16,6 @@ namespace {
 
 using cplx = std::complex<double>;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Two exponents move by this part of a turn against each other at most from place to place, where they may excite each
 // other.
 constexpr double most_motion = 0.25, most_motion_while_unstable = 0.15;

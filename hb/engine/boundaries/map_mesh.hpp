@@ -38,7 +38,7 @@ struct MapEdge {
   std::array<std::size_t, 2> children{};
   std::size_t middle = 0;
   bool halved = false;
-  std::vector<std::size_t> crossings;  // ascending; of a halved edge those of its children count
+  std::vector<std::size_t> crossings = {};  // ascending; of a halved edge those of its children count
 };
 
 // Corners and edges counter-clockwise from the lower left: bottom, right, top, left.

@@ -1,10 +1,11 @@
 #include "hb/engine/boundaries/mean_exponents.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+
+#include "lib/constants.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -80,10 +81,11 @@ MeanModes by_companion(const MatrixXd& K0, const MatrixXd& G) {
   A.topRightCorner(I, I).setIdentity();
   A.bottomLeftCorner(I, I) = -K0;
   A.bottomRightCorner(I, I) = -G;
-  const Eigen::EigenSolver<MatrixXd> spectrum(A);
-  const MatrixXcd V = spectrum.eigenvectors();
-  MeanModes modes{spectrum.eigenvalues(), V.topRows(I).cwiseAbs(),
-                  MatrixXcd(Eigen::PartialPivLU<MatrixXcd>(V).inverse().rightCols(I)).cwiseAbs()};
+  const std::optional<dense::Eigenpairs> spectrum = dense::eigenpairs(A);
+  if (!spectrum)
+    return {VectorXcd::Constant(2 * I, nan), MatrixXd::Constant(I, 2 * I, nan), MatrixXd::Constant(2 * I, I, nan)};
+  const MatrixXcd& V = spectrum->vectors;
+  MeanModes modes{spectrum->values, V.topRows(I).cwiseAbs(), MatrixXcd(dense::inverse(V).rightCols(I)).cwiseAbs()};
   for (Index n = 0; n < 2 * I; ++n) {
     const double ratio = std::sqrt(modes.Y.row(n).norm() / modes.X.col(n).norm());
     modes.X.col(n) *= ratio;
@@ -99,9 +101,9 @@ MeanModes mean_modes(const ScaledSystem& system) {
   if (largest_off_diagonal(K0) == 0 && system.diagonal_damping) {
     modes = by_modes(MatrixXd::Identity(I, I), K0.diagonal(), G.diagonal());
   } else if (is_symmetric(K0) && is_symmetric(G)) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> spectrum(K0);
-    const MatrixXd& Q = spectrum.eigenvectors();
-    modes = by_modes(Q, spectrum.eigenvalues(), (Q.transpose() * G * Q).diagonal());
+    const dense::SymmetricEigenpairs spectrum = dense::symmetric_eigenpairs(K0);
+    const MatrixXd& Q = spectrum.vectors;
+    modes = by_modes(Q, spectrum.values, (Q.transpose() * G * Q).diagonal());
   } else {
     modes = by_companion(K0, G);
   }
@@ -123,8 +125,7 @@ bool symmetric_everywhere(const ScaledSystem& system) {
     if (!((K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale)) return false;
   }
   if (system.diagonal_damping) return true;
-  return is_symmetric(system.G) &&
-         Eigen::SelfAdjointEigenSolver<MatrixXd>(system.G, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >= 0;
+  return is_symmetric(system.G) && dense::symmetric_eigenpairs(system.G).values.minCoeff() >= 0;
 }
 
 }  // namespace
@@ -140,7 +141,7 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
     sizes += Eigen::Map<const MatrixXcd>(system.K.c.col(k).data(), sizes.rows(), sizes.cols()).cwiseAbs();
   // All ways of all orders: C + C C/delta + ... = C (1 - C/delta)^-1, which is positive where the sum converges.
   const MatrixXd C = modes.Y * sizes * modes.X;
-  const MatrixXd ways = Eigen::PartialPivLU<MatrixXd>(MatrixXd::Identity(n, n) - C / least_detuning).inverse();
+  const MatrixXd ways = dense::inverse(MatrixXd(MatrixXd::Identity(n, n) - C / least_detuning));
   const bool converges = ways.allFinite() && ways.minCoeff() >= 0;
   const MatrixXd all = converges ? MatrixXd(C * ways) : MatrixXd::Constant(n, n, HUGE_VAL);
   for (Index i = 0; i < n; ++i) {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 // Beside distances in units of the crank's speed: an exponent that the solver gave to another mode is believed less.
 constexpr double renaming_penalty = 0.05;
 // ... and not at all beyond this.

@@ -49,7 +49,7 @@ struct StabilityMap {
   std::size_t samples = 0;  // places where the exponents were computed
   std::size_t not_converged = 0;  // boundary points whose bracket stayed wider than asked
   // x, y of the ends of pieces of cell edges where a tongue or a gap may have been missed.
-  std::vector<std::array<double, 4>> not_excluded;
+  std::vector<std::array<double, 4>> not_excluded = {};
 
   const MapPoint& at(std::size_t i, std::size_t j) const { return points[i + x.size() * j]; }
 };

@@ -16,7 +16,7 @@ struct StabilitySample {
   double x = 0;
   double speed = 0;  // rad per unit time
   Stability stability;
-  std::vector<MeanExponent> mean;  // may be empty: then it is computed where it is needed
+  std::vector<MeanExponent> mean = {};  // may be empty: then it is computed where it is needed
   double growth_bound = HUGE_VAL;  // in closed form, per radian of crank angle
 };
 

@@ -1,11 +1,11 @@
 #include "hb/engine/exponents/cell_chain.hpp"
 
 #include <complex>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 #include "hb/engine/exponents/small_matrix.hpp"
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb {
@@ -18,8 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 // value 2^exponent: products over a turn neither overflow nor vanish.
 struct Size {

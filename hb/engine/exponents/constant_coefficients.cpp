@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hb/engine/exponents/inexact_eigenvalues.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -12,7 +13,6 @@ using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
 TurnExponents constant_exponents(const ScaledSystem& system) {
-  constexpr double eps = 2.220446049250313e-16;
   const Index I = system.num_modes();
   const MatrixXd K = system.mean_stiffness();
   TurnExponents result;

@@ -1,11 +1,11 @@
 #include "hb/engine/exponents/hill_determinant.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include "hb/engine/exponents/inexact_eigenvalues.hpp"
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -20,8 +20,6 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-constexpr double eps = 2.220446049250313e-16;
-constexpr double pi = std::numbers::pi;
 constexpr Index most_unknowns = 1200;  // of the whole half window, and of the core and a block
 constexpr double settled = 1e-9;
 // A root of D nearer to s + ik than this leaves the row's divisor and the product of sines, where the two cancel.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -17,8 +18,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-constexpr double eps = 2.220446049250313e-16;
-constexpr Index most_unknowns = 600;
+constexpr Index most_window_unknowns = 600;
 
 struct Found {
   cplx s;
@@ -165,7 +165,7 @@ HillExponents hill_exponents(const ScaledSystem& system) {
   // The better of two windows in a row, as long as the next one improves it.
   const auto exponent = [&](cplx from, Index mode) {
     std::optional<Found> best;
-    for (Index N = std::max<Index>(8, P); I * (2 * N + 1) <= most_unknowns; N *= 2) {
+    for (Index N = std::max<Index>(8, P); I * (2 * N + 1) <= most_window_unknowns; N *= 2) {
       const std::optional<Found> found = Window(system, N).newton(best ? best->s : from, mode);
       if (!found || (best && std::isfinite(best->error) && !(found->error < 0.5 * best->error))) break;
       best = found;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb {
@@ -15,8 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
-
-constexpr double eps = 2.220446049250313e-16;
 
 // (C x)_k = sum_m C_{k-m} x_m, columns k, m = first..last; C_{-k} = conj C_k.
 MatrixXcd coupled(const FourierSeries& C, const MatrixXcd& x) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb {
@@ -19,8 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
-
-constexpr double eps = 2.220446049250313e-16;
 
 // With V^-1 M V = D, |v_j| = 1 and w_i the rows of V^-1, a change E adds |w_i E v_j| <= |w_i| |E|. Scaled so that row
 // i's disc is small, its radius is |w_i| |E| (1 + (n-1)/n) and that of row j is |w_j| |E| (2n - 1). Zero: not apart.

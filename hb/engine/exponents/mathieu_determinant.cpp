@@ -2,7 +2,8 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -10,8 +11,6 @@ namespace {
 
 using Lanes = Eigen::Array4d;  // even and odd periodic, even and odd antiperiodic
 
-constexpr double eps = 2.220446049250313e-16;
-constexpr double pi = std::numbers::pi;
 constexpr int most_rows = 2000;
 
 struct Bounded {

@@ -6,6 +6,7 @@
 
 #include "hb/engine/exponents/exponent_summary.hpp"
 #include "hb/engine/exponents/reduced_exponents.hpp"
+#include "lib/constants.hpp"
 #include "lib/fourier/fourier.hpp"
 
 namespace hb {
@@ -15,8 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double eps = 2.220446049250313e-16;
 
 struct Coefficients {
   FourierSeries series;

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <complex>
 #include <map>
-#include <numbers>
 #include <vector>
 
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -21,7 +21,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-constexpr double two_pi = 2 * std::numbers::pi;
 constexpr int stages = 8;
 
 struct Radau {

@@ -7,6 +7,7 @@
 #include "hb/engine/exponents/mathieu_determinant.hpp"
 #include "hb/engine/exponents/scalar_hill.hpp"
 #include "hb/engine/exponents/turn_exponents.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -16,8 +17,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
-
-constexpr double eps = 2.220446049250313e-16;
 
 // Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
 double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/constants.hpp"
+
 namespace hb {
 
 namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
-
-constexpr double eps = 2.220446049250313e-16;
 
 ArrayXd sampled(const FourierSeries& series, Index N) {
   return fourier::synthesise(series, N).row(0).transpose().array();

@@ -1,6 +1,5 @@
 #include "hb/engine/exponents/slaving.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -10,6 +9,8 @@
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
+#include "lib/constants.hpp"
+#include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -24,7 +25,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-constexpr double eps = 2.220446049250313e-16;
 // Of the bound on the rounding errors of K, that they do not all have at once (a choice).
 constexpr double given_rounding = 0.5;
 
@@ -158,7 +158,7 @@ class Iteration {
         damped(j) = std::max(damped(j), std::abs(G_(S_[s], F_[j])));
       }
     }
-    VectorXd l = Eigen::PartialPivLU<MatrixXd>(through.transpose()).solve(direct);
+    VectorXd l = dense::Lu<double>(MatrixXd(through.transpose())).solve(direct);
     if (!(l.minCoeff() >= 0 && l.allFinite())) l.setConstant(direct.maxCoeff());
     l = l.cwiseMax(direct);
     effect_.resize(2, n_ * m_);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -13,6 +12,7 @@
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "hb/engine/exponents/imaginary_axis.hpp"
 #include "hb/engine/system/independent_parts.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -20,8 +20,6 @@ namespace {
 
 using Eigen::Index;
 using cplx = std::complex<double>;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
 
 Stability finished(const ScaledSystem& system, const ExponentSearch& search, double tolerance) {
   const Exponents& found = search.exponents;

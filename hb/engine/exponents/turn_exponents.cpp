@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
 
 #include "hb/engine/exponents/cell_chain.hpp"
 #include "hb/engine/exponents/qr_sweep.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -18,9 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
-
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr double two_pi = 2 * std::numbers::pi;
 
 // One mode, two exponents: with the determinant known (Liouville), s = -b/2 +- acosh(disc)/(2 pi),
 // disc = tr Phi/(2 sqrt(det Phi)) and det Phi = exp(-2 pi b), whatever the size of the multipliers.

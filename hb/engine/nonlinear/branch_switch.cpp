@@ -1,8 +1,8 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
 #include "hb/engine/nonlinear/branch_tracer.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -35,11 +35,11 @@ VectorXd null_vector(MatrixXd A, Index num_components, const std::vector<Index>&
     size(row % num_components) =
         std::max(size(row % num_components), A.row(row).head(rows).cwiseAbs().maxCoeff() / square(row));
   for (Index row = 0; row < rows; ++row) A.row(row) /= square(row) * std::max(size(row % num_components), 1e-300);
-  const Eigen::PartialPivLU<MatrixXd> lu(A);
+  const dense::Lu<double> lu(A);
   VectorXd x(A.rows());
   for (Index i = 0; i < x.size(); ++i) x(i) = 1 + 0.5 * std::sin(double(i));
   for (int iteration = 0; iteration < 4; ++iteration) {
-    x = lu.solve(VectorXd(lu.transpose().solve(x)));
+    x = lu.solve(lu.solve_transposed(x));
     if (!x.allFinite()) return {};
     x.normalize();
   }

@@ -1,17 +1,16 @@
 #include "hb/engine/nonlinear/motion_shooting.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "hb/engine/time/floquet_product.hpp"
 #include "hb/engine/time/integration_cost.hpp"
 #include "hb/engine/time/run_comparison.hpp"
 #include "hb/engine/time/variational_integration.hpp"
+#include "lib/constants.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -21,7 +20,6 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
 constexpr int num_outputs = 128;  // per period
 
 // r(tau, q, q_t, q_tt) = 0 solved for q_tt by Newton's method (one step where r is linear in it), with
@@ -48,8 +46,8 @@ class Acceleration {
         at_.a.setZero();
         return false;
       }
-      mass_.compute(r_.da.reshaped(n, n));
-      const VectorXd change = mass_.solve(r_.r.col(0));
+      mass_.compute(MatrixXd(r_.da.reshaped(n, n)));
+      const VectorXd change = mass_.solve(VectorXd(r_.r.col(0)));
       if (!change.allFinite()) return false;
       at_.a -= change;
       // Derivatives are those before this change, of which they feel no more than its size.
@@ -70,7 +68,7 @@ class Acceleration {
   double p_, Omega_;
   MotionSamples at_;
   ResidualSamples r_;
-  Eigen::PartialPivLU<MatrixXd> mass_;
+  dense::Lu<double> mass_;
   std::string failure_;
 };
 
@@ -212,7 +210,7 @@ ShootingResult shoot_motion(const NonlinearSystem& system, double parameter, con
                             const MotionShootingOptions& options) {
   check_start(system, start, options);
   const auto began = std::chrono::steady_clock::now();
-  const double period = turn * options.turns;
+  const double period = two_pi * options.turns;
   Acceleration acceleration(system, parameter);
   NonlinearMotion motion;
   FrozenSpectrum spectrum;

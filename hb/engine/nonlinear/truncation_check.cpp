@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "lib/dense.hpp"
+
 namespace hb::nonlinear {
 
 using Eigen::Index;
@@ -11,7 +13,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-VectorXd padded(const VectorXd& u, Index size) {
+VectorXd with_zeros(const VectorXd& u, Index size) {
   VectorXd result = VectorXd::Zero(size);
   result.head(u.size()) = u;
   return result;
@@ -38,7 +40,7 @@ class Tail {
 
  private:
   Index n_, first_;
-  std::vector<Eigen::PartialPivLU<Eigen::MatrixXcd>> blocks_;
+  std::vector<dense::Lu<std::complex<double>>> blocks_;
 };
 
 }  // namespace
@@ -50,7 +52,7 @@ TruncationCheck check_truncation(const NonlinearSystem& system, const Corrector&
   // All harmonics that the samples show: where a motion has every third one only, twice as many would not be enough.
   HarmonicBalance fine(system, coarse.turns(), N / 2 - 1, N);
   TruncationCheck check;
-  const VectorXd start = padded(x.u, fine.num_unknowns());
+  const VectorXd start = with_zeros(x.u, fine.num_unknowns());
   check.finer = {start, x.p};
   const double enough = tolerance * size(x.u, n);
   const auto judged = [&](const VectorXd& from, const VectorXd& left) {
@@ -85,10 +87,10 @@ TruncationCheck check_truncation(const NonlinearSystem& system, const Corrector&
   // By Newton's method on twice the harmonics, and a few more where these are few.
   const Index H = 2 * coarse.num_harmonics() + 4 * coarse.turns();
   HarmonicBalance twice(system, coarse.turns(), H, std::max(N, samples_for(H)));
-  const VectorXd padded_start = padded(x.u, twice.num_unknowns());
+  const VectorXd padded_start = with_zeros(x.u, twice.num_unknowns());
   check.finer = {padded_start, x.p};
   Constraint wide = constraint;
-  if (!wide.holds_parameter()) wide.row = padded(constraint.row, twice.num_unknowns());
+  if (!wide.holds_parameter()) wide.row = with_zeros(constraint.row, twice.num_unknowns());
   Corrector newton(twice, p_scale, stop);
   const Correction correction = newton.solve(check.finer, wide, tolerance, false, 8);
   check.evaluations = fine.evaluated_samples() + twice.evaluated_samples();

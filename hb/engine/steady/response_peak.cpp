@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -12,9 +13,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double eps = 2.220446049250313e-16;
 constexpr Index N = 13;  // Chebyshev points
-constexpr double pi = std::numbers::pi;
 
 // f(c + r t) = sum a_k T_k(t), from its values at the roots t_j = cos(pi (2 j + 1)/(2 N)) of T_N.
 Eigen::VectorXd coefficients(const Eigen::VectorXd& values) {

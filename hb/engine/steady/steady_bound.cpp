@@ -3,6 +3,8 @@
 #include <cmath>
 #include <random>
 
+#include "lib/constants.hpp"
+
 namespace hb::steady {
 
 namespace {
@@ -145,7 +147,6 @@ double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eige
 
 // Coupling E shifts w^2 by about E^2/|D(k +- m)|, |D(k +- m)| >= k.
 bool resonant_beyond(const WeightedSystem& system, Index H) {
-  constexpr double eps = 2.220446049250313e-16;
   for (Index i = 0; i < system.I; ++i) {
     if (!(system.mean(i) > 0 && system.mean(i) < 1e15)) continue;
     const Index k = static_cast<Index>(std::llround(std::sqrt(system.mean(i))));

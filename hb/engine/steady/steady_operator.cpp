@@ -2,13 +2,12 @@
 
 #include <cmath>
 
+#include "lib/constants.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::steady {
 
 namespace {
-
-constexpr double eps = 2.220446049250313e-16;
 
 double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
 

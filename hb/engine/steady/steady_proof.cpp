@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb::steady {
@@ -12,8 +13,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double eps = 2.220446049250313e-16;
 
 std::complex<double> coefficient(const WeightedSystem& s, Index i, Index j, Index m) {
   if (std::abs(m) > s.P) return 0;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "lib/constants.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::steady {
@@ -14,7 +15,6 @@ namespace {
 using Index = Eigen::Index;
 using Real = long double;
 
-constexpr double eps = 2.220446049250313e-16;
 constexpr Real real_eps = std::numeric_limits<Real>::epsilon();
 
 // A series split at a grid: high parts are multiples of `grid`, a power of two, so that products of high parts and

@@ -13,6 +13,7 @@
 #include "hb/engine/steady/steady_proof.hpp"
 #include "hb/engine/steady/steady_residual.hpp"
 #include "hb/engine/steady/truncation.hpp"
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb {
@@ -22,7 +23,6 @@ namespace {
 using Index = Eigen::Index;
 using steady::Spectrum;
 
-constexpr double eps = 2.220446049250313e-16;
 // Share of the tolerance that the harmonics left out may take.
 constexpr double truncation_share = 0.3;
 // Below this many flops elimination goes first (a guess from its rate, not tuned).

@@ -1,9 +1,10 @@
 #include "hb/engine/system/periodic_system.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -38,7 +39,7 @@ NormalForm normal_form(const PeriodicSystem& system) {
   const double omega = system.speed;
   for (Index j = 0; j < N; ++j) {
     const auto square = [n, j](const MatrixXd& samples) { return samples.col(j).reshaped(n, n); };
-    const Eigen::PartialPivLU<MatrixXd> M{MatrixXd(square(system.mass))};
+    const dense::Lu<double> M(MatrixXd(square(system.mass)));
     form.alpha.col(j) = (M.solve(MatrixXd(square(system.stiffness))) / (omega * omega)).reshaped();
     form.beta.col(j) = (M.solve(MatrixXd(square(system.damping))) / omega).reshaped();
   }

@@ -4,13 +4,12 @@
 #include <stdexcept>
 #include <string>
 
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb {
 
 namespace {
-
-constexpr double eps = 2.220446049250313e-16;
 
 bool is_diagonal(const Eigen::MatrixXd& A) { return (A - Eigen::MatrixXd(A.diagonal().asDiagonal())).isZero(0); }
 

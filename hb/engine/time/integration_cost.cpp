@@ -3,20 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
-namespace {
-constexpr double turn = 2 * std::numbers::pi;
-}
+namespace {}
 
 FrozenSpectrum frozen_spectrum(ScaledMotion& motion) {
   constexpr int num_looks = 16;
   FrozenSpectrum spectrum;
   double mean = 0;
   for (int j = 0; j < num_looks; ++j) {
-    spectrum.eigenvalues.push_back(motion.frozen_eigenvalues(turn * j / num_looks));
+    spectrum.eigenvalues.push_back(motion.frozen_eigenvalues(two_pi * j / num_looks));
     const Eigen::VectorXcd& lambda = spectrum.eigenvalues.back();
     mean += lambda.real().maxCoeff() / num_looks;
     spectrum.fastest = std::max(spectrum.fastest, lambda.cwiseAbs().maxCoeff());
@@ -36,23 +35,23 @@ double predicted_steps(const FrozenSpectrum& spectrum, Integrator method, double
   for (const Eigen::VectorXcd& eigenvalues : spectrum.eigenvalues)
     for (const std::complex<double>& lambda : eigenvalues) {
       const double decay = std::max(-lambda.real(), 1e-300);
-      const double alive = std::min(turn, num_segments * std::log(1 / tolerance) / decay);
+      const double alive = std::min(two_pi, num_segments * std::log(1 / tolerance) / decay);
       oscillation = std::max(oscillation, std::max(1.0, std::abs(lambda)) * alive);
     }
   const double steps = num_segments * per_start + per_radian * oscillation;
   // Adams is stable only up to h |lambda| of some tenths, whether the mode is alive or not.
-  return adams ? std::max(steps, turn * spectrum.fastest / 0.3) : steps;
+  return adams ? std::max(steps, two_pi * spectrum.fastest / 0.3) : steps;
 }
 
 // Modes that die within a radian or so of their own phase need no resolving by an L-stable method; the others get 2
 // rad of phase per cell of order 17, and the coefficients at least 32 cells per turn.
 int collocation_cells(const FrozenSpectrum& spectrum, int num_outputs) {
-  double rate = 32 / turn;
+  double rate = 32 / two_pi;
   const double slow = spectrum.slowest;
   for (const Eigen::VectorXcd& eigenvalues : spectrum.eigenvalues)
     for (const std::complex<double>& lambda : eigenvalues)
       if (-lambda.real() <= 4 * slow + 1) rate = std::max(rate, std::abs(lambda) / 2);
-  const double cells = std::ceil(rate * turn / num_outputs);
+  const double cells = std::ceil(rate * two_pi / num_outputs);
   return static_cast<int>(std::min(cells, 1e9));
 }
 

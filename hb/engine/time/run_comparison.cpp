@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
 namespace {
 
-constexpr double turn = 2 * std::numbers::pi;
-
 // Distance of exponents (times a turn) whose imaginary parts count modulo 2 pi.
 double folded_distance(std::complex<double> a, std::complex<double> b) {
-  return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), turn));
+  return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), two_pi));
 }
 
 // Exponents on which two accuracies disagree grossly are those of modes that were not resolved. Their growth, which
@@ -29,7 +28,7 @@ void drop_unresolved(const ComparedRuns& runs, ShootingResult& result) {
     const double growth = dies ? slower / 2
                                : last.value.real() + difference_factor * std::abs(last.value.real() - other) +
                                      runs.map_error * last.amplification;
-    result.complete_above = std::max(result.complete_above, growth * Omega / turn);
+    result.complete_above = std::max(result.complete_above, growth * Omega / two_pi);
     result.exponents.pop_back();
     result.some_below = true;
   }
@@ -48,7 +47,7 @@ std::vector<Exponent> exponents_of(const ComparedRuns& runs) {
       error += runs.map_error * amplification + 1e-14 * std::max(1.0, std::abs(log_mu.real())) +
                1e-16 * static_cast<double>(runs.steps);
     }
-    exponents.push_back({log_mu * runs.speed / turn, error * runs.speed / turn});
+    exponents.push_back({log_mu * runs.speed / two_pi, error * runs.speed / two_pi});
   }
   return exponents;
 }

@@ -4,12 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <random>
 
 #include "hb/engine/time/floquet_product.hpp"
 #include "hb/engine/time/integration_cost.hpp"
 #include "hb/engine/time/run_comparison.hpp"
+#include "lib/constants.hpp"
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 
@@ -32,13 +33,6 @@ const char* to_string(ShootingStatus status) {
 }
 
 namespace {
-
-constexpr double turn = 2 * std::numbers::pi;
-constexpr double eps = 2.220446049250313e-16;
-
-double seconds_since(Deadline start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 Deadline deadline_after(Deadline start, double seconds) {
   return start + std::chrono::duration_cast<Deadline::duration>(std::chrono::duration<double>(std::min(seconds, 1e8)));
@@ -108,8 +102,8 @@ Run shoot(ScaledMotion& motion, Integrator integrator, Precision precision, int 
   std::vector<double> outputs(static_cast<std::size_t>(outputs_per_segment));
   for (int k = 0; k < num_segments; ++k) {
     for (int j = 0; j < outputs_per_segment; ++j)
-      outputs[static_cast<std::size_t>(j)] = turn * (k * outputs_per_segment + j + 1) / num_outputs;
-    const double start = turn * k / num_segments;
+      outputs[static_cast<std::size_t>(j)] = two_pi * (k * outputs_per_segment + j + 1) / num_outputs;
+    const double start = two_pi * k / num_segments;
     Trajectory part =
         integrator == Integrator::collocation
             ? integrate_collocation(motion, precision.cells, start, Y0, load, outputs, deadline)
@@ -158,7 +152,7 @@ PeriodicOrbit orbit_of(ScaledMotion& motion, const Eigen::MatrixXd& states) {
   orbit.q1 = motion.w().asDiagonal() * states.bottomRows(I) * motion.q_scale();
   orbit.q2.resize(I, states.cols());
   for (Eigen::Index j = 0; j < states.cols(); ++j) {
-    motion.evaluate(turn * static_cast<double>(j) / static_cast<double>(states.cols()));
+    motion.evaluate(two_pi * static_cast<double>(j) / static_cast<double>(states.cols()));
     orbit.q2.col(j) =
         motion.w().cwiseProduct(motion.f() - motion.K() * states.col(j).head(I) - motion.G() * states.col(j).tail(I)) *
         motion.q_scale();
@@ -192,12 +186,12 @@ Plan plan_shooting(ScaledMotion& motion, const FrozenSpectrum& spectrum, Integra
   // A segment in which the slow modes change by no more than e^4 keeps them above the integrator's noise.
   // Collocation starts anew at no cost: short segments keep the fast decaying modes in sight as well.
   const double least = integrator == Integrator::collocation ? 32 : 1;
-  plan.num_segments = power_of_two_at_least(std::max(least, turn * spectrum.slowest / 4), 4096);
+  plan.num_segments = power_of_two_at_least(std::max(least, two_pi * spectrum.slowest / 4), 4096);
   plan.num_outputs = std::max(128, plan.num_segments);
   const Eigen::Index columns = 2 * motion.num_modes() + 1;
   double steps = 0;
   if (integrator == Integrator::collocation) {
-    const int cells = single_run > 0 ? std::max(1, static_cast<int>(std::ceil(turn / single_run / plan.num_outputs)))
+    const int cells = single_run > 0 ? std::max(1, static_cast<int>(std::ceil(two_pi / single_run / plan.num_outputs)))
                                      : collocation_cells(spectrum, plan.num_outputs);
     plan.coarse.cells = cells;
     plan.fine.cells = single_run > 0 ? cells : 2 * cells;
@@ -236,7 +230,7 @@ void solve_by(ScaledMotion& motion, const Plan& plan, const ShootingOptions& opt
   result.integrator = plan.integrator;
   result.num_segments = plan.num_segments;
   result.integrator_tolerance =
-      collocation ? turn / (static_cast<double>(plan.num_outputs) * plan.fine.cells) : plan.fine.tolerance;
+      collocation ? two_pi / (static_cast<double>(plan.num_outputs) * plan.fine.cells) : plan.fine.tolerance;
   result.message.clear();
 
   const auto run_with = [&](Precision precision) {
@@ -378,7 +372,7 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
                             : Integrator::bdf;
 
   // The transient shrinks by e^{growth_rate T} per turn.
-  const double per_turn = options.growth_rate != 0 ? options.growth_rate * turn / system.speed : 0;
+  const double per_turn = options.growth_rate != 0 ? options.growth_rate * two_pi / system.speed : 0;
   if (per_turn > 0) {
     result.status = ShootingStatus::not_reached;
     result.message = "the motion is unstable: marching never settles";
@@ -399,7 +393,7 @@ MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOpt
 
   constexpr int num_outputs = 128;
   std::vector<double> outputs(num_outputs);
-  for (int j = 0; j < num_outputs; ++j) outputs[static_cast<std::size_t>(j)] = turn * (j + 1) / num_outputs;
+  for (int j = 0; j < num_outputs; ++j) outputs[static_cast<std::size_t>(j)] = two_pi * (j + 1) / num_outputs;
   Eigen::MatrixXd state = Eigen::MatrixXd::Zero(n, 1), states(n, num_outputs), before;
   const Eigen::VectorXd load = Eigen::VectorXd::Ones(1);
   std::vector<double> changes, envelopes;

@@ -1,10 +1,10 @@
 #include "hb/engine/time/variational_integration.hpp"
 
-#include <Eigen/LU>
 #include <cstdlib>
 #include <limits>
 
 #include "hb/engine/time/sundials_session.hpp"
+#include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -27,7 +27,7 @@ struct VariationalProblem {
   Eigen::Map<MatrixXd> matrix(N_Vector y) const { return {N_VGetArrayPointer(y), rows(), rows() + 1}; }
 };
 
-int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* data) {
+int variational_rhs(realtype tau, N_Vector y, N_Vector slope, void* data) {
   auto& problem = *static_cast<VariationalProblem*>(data);
   if (problem.stop && problem.stop()) {
     problem.stopped = true;
@@ -58,7 +58,7 @@ int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* data) {
 // Newton's matrix 1 - gamma J with J of the last right-hand side, alike for the state and every variation; that the
 // variations' slopes change with the state is left to the iteration. With dx = bx + gamma W du,
 //     (1 + gamma G + gamma^2 K W) du = bu - gamma K bx.
-int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
+int solve_variational_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
   auto& problem = *static_cast<VariationalProblem*>(solver->content);
   realtype tau, gamma, rl1;
   N_Vector predicted, iterate, f, zn1;
@@ -71,7 +71,7 @@ int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, real
   const auto B = problem.matrix(b);
   auto X = problem.matrix(x);
   const MatrixXd right = B.bottomRows(n) - gamma * problem.K * B.topRows(n);
-  X.bottomRows(n) = A.partialPivLu().solve(right);
+  X.bottomRows(n) = dense::Lu<double>(A).solve(right);
   X.topRows(n) = B.topRows(n) + gamma * w.asDiagonal() * X.bottomRows(n);
   return SUNLS_SUCCESS;
 }
@@ -91,12 +91,12 @@ Trajectory integrate_variations(const NonlinearMotion& motion, Integrator method
   void* cvode = problem.cvode = sundials.cvode;
   sundials.solver->content = &problem;
   sundials.solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_MATRIX_EMBEDDED; };
-  sundials.solver->ops->solve = solve_newton;
+  sundials.solver->ops->solve = solve_variational_newton;
   auto Y = problem.matrix(sundials.y);
   Y.col(0) = state;
   Y.rightCols(rows).setIdentity();
 
-  require_success(CVodeInit(cvode, right_hand_side, tau0, sundials.y), "CVodeInit");
+  require_success(CVodeInit(cvode, variational_rhs, tau0, sundials.y), "CVodeInit");
   require_success(CVodeSetErrHandlerFn(
                       cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
                   "CVodeSetErrHandlerFn");

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string_view>
+
+namespace hb {
+
+inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// Without blanks at its ends.
+inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+}  // namespace hb
