@@ -116,7 +116,7 @@ Json single_json(const SceneModel& model, const SpeedCheck& check, const Setting
   return json;
 }
 
-Json range_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+Json speeds_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
   Json json;
   json["title"] = scene_name(model.scene);
   json["rpm"] = Json::array();
@@ -153,7 +153,7 @@ Json range_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) 
 }  // namespace
 
 Json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings) {
-  Json json = checks.size() > 1 ? range_json(model, checks) : single_json(model, checks.front(), settings);
+  Json json = checks.size() > 1 ? speeds_json(model, checks) : single_json(model, checks.front(), settings);
   double series = 0, shooting = 0, marching = 0;
   for (const SpeedCheck& check : checks) {
     series += check.seconds_harmonic_balance;
