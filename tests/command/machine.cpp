@@ -117,6 +117,21 @@ TEST_F(Machine, SafetiesAreThoseOfTheStressesShown) {
               350e6 / (of_bent["axial"].get<double>() + of_bent["bending"].get<double>()), 1e-9);
 }
 
+// Beside the unbounded resonances of unstable speeds the linear model has forces without bound: 1e16 N were listed.
+TEST_F(Machine, TheLargestLoadsOfASweepAreThoseAMachineCanHave) {
+  const std::string range = "sweep " + scene("six_link") + " --modes 2 --rpm ";
+  const CommandResult wide = hb(range + "200:3000:100");
+  ASSERT_EQ(wide.status, 0) << wide.err;
+  EXPECT_NE(wide.out.find("Largest where stable and within the linear theory"), std::string::npos) << wide.out;
+  const auto loads = [](const std::string& text) { return text.substr(text.find("  resultant at")); };
+  const auto rows = [&](const std::string& text) { return loads(text).substr(0, loads(text).find("\n\n")); };
+  const std::string bounded = rows(wide.out);
+  EXPECT_EQ(bounded.find("e+"), std::string::npos) << bounded;
+  EXPECT_EQ(bounded.find("at 1909"), std::string::npos) << bounded;
+  const CommandResult slow = hb(range + "200:1000:100");
+  EXPECT_NE(slow.out.find("Largest of all points"), std::string::npos) << slow.out;
+}
+
 // At each speed what `hb steady` says there.
 TEST_F(Machine, ASweepHasWhatOneSpeedHas) {
   const std::string about = scene("slider_crank_units") + strengths + " --modes 3";

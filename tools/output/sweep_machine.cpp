@@ -12,6 +12,7 @@
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_words.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 #include "tools/output/json.hpp"
 
@@ -94,6 +95,23 @@ Worst worst_of(const SweepResult& result, bool smallest, const std::function<dou
   return worst;
 }
 
+// Where the periodic motion is stable and the linear theory holds: elsewhere, above all beside a resonance without
+// bound, no machine has these loads.
+bool trusted(const SweepScene& scene, const SweepResult& result, const SweepPoint& point) {
+  const bool theory = has_theory(scene, result);
+  return std::ranges::none_of(point.rods, [&](const RodPoint& rod) {
+    return (rod.stability && rod.stability->stability.verdict == Verdict::unstable) || beyond_limits(rod) ||
+           (theory && beyond_theory(rod.theory_error));
+  });
+}
+
+// "of all points", or of those that are trusted.
+std::string whose_largest(const SweepScene& scene, const SweepResult& result) {
+  const std::vector<const SweepPoint*> points = all_points(result);
+  const auto holds = [&](const SweepPoint* point) { return trusted(scene, result, *point); };
+  return std::ranges::all_of(points, holds) ? "of all points" : "where stable and within the linear theory";
+}
+
 std::string place_text(const SweepScene& scene, const Worst& worst) {
   const std::string unit = axis_unit(scene);
   return fmt::format("at {}{:.6g}{}", is_speed(scene) ? "" : scene.axis().path + " = ", worst.at->x,
@@ -168,13 +186,13 @@ std::string stress_rows(const SweepScene& scene, const SweepResult& result, std:
   const auto worst = [&](bool smallest, const StressValue& value) {
     return worst_of(result, smallest, [&](const SweepPoint& point) {
       const StressPoint* stress = stress_at(point, rod);
-      return stress ? value(*stress) : no_number;
+      return stress && (smallest || trusted(scene, result, point)) ? value(*stress) : no_number;
     });
   };
   std::string text;
   if (const Worst most = worst(false, [](const StressPoint& p) { return p.max_abs; }); most.at)
-    text += fmt::format("  largest stress of all points {:.4g} MPa {}\n", most.value * units.megapascal,
-                        place_text(scene, most));
+    text += fmt::format("  largest stress {} {:.4g} MPa {}\n", whose_largest(scene, result),
+                        most.value * units.megapascal, place_text(scene, most));
   const auto safety = [&](const char* what, const StressValue& value) {
     const Worst least = worst(true, value);
     if (least.at && std::isfinite(least.value))
@@ -191,8 +209,9 @@ std::string machine_rows(const SweepScene& scene, const SweepResult& result) {
   const double watt = units.moment / scene.scene().units.time_in_s;
   std::string text;
   const auto row = [&](const std::string& what, double factor, const char* unit, const MachineValue& value) {
-    const Worst most = worst_of(
-        result, false, [&](const SweepPoint& point) { return point.machine ? value(*point.machine) : no_number; });
+    const Worst most = worst_of(result, false, [&](const SweepPoint& point) {
+      return point.machine && trusted(scene, result, point) ? value(*point.machine) : no_number;
+    });
     if (most.at)
       text += fmt::format("  {:<24}  {:>12.6g} {:<4} {}\n", what, factor * most.value, unit, place_text(scene, most));
   };
@@ -205,7 +224,7 @@ std::string machine_rows(const SweepScene& scene, const SweepResult& result) {
   row("rms torque", units.moment, "N m", [](const MachinePoint& m) { return m.drive.rms; });
   row("power", watt, "W", [](const MachinePoint& m) { return m.drive.largest_power; });
   row("energy of a flywheel", units.moment, "J", [](const MachinePoint& m) { return m.drive.energy_fluctuation; });
-  return text.empty() ? text : "\nLargest of all points\n" + text;
+  return text.empty() ? text : "\nLargest " + whose_largest(scene, result) + "\n" + text;
 }
 
 std::vector<std::string> stress_columns(const SweepResult& result, std::size_t rod) {
