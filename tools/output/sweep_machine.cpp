@@ -9,16 +9,15 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "tools/output/json.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
-#include "tools/output/json.hpp"
 
 namespace hb::tools {
 namespace {
-
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
