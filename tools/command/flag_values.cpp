@@ -61,15 +61,20 @@ int integer_flag(const std::string& flag, const std::string& text, int lowest, i
   return *value;
 }
 
-std::vector<std::string> list_flag(const std::string& flag, const std::string& text) {
+std::vector<std::string> split(const std::string& text, char mark) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
-    if (c == ',') {
+    if (c == mark) {
       parts.emplace_back();
     } else {
       parts.back() += c;
     }
   }
+  return parts;
+}
+
+std::vector<std::string> list_flag(const std::string& flag, const std::string& text) {
+  std::vector<std::string> parts = split(text, ',');
   for (const std::string& part : parts) {
     if (part.empty()) refuse_flag(flag, text, "names joined by single commas");
   }

@@ -28,6 +28,9 @@ inline constexpr double largest_number = std::numeric_limits<double>::max();
                                  const std::string& allowed);
 [[nodiscard]] int integer_flag(const std::string& flag, const std::string& text, int lowest, int highest,
                                const std::string& allowed);
+// The parts between the marks, empty ones too.
+[[nodiscard]] std::vector<std::string> split(const std::string& text, char mark);
+
 // Parts of "a,b,c"; an empty part is a UsageError.
 [[nodiscard]] std::vector<std::string> list_flag(const std::string& flag, const std::string& text);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tools/command/command.hpp"
+#include "tools/command/flag_values.hpp"
 
 namespace hb::tools {
 namespace {
@@ -41,14 +42,7 @@ struct RangeText {
 };
 
 RangeText range_text(const std::string& flag, const std::string& text, const std::string& allowed) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ':') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
+  const std::vector<std::string> parts = split(text, ':');
   if (parts.size() == 1) refuse(flag, text, "a single value", allowed);
   if (parts.size() != 3) refuse(flag, text, "which has not three parts", allowed);
   return {number_in(flag, text, parts[0], allowed), number_in(flag, text, parts[1], allowed), parts[2]};

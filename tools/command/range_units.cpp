@@ -11,18 +11,6 @@
 namespace hb::tools {
 namespace {
 
-std::vector<std::string> parts_of_range(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ':') {
-      parts.emplace_back();
-    } else if (c != '"') {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
 bool is_plain(const std::string& part) {
   const std::optional<double> value = whole_number(part);
   return value && *value != 0;
@@ -38,7 +26,9 @@ bool has_unit(std::string_view text) {
 }
 
 std::string plain_range(const std::string& flag, const std::string& text, ThirdNumber third, const UnitReader& read) {
-  std::vector<std::string> parts = parts_of_range(text);
+  std::string bare = text;
+  std::erase(bare, '"');
+  const std::vector<std::string> parts = split(bare, ':');
   const std::size_t measured = third == ThirdNumber::step ? 3 : 2;
   bool any = false;
   for (std::size_t k = 0; k < std::min(parts.size(), measured); ++k) any = any || has_unit(parts[k]);

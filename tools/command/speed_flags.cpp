@@ -22,14 +22,7 @@ Speeds speeds_flag(const std::string& flag, const std::string& written, bool sin
         "; a crank turns counter-clockwise: for the other way mirror the scene about the x axis (the signs of "
         "gravity, of every y, angle and branch)";
   }
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == ':') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
+  std::vector<std::string> parts = split(text, ':');
   if (parts.size() == 3 && single) refuse_flag(flag, text, "one speed, " + allowed + "; hb sweep takes a range");
   if (!single && parts.size() == 2) allowed += "; a step is missing: " + text + ":10 or " + text + ":x50";
   if (const std::size_t dash = text.find('-', 1); parts.size() == 1 && dash != std::string::npos &&
