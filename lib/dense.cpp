@@ -3,13 +3,73 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
+#include <algorithm>
 #include <utility>
+
+#include "lib/stop_wish.hpp"
 
 namespace hb::dense {
 
+namespace {
+
+// Eigen's factorisation, of a large matrix a panel of columns at a time: with [A11; A21] = P [L11; L21] U11 the rest is
+//     U12 = L11^-1 (P A)12,   A22 <- (P A)22 - L21 U12.
+// Seconds of work look at the wish to stop between panels.
+template <class Scalar>
+class EndingLu : public Eigen::PartialPivLU<Matrix<Scalar>> {
+  using Base = Eigen::PartialPivLU<Matrix<Scalar>>;
+
+ public:
+  void factor(const Eigen::Ref<const Matrix<Scalar>>& A) {
+    constexpr Eigen::Index large = 1024, panel = 128;
+    const Eigen::Index n = A.rows();
+    if (n < large) {
+      this->compute(A);
+      return;
+    }
+    this->m_lu = A;
+    this->m_l1_norm = A.cwiseAbs().colwise().sum().maxCoeff();
+    this->m_rowsTranspositions.resize(n);
+    int swaps = 0;
+    for (Eigen::Index k = 0; k < n; k += panel) {
+      end_if_wished();
+      swaps += eliminate(k, std::min(panel, n - k));
+    }
+    this->m_det_p = swaps % 2 == 0 ? 1 : -1;
+    this->m_p = this->m_rowsTranspositions;
+    this->m_isInitialized = true;
+  }
+
+ private:
+  // Columns k .. k+b-1 and all right of them.
+  int eliminate(Eigen::Index k, Eigen::Index b) {
+    Matrix<Scalar>& lu = this->m_lu;
+    const Eigen::Index n = lu.rows(), rest = n - k - b;
+    Eigen::Matrix<int, Eigen::Dynamic, 1> exchanged(b);
+    int swaps = 0;
+    Eigen::internal::partial_lu_impl<Scalar, Eigen::ColMajor, int, Eigen::Dynamic>::blocked_lu(
+        n - k, b, &lu.coeffRef(k, k), lu.outerStride(), exchanged.data(), swaps);
+    for (Eigen::Index j = 0; j < b; ++j) {
+      const Eigen::Index other = k + exchanged(j);
+      this->m_rowsTranspositions.coeffRef(k + j) = static_cast<int>(other);
+      if (other == k + j) continue;
+      lu.row(k + j).head(k).swap(lu.row(other).head(k));
+      lu.row(k + j).tail(rest).swap(lu.row(other).tail(rest));
+    }
+    if (rest > 0) {
+      auto upper = lu.block(k, k + b, b, rest);
+      lu.block(k, k, b, b).template triangularView<Eigen::UnitLower>().solveInPlace(upper);
+      lu.bottomRightCorner(rest, rest).noalias() -= lu.block(k + b, k, rest, b) * upper;
+    }
+    return swaps;
+  }
+};
+
+}  // namespace
+
 template <class Scalar>
 struct Lu<Scalar>::Factors {
-  Eigen::PartialPivLU<Matrix<Scalar>> lu;
+  EndingLu<Scalar> lu;
 };
 
 template <class Scalar>
@@ -32,7 +92,7 @@ Lu<Scalar>::~Lu() = default;
 
 template <class Scalar>
 void Lu<Scalar>::compute(const Eigen::Ref<const Matrix<Scalar>>& A) {
-  factors_->lu.compute(A);
+  factors_->lu.factor(A);
 }
 template <class Scalar>
 Vector<Scalar> Lu<Scalar>::solve(const Vector<Scalar>& b) const {

@@ -1,5 +1,6 @@
 // Dense factorisations behind functions: the only source that instantiates Eigen's solvers for matrices of run-time
-// size, so that files which use them compile in seconds. Algorithms and roundings are Eigen's.
+// size, so that files which use them compile in seconds. Algorithms and roundings are Eigen's
+// (of LU up to 1024 unknowns).
 #pragma once
 
 #include <Eigen/Core>

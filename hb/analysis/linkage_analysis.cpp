@@ -11,6 +11,7 @@
 #include "hb/analysis/rod_steady.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
+#include "lib/stop_wish.hpp"
 #include "lib/stopwatch.hpp"
 
 namespace hb {
@@ -111,7 +112,10 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
     }
   }
   result.num_modes = I;
-  for (Eigen::Index i = 0; i < state.q.num_components(); ++i) result.max_abs.push_back(fourier::max_abs(state.q, i));
+  for (Eigen::Index i = 0; i < state.q.num_components(); ++i) {
+    end_if_wished();
+    result.max_abs.push_back(fourier::max_abs(state.q, i));
+  }
   result.steady = std::move(state);
 }
 
@@ -263,6 +267,7 @@ double cut_error(const Body& link, const RodCoefficients& rod, double speed, con
       static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(4 * std::max<Eigen::Index>(16, harmonics))));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
   const Eigen::MatrixXd w = rod_field(link, rod, speed, q, x, num_samples).w;
+  end_if_wished();
   const Eigen::MatrixXd w_finer = rod_field(link, rod, speed, finer, x, num_samples).w;
   const double scale = w_finer.cwiseAbs().maxCoeff();
   if (scale == 0) return 0;

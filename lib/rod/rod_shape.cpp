@@ -18,6 +18,7 @@
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/shear.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -193,10 +194,12 @@ FourierSeries time_functions(const Body& link, const RodCoefficients& rod, doubl
   const Eigen::Index H = q.num_harmonics() + f.num_harmonics();
   const Eigen::Index N = power_of_two_from(2 * H + 2);
   const Eigen::MatrixXd f_samples = fourier::synthesise(f, N), q_samples = fourier::synthesise(q, N);
+  end_if_wished();
   Eigen::MatrixXd products(2 * I, N);
   products.topRows(I) = q_samples.array().rowwise() * f_samples.row(3).array();
   products.bottomRows(I) = q_samples.array().rowwise() * f_samples.row(2).array();
 
+  end_if_wished();
   FourierSeries T(3 * I + 2, H);
   T.c.middleRows(I, 2) = fourier::resized(f, H).c.topRows(2);
   T.c.bottomRows(2 * I) = fourier::resized(fourier::analyse(products), H).c;
@@ -205,6 +208,7 @@ FourierSeries time_functions(const Body& link, const RodCoefficients& rod, doubl
   T.c.topRows(I) = fourier::resized(q, H).c;
 
   Eigen::Index significant = 0;
+  end_if_wished();
   for (Eigen::Index j = 0; j < T.num_components(); ++j)
     significant = std::max(significant, fourier::significant_harmonics(FourierSeries(T.c.row(j)), 1e-16));
   return fourier::resized(T, significant);
@@ -292,6 +296,7 @@ RodPeak climbed(const Surface& surface, double s, double tau) {
   Surface::Jet here = surface.at(s, tau);
   double shift = 0;
   for (int iteration = 0; iteration < 60; ++iteration) {
+    end_if_wished();
     const double mean = here.hessian.trace() / 2;
     const double spread = std::hypot((here.hessian(0, 0) - here.hessian(1, 1)) / 2, here.hessian(0, 1));
     const double floor = std::max(0.0, mean + spread + 1e-9 * (std::abs(mean) + spread));
@@ -323,7 +328,9 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::Matri
   const Eigen::VectorXd& x = table.x;
   const double l = table.length;
   const Eigen::Index num_x = x.size() - 1, N = time.cols();
+  end_if_wished();
   const Eigen::MatrixXd F = (order == 0 ? table.deflection : table.curvature) * time;
+  end_if_wished();
   const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
   const double top = F.cwiseAbs().maxCoeff();
   if (!(top > 0)) return {};

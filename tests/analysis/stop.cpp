@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "hb/engine/system/scaled_system.hpp"
 #include "hb/hb.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -72,6 +73,19 @@ TEST(StopWish, EndsOneSpeedAtAnyLookAndTheNextAnswerIsTheSame) {
       EXPECT_EQ(again.rods[r].stability->growth_rate, expected.rods[r].stability->growth_rate) << n;
     }
   }
+}
+
+// A system of many unknowns and harmonics is made ready in seconds: it looks once for each unknown at least.
+TEST(StopWish, LooksWhileALargeSystemIsScaled) {
+  constexpr Eigen::Index I = 12;
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(I, I);
+  system.damping = 0.01 * Eigen::MatrixXd::Identity(I, I);
+  system.stiffness[0] = FourierSeries(I * I, 20);
+  for (Eigen::Index k = 0; k <= 20; ++k)
+    for (Eigen::Index i = 0; i < I; ++i) system.stiffness[0].c(i + I * i, k) = 1.0 / static_cast<double>(1 + k + i);
+  EXPECT_GE(looks_of([&] { (void)scale_system(system, 1); }), I);
+  EXPECT_TRUE(ends_at(I, [&] { (void)scale_system(system, 1); }));
 }
 
 TEST(StopWish, EndsIntegrationInTime) {

@@ -241,6 +241,91 @@ TEST_F(Machine, SharpPeaksDoNotFlattenTheForcesOfASweep) {
   EXPECT_GE(ranges, 8);
 }
 
+// Each end is what the scene with that number gives; slopes are those of small steps.
+TEST_F(Machine, BandsAreTheAnswersAtTheirEnds) {
+  const std::string about = scene("slider_crank") + " --rpm 2500 --modes 2";
+  const Json found = document(about + " --band damping=0.5:2 --band E=0.9:1.1 --band mass=0.99:1.01");
+  ASSERT_EQ(found["bands"].size(), 3u);
+  const auto quantity = [](const Json& band, const std::string& of, const std::string& name) {
+    for (const Json& one : band["quantities"])
+      if (one["of"] == of && one["name"] == name) return one;
+    ADD_FAILURE() << of << " " << name;
+    return Json();
+  };
+  const Json& damping = found["bands"][0];
+  const Json rod = document(about)["rods"]["rod"];
+  const Json growth = quantity(damping, "rod", "growth rate");
+  EXPECT_EQ(growth["nominal"], rod["growth_rate"]);
+  const Json low = quantity(found["bands"][1], "rod", "deflection");
+  const Json scene_read = Json::parse(hb("scene " + scene("slider_crank") + " --json").out);
+  const double E = scene_read["linkage"]["dyads"][0]["coupler"]["elastic"]["E"];
+  std::ostringstream softer;
+  softer.precision(17);
+  softer << 0.9 * E;
+  const Json soft = document(about + " --set rod.E=" + softer.str())["rods"]["rod"];
+  EXPECT_NEAR(low["from"].get<double>(), soft["deflection"]["max_abs"].get<double>(), 1e-9 * low["from"].get<double>());
+  EXPECT_EQ(damping["verdict"], "stable");
+  EXPECT_EQ(damping["verdict_to"], "stable");
+  // One per cent both ways: the difference of the ends is the derivative.
+  const Json& mass = found["bands"][2];
+  for (const char* name : {"deflection", "growth rate"}) {
+    const Json of = quantity(mass, "rod", name);
+    const double secant = std::log(of["to"].get<double>() / of["from"].get<double>()) / std::log(1.01 / 0.99);
+    EXPECT_NEAR(of["slope"].get<double>(), secant, 2e-3 + 0.02 * std::abs(secant)) << of;
+    EXPECT_TRUE(of["straight"].get<bool>()) << of;
+  }
+  const Json bearing = quantity(mass, "bearings", "rod.0");
+  const double secant = std::log(bearing["to"].get<double>() / bearing["from"].get<double>()) / std::log(1.01 / 0.99);
+  EXPECT_NEAR(bearing["slope"].get<double>(), secant, 2e-3 + 0.02 * std::abs(secant)) << bearing;
+  const std::string table = hb("steady " + about + " --band damping=0.5:2").out;
+  for (const char* part : {"damping of the elastic links times 0.5 to 2", "growth rate", "verdict: stable at 0.5"})
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+}
+
+TEST_F(Machine, BandsThatCannotBeAreRefused) {
+  for (const char* band : {"damping=2:0.5", "E=0:1", "stiffness=0.5:2", "E", "E=1", "mass=-1:1", "damping=0.5:x"}) {
+    const CommandResult result = hb("steady " + scene("slider_crank") + " --rpm 2500 --band " + band);
+    EXPECT_EQ(result.status, 2) << band;
+    EXPECT_NE(result.err.find("--band"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(hb("steady " + scene("mathieu") + " --omega 1 --band E=0.9:1.1").status, 2);
+  EXPECT_EQ(hb("steady " + scene("mathieu") + " --omega 1 --band damping=0.5:2").status, 0);
+  EXPECT_EQ(hb("steady " + scene("slider_crank") + " --rpm 800 --theory nonlinear --band E=0.9:1.1").status, 2);
+}
+
+// A measurement that is made up: milliseconds and micrometres, one column of two.
+TEST_F(Machine, FitGivesTheDampingThatADecayWasMadeWith) {
+  std::ostringstream text;
+  text << "time [ms], noise [V], rod [um]\n";
+  constexpr double zeta = 0.008, omega = 2 * 3.14159265358979323846 * 620;
+  for (int k = 0; k < 400; ++k) {
+    const double t = 2e-4 * k;
+    text << 1e3 * t << ", 1, "
+         << 5 + 80 * std::exp(-zeta * omega * t) * std::cos(omega * std::sqrt(1 - zeta * zeta) * t) << "\n";
+  }
+  std::ofstream(folder_ / "decay.csv") << text.str();
+  const std::string about = "fit " + scene("slider_crank") + " --decay decay.csv";
+  const CommandResult result = hb(about + " --column rod --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"damping of rod, mode 1", "the scene has 628", "damping_ratio = 0.008", "+/-"})
+    EXPECT_NE(result.out.find(part), std::string::npos) << part << "\n" << result.out;
+  const Json found = Json::parse(read(folder_ / "out/fit.json"));
+  EXPECT_NEAR(found["damping_ratio"].get<double>(), zeta, 1e-5);
+  EXPECT_NEAR(found["frequency"].get<double>(), 620, 1e-3);
+  EXPECT_LT(found["residual"].get<double>(), 1e-3);
+  const auto [low, high] = column(folder_ / "out/fit.csv", "fitted rod [um]");
+  EXPECT_NEAR(high, 85, 0.1);
+  EXPECT_LT(low, -60);
+  EXPECT_GT(fs::file_size(folder_ / "out/fit.svg"), 5000u);
+  // Where it goes it is understood.
+  EXPECT_EQ(hb(about).status, 2);  // which column?
+  EXPECT_EQ(hb(about + " --column rod --rod piston").status, 2);
+  EXPECT_EQ(hb(about + " --column rod --peak decay.csv").status, 2);
+  EXPECT_EQ(hb("fit " + scene("slider_crank") + " --peak decay.csv --column rod").status, 2);  // ms are no frequency
+  EXPECT_EQ(hb("fit " + scene("mathieu") + " --decay decay.csv --column rod").status, 2);
+  EXPECT_EQ(hb("fit " + scene("slider_crank") + " --decay none.csv").status, 2);
+}
+
 // Two scenes, or a folder of results beside a scene.
 TEST_F(Machine, CompareSaysWhatDiffersAndWhatIsTheSame) {
   const CommandResult result = hb("compare " + scene("six_link") + " " + scene("six_link") +

@@ -161,3 +161,28 @@ def test_strengths_that_cannot_be_name_key_and_bound(compressor):
     with pytest.raises(hb.SceneError, match="tensile strength") as refused:
         compressor.with_({"rod.yield": 600e6})
     assert "yield" in str(refused.value)
+
+
+def test_bands_are_the_commands(compressor):
+    s = compressor.steady(rpm=3000, band={"damping": (0.5, 2)})
+    document = command("steady", SCENES / "slider_crank_units.toml", "--rpm", 3000, *SETTING, "--band", "damping=0.5:2")
+    assert s.bands == document["bands"] and s.to_dict() == document
+    assert s.bands[0]["verdict_to"] == "stable"
+    with pytest.raises(hb.RequestError, match="band"):
+        compressor.steady(rpm=3000, band="damping=2:0.5")
+    with pytest.raises(hb.RequestError, match="band"):
+        compressor.steady(rpm=3000, theory="nonlinear", band="E=0.9:1.1")
+
+
+def test_damping_comes_back_from_a_decay_and_a_peak():
+    t = numpy.linspace(0, 0.3, 400)
+    fit = hb.fit_decay(t, numpy.exp(-0.01 * 500 * t) * numpy.cos(500 * math.sqrt(1 - 1e-4) * t))
+    assert fit.ratio == pytest.approx(0.01, rel=1e-4) and fit.frequency == pytest.approx(500, rel=1e-6)
+    assert fit.fitted.shape == t.shape and fit.residual < 1e-4
+    omega = numpy.linspace(450, 550, 51)
+    peak = hb.fit_peak(omega, 1 / numpy.hypot(500**2 - omega**2, 2 * 0.02 * 500 * omega))
+    assert peak.ratio == pytest.approx(0.02, rel=1e-4)
+    with pytest.raises(hb.RequestError):
+        hb.fit_peak(omega, omega)
+    with pytest.raises(hb.RequestError):
+        hb.fit_decay(t, t[:-1])

@@ -35,6 +35,9 @@ std::string in_flags(const RequestError& error) {
   // Other fields (a metric such as stress:AB) are texts of the command line already.
   static const std::map<std::string, std::string> flag_of = {{"rods", "--rods"},
                                                              {"modes", "--modes"},
+                                                             {"band", "--band"},
+                                                             {"decay", "--decay"},
+                                                             {"peak", "--peak"},
                                                              {"tolerance", "--tol"},
                                                              {"rpm", "--rpm"},
                                                              {"omega", "--omega"},

@@ -27,5 +27,6 @@ void add_check_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
 void add_tune_command(CLI::App& app, int& status);
 void add_report_command(CLI::App& app, int& status);
+void add_fit_command(CLI::App& app, int& status);
 
 }  // namespace hb::tools

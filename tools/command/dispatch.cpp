@@ -75,6 +75,7 @@ int run(int argc, char** argv) {
   add_tune_command(app, status);
   add_report_command(app, status);
   add_compare_command(app, status);
+  add_fit_command(app, status);
   if (argc == 1) {  // nothing asked
     fmt::print(stderr, "{}", app.help());
     return exit_wrong_input;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
+#include "hb/analysis/sensitivity_band.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
@@ -17,6 +18,7 @@
 #include "tools/command/speed_flags.hpp"
 #include "tools/command/steady_files.hpp"
 #include "tools/command/theory_flags.hpp"
+#include "tools/output/band_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/output/table_output.hpp"
@@ -30,10 +32,12 @@ namespace {
 struct SteadyFlags : CommonFlags {
   TheoryFlags theory;
   bool multipliers = false;
+  std::vector<std::string> bands;
 };
 
 // Motions of one turn have tables and pictures, longer ones the document alone.
 int run_nonlinear(const SteadyFlags& flags) {
+  if (!flags.bands.empty()) throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
   const SceneInput input = scene_input(flags.scene_file);
   const Scene scene = input.source.with(overrides(flags));
   Request request = asked_request(flags, scene);
@@ -83,10 +87,15 @@ int run_steady(const SteadyFlags& flags) {
 
   const SteadyResult result = steady(scene, request);
   const SceneModel& model = *result.model;
-  const nlohmann::ordered_json document =
-      out.json || folder ? steady_json(model, result, result.settings, out.stats) : nlohmann::ordered_json();
+  std::vector<BandRequest> asked;
+  for (const std::string& text : flags.bands) asked.push_back(parse_band(text));
+  nlohmann::ordered_json document = out.json || folder || !asked.empty()
+                                        ? steady_json(model, result, result.settings, out.stats)
+                                        : nlohmann::ordered_json();
+  if (!asked.empty()) document["bands"] = bands_json(document, sensitivity_bands(scene, request, asked));
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : steady_table(model, result, result.settings, flags.multipliers);
+  if (!out.json && !asked.empty()) delivery.printed += bands_table(document["bands"]);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
     return steady_files(model, result, true, place);
@@ -115,6 +124,13 @@ void add_steady_command(CLI::App& app, int& status) {
   allow_growth_alone(*command, *flags);
   add_theory_flags(*command, flags->theory);
   command->add_flag("--multipliers", flags->multipliers, "print Floquet multipliers too (JSON always has them)");
+  command
+      ->add_option("--band", flags->bands,
+                   "how the answer moves with damping=0.5:2, E=0.9:1.1 or mass=0.9:1.1 of the elastic links (factors); "
+                   "repeatable")
+      ->type_name("NAME=A:B")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_html_flag(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }

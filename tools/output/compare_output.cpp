@@ -97,6 +97,10 @@ class Entries {
     for (const char* key : {"max_abs", "amplitude"})
       add(name, std::string("stress, ") + (key[0] == 'm' ? "together" : "amplitude"), "MPa", f.stress,
           number_at(rod, {"stress", key}), number_at(rod, {"stress", "error"}));
+    for (const char* what : {"yield", "fatigue"})
+      add(name, std::string("safety, ") + what, "", 1,
+          number_at(rod, {"stress", (std::string(what) + "_safety").c_str()}),
+          number_at(rod, {"stress", (std::string(what) + "_safety_error").c_str()}));
     add(name, "share of buckling load", "", 1, number_at(rod, {"axial_force", "buckling_share"}), std::nullopt);
     add(name, "theory error", "", 1, number_at(rod, {"theory_error"}), std::nullopt);
     add(name, "amplification", "", 1, number_at(rod, {"amplification"}), std::nullopt);

@@ -18,5 +18,6 @@ void add_check(py::module_& module);
 void add_tune(py::module_& module);
 void add_hill_system(py::module_& module);
 void add_report(py::module_& module);
+void add_fit(py::module_& module);
 
 }  // namespace hb::python

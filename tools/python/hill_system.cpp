@@ -128,20 +128,34 @@ std::shared_ptr<Answer> solved(const HillCore& core, const py::dict& arguments) 
   return linear_answer(core.scene, request, arguments);
 }
 
-// The arguments by themselves: a call in a loop of thousands costs little more than the exponents.
-StabilityView analysed(const HillCore& core, const py::object& omega, const py::object& rpm,
-                       const py::object& tolerance, const py::object& method) {
+// An ordinary omega alone, as a loop over speeds asks: what speed_of would give.
+std::optional<double> plain_speed(const py::object& omega, const py::object& rpm) {
+  constexpr double slow = 1e-9, fast = 1e9;  // within what every request allows
+  if (!rpm.is_none() || !PyFloat_CheckExact(omega.ptr())) return std::nullopt;
+  const double speed = PyFloat_AS_DOUBLE(omega.ptr());
+  return speed >= slow && speed <= fast ? std::optional(speed) : std::nullopt;
+}
+
+double asked_speed(const HillCore& core, const py::object& omega, const py::object& rpm) {
+  if (const std::optional<double> plain = plain_speed(omega, rpm)) return *plain;
   Request request;
   if (!omega.is_none()) request.omega = number("omega", omega);
   if (!rpm.is_none()) request.rpm = number("rpm", rpm);
+  return speed_of(request, core.scene).omega;
+}
+
+// The arguments by themselves: a call in a loop of thousands costs little more than the exponents.
+StabilityView analysed(const HillCore& core, const py::object& omega, const py::object& rpm,
+                       const py::object& tolerance, const py::object& method) {
   StabilityOptions options;
   if (!method.is_none()) options.method = stability_method(method);
   if (!tolerance.is_none()) {
+    Request request;
     request.tolerance = number("tol", tolerance);
     // As hb steady takes it: the asked tolerance loosens, it does not tighten.
     options.tolerance = std::max(options.tolerance, 10 * settings_of(request, core.scene).tolerance);
   }
-  const double speed = speed_of(request, core.scene).omega;
+  const double speed = asked_speed(core, omega, rpm);
   auto found = std::make_unique<Stability>();
   {
     // Of one or two unknowns in microseconds: giving the lock away would take a good part of that.

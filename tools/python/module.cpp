@@ -16,4 +16,5 @@ PYBIND11_MODULE(_core, module) {
   add_tune(module);
   add_hill_system(module);
   add_report(module);
+  add_fit(module);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/band_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/output/output_units.hpp"
@@ -148,9 +149,27 @@ std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& argumen
   });
 }
 
+// "damping=0.5:2" each.
+std::vector<BandRequest> bands_of(const py::dict& arguments) {
+  std::vector<BandRequest> bands;
+  if (const auto asked = given(arguments, "band"))
+    for (const std::string& text : texts("band", *asked)) bands.push_back(parse_band(text));
+  return bands;
+}
+
 std::shared_ptr<Answer> answer_of(const SceneCore& core, const py::dict& arguments) {
-  if (const std::optional<int> turns = read_turns(arguments)) return nonlinear(core, arguments, *turns);
-  return linear(core, arguments);
+  const std::vector<BandRequest> bands = bands_of(arguments);
+  if (const std::optional<int> turns = read_turns(arguments)) {
+    if (!bands.empty()) throw RequestError("band", "beside theory = \"nonlinear\"", "band with the linear theory");
+    return nonlinear(core, arguments, *turns);
+  }
+  std::shared_ptr<Answer> answer = linear(core, arguments);
+  if (bands.empty()) return answer;
+  const Request request = read_request(arguments);
+  PythonWork work(arguments, py::none());
+  constexpr bool whole = true;
+  answer->bands = work.run([&] { return sensitivity_bands(core.scene, request, bands); }, whole);
+  return answer;
 }
 
 std::optional<Verdict> verdict_of(const Answer& answer) {
@@ -175,6 +194,13 @@ auto of_stability(Value value) {
     const auto& stability = self.cast<const RodView&>().result().stability;
     return stability ? py::object(value(*stability, self)) : py::none();
   };
+}
+
+nlohmann::ordered_json document_of(const Answer& answer) {
+  if (answer.nonlinear) return tools::nonlinear_json(*answer.model, *answer.nonlinear, answer.settings, false);
+  nlohmann::ordered_json document = tools::steady_json(*answer.model, answer.result, answer.settings, false);
+  if (!answer.bands.empty()) document["bands"] = tools::bands_json(document, answer.bands);
+  return document;
 }
 
 void add_rod(py::module_& module) {
@@ -352,10 +378,7 @@ std::shared_ptr<Answer> linear_answer(const Scene& scene, const Request& request
   return answer;
 }
 
-std::string Answer::json() const {
-  return tools::json_text(nonlinear ? tools::nonlinear_json(*model, *nonlinear, settings, false)
-                                    : tools::steady_json(*model, result, settings, false));
-}
+std::string Answer::json() const { return tools::json_text(document_of(*this)); }
 
 void add_steady(py::module_& module) {
   add_rod(module);
@@ -406,8 +429,10 @@ void add_steady(py::module_& module) {
       .def("json", [](const Answer& answer) { return decoded(answer.json()); })
       .def("words",
            [](const Answer& answer) {
-             return decoded(answer.nonlinear ? tools::nonlinear_table(*answer.model, *answer.nonlinear)
-                                             : tools::steady_table(*answer.model, answer.result, answer.settings));
+             if (answer.nonlinear) return decoded(tools::nonlinear_table(*answer.model, *answer.nonlinear));
+             std::string table = tools::steady_table(*answer.model, answer.result, answer.settings);
+             if (!answer.bands.empty()) table += tools::bands_table(document_of(answer)["bands"]);
+             return decoded(table);
            })
       .def("table", [](const Answer& answer, const std::string& what) { return table_of(table(answer, what)); });
   module.def("steady", &answer_of, py::arg("scene"), py::arg("arguments"));

@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
+#include "hb/analysis/sensitivity_band.hpp"
 #include "hb/analysis/steady.hpp"
 #include "tools/python/bindings.hpp"
 
@@ -16,6 +18,7 @@ struct Answer {
   Settings settings;
   SpeedResult result;  // of a motion without linearisation in the form of a linear answer
   std::optional<NonlinearResult> nonlinear;
+  std::vector<SensitivityBand> bands;
 
   int turns() const { return nonlinear ? nonlinear->turns : 1; }
   std::string json() const;  // as the command prints it

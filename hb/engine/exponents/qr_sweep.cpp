@@ -63,6 +63,7 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
   const auto width = [&](Index b) { return sweep.ends[std::size_t(b)] - begin(b); };
   Rows V = Rows::Identity(n, n), W(n, n), product(n, n), before;
   constexpr int most_turns = 8;
+  constexpr Index often = 64;  // cells between looks
   for (int turn = 0; turn < most_turns; ++turn) {
     before = V;
     V = sweep.turned.transpose() * (V * sweep.turned).eval();
@@ -70,8 +71,8 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
       V.block(begin(b), 0, n - begin(b), sweep.ends[std::size_t(b)]).setZero();
       V.diagonal().segment(begin(b), width(b)).setOnes();
     }
-    end_if_wished();
     for (Index i = N - 1; i >= 0; --i) {
+      if (i % often == 0) end_if_wished();
       const auto R = sweep.R.middleCols(n * i, n);
       W.setIdentity();
       for (Index r = n - 2; r >= 0; --r)

@@ -9,6 +9,7 @@
 #include "hb/engine/exponents/cell_chain.hpp"
 #include "hb/engine/exponents/qr_sweep.hpp"
 #include "lib/constants.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -97,7 +98,9 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
     begin = end;
   }
   MatrixXd left(n, n), right(n, n), rounding(n, n), changed(n, n);
+  constexpr Index often = 64;  // cells between looks
   for (Index i = 0; i < N; ++i) {
+    if (i % often == 0) end_if_wished();
     const auto W = bases->left.middleCols(n * i, n), V = bases->right.middleCols(n * i, n);
     left.noalias() = W.lazyProduct(sweep.frames.middleCols(n * (i + 1), n).transpose());
     right.noalias() = sweep.frames.middleCols(n * i, n).lazyProduct(V);

@@ -28,7 +28,9 @@ WeightedSystem weighted(const ScaledSystem& system) {
   for (Eigen::Index i = 0; i < I; ++i) s.weight(i) = power_of_two_near(system.T.col(i).cwiseAbs().maxCoeff());
   const Eigen::MatrixXd ratio = s.weight * s.weight.cwiseInverse().transpose();
   const Eigen::VectorXd ratios = Eigen::Map<const Eigen::VectorXd>(ratio.data(), I * I);
+  end_if_wished();
   s.K = ratios.asDiagonal() * system.K.c;
+  end_if_wished();
   s.K_rounding = Eigen::MatrixXd::Zero(I, I);
   s.f_rounding = Eigen::VectorXd::Zero(I);
   if (system.K_rounding.size() > 0) s.K_rounding = system.K_rounding.cwiseProduct(ratio);
@@ -69,6 +71,7 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
   store.E.resize(N, I * I);
   fourier::RealTransform& fft = fourier::thread_transform(N, I);
   for (Eigen::Index j = 0; j < I; ++j) {
+    end_if_wished();
     auto spectrum = fft.spectrum();
     spectrum.setZero();
     spectrum.topRows(P + 1) = system_->K.middleRows(I * j, I).transpose();

@@ -6,6 +6,7 @@
 
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -37,11 +38,14 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
   const Eigen::Index I = left.rows();
   FourierSeries result = matrices;
   if (is_diagonal(left) && is_diagonal(right)) {
-    for (Eigen::Index j = 0; j < I; ++j)
+    for (Eigen::Index j = 0; j < I; ++j) {
+      end_if_wished();
       for (Eigen::Index i = 0; i < I; ++i) result.c.row(i + I * j) *= left(i, i) * right(j, j);
+    }
     return result;
   }
   for (Eigen::Index k = 0; k < matrices.c.cols(); ++k) {
+    end_if_wished();
     const Eigen::Map<const Eigen::MatrixXcd> coefficient(matrices.c.col(k).data(), I, I);
     const Eigen::MatrixXcd product = left * coefficient * right;
     result.c.col(k) = Eigen::Map<const Eigen::VectorXcd>(product.data(), I * I);
@@ -73,6 +77,7 @@ Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index n
   Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
   double factor = 1;
   for (const FourierSeries& part : powers) {
+    end_if_wished();
     if (part.c.size() > 0) size += 2 * factor * (part.c.real().cwiseAbs() + part.c.imag().cwiseAbs()).rowwise().sum();
     factor *= speed;
   }
@@ -83,13 +88,15 @@ Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index n
 Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& system) {
   const Eigen::Index I = system.num_modes();
   Eigen::Array<bool, Eigen::Dynamic, 1> result = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(I, true);
-  for (Eigen::Index j = 0; j < I; ++j)
+  for (Eigen::Index j = 0; j < I; ++j) {
+    end_if_wished();
     for (Eigen::Index i = 0; i <= j; ++i) {
       bool here = system.mass(i, j) == system.mass(j, i) && system.damping(i, j) == -system.damping(j, i);
       for (const FourierSeries& part : system.stiffness)
         here = here && (part.c.size() == 0 || part.c.row(i + I * j) == part.c.row(j + I * i));
       if (!here) result(i) = result(j) = false;
     }
+  }
   return result;
 }
 
@@ -103,7 +110,9 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
   const Eigen::Index I = system.num_modes();
+  end_if_wished();
   const FourierSeries C = stiffness_at(system, speed);
+  end_if_wished();
 
   // Left factor L and right factor T with L M T = 1.
   Eigen::MatrixXd L, T;
@@ -141,9 +150,12 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   scaled.G = L * system.damping * T / speed;
   scaled.diagonal_damping = is_diagonal(scaled.G);
   scaled.K = transformed(C, L, T);
+  end_if_wished();
   scaled.K.c *= 1 / (speed * speed);
+  end_if_wished();
   scaled.K = without_rounding(scaled.K, I);
   // Adding three powers, products with L and T (none but scaling when they are diagonal), and the cut.
+  end_if_wished();
   const bool scaling = is_diagonal(L) && is_diagonal(T);
   scaled.conservative = conservative_modes(system);
   if (!scaling) scaled.conservative.setConstant(scaled.conservative.all());

@@ -12,6 +12,7 @@ from ._core import version as __version__
 from .bench import Bench, RodBench
 from .check import Check, RodCheck
 from .errors import Error, RequestError, SceneError, SceneProblem
+from .fit import DampingFit, fit_decay, fit_peak
 from .hill_system import HillSystem
 from .map import Boundary, Map, RodMap
 from .scene import Scene, load, loads
@@ -24,6 +25,7 @@ __all__ = [
     "Boundary",
     "Check",
     "CriticalPoint",
+    "DampingFit",
     "Error",
     "Force",
     "HillSystem",
@@ -42,6 +44,8 @@ __all__ = [
     "SweepRod",
     "Tune",
     "__version__",
+    "fit_decay",
+    "fit_peak",
     "load",
     "loads",
 ]

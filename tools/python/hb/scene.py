@@ -132,6 +132,7 @@ class Scene:
         steady_method: Optional[str] = None,
         stability_method: Optional[str] = None,
         bound: Optional[str] = None,
+        band: Any = None,
         time_limit: Optional[float] = None,
     ) -> "Steady":
         """The periodic steady state at one speed, its stability, joint forces and torque: hb.Steady.
@@ -139,9 +140,13 @@ class Scene:
         modes: Ritz terms per elastic link, 1 to 60, or "auto". tol: relative error wanted. rods: names of links to look
         at. only: of "steady", "stability", "growth", "verdict", "reactions", "shape". theory: "linear" or "nonlinear" (the motion
         without linearisation, all rods together), with period: motions of so many turns. bound: "estimated" or "proved".
-        time_limit: seconds; TimeoutError where there is no answer by then.
+        band: {"damping": (0.5, 2), "E": (0.9, 1.1), "mass": (0.9, 1.1)}, factors between which the answer is computed once
+        more, or the command's texts: `bands` of the answer. time_limit: seconds; TimeoutError where there is no answer by then.
         """
         from .steady import Steady
+
+        if isinstance(band, Mapping):
+            band = [f"{name}={low!r}:{high!r}" for name, (low, high) in band.items()]
 
         arguments = {
             "rpm": rpm,
@@ -155,6 +160,7 @@ class Scene:
             "steady_method": steady_method,
             "stability_method": stability_method,
             "bound": bound,
+            "band": band,
             "time_limit": time_limit,
         }
         return Steady(self, arguments, _core.steady(self._core, arguments))

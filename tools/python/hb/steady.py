@@ -187,6 +187,12 @@ class Steady:
         return self._doc.get("torque_theory_error")
 
     @property
+    def bands(self) -> list[dict[str, Any]]:
+        """With band=...: of each what hb steady --json has, `parameter`, `from`, `to`, verdicts at both ends and
+        `quantities` (in mm, N, N m, MPa, Hz) there and as given, with errors and slopes; else empty."""
+        return list(self._doc.get("bands", []))
+
+    @property
     def theory(self) -> str:
         """"linear" or "nonlinear"."""
         return str(self._doc.get("theory", "linear"))

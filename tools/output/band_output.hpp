@@ -1,0 +1,18 @@
+// How an answer moves with damping, Young's modulus, mass: table and document.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "hb/analysis/sensitivity_band.hpp"
+
+namespace hb::tools {
+
+// `nominal`: the document of hb steady at factor 1.
+[[nodiscard]] nlohmann::ordered_json bands_json(const nlohmann::ordered_json& nominal,
+                                                const std::vector<SensitivityBand>& bands);
+// From that list.
+[[nodiscard]] std::string bands_table(const nlohmann::ordered_json& bands);
+
+}  // namespace hb::tools
