@@ -7,7 +7,9 @@ function(hb_target_options target)
     # -ffast-math would remove the NaN tests that detect divergence; these three are safe.
     -fno-math-errno $<$<CXX_COMPILER_ID:GNU>:-fcx-limited-range> -fno-trapping-math)
   if(HB_NATIVE)
-    target_compile_options(${target} PRIVATE -march=native)
+    target_compile_options(${target} PRIVATE -march=native
+      # GCC 12 warns of its own AVX-512 intrinsics, whose undefined operands are meant (GCC bug 105593).
+      $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-maybe-uninitialized$<SEMICOLON>-Wno-uninitialized>)
   endif()
   # One alignment whatever the instruction set, so that libraries and their users agree on Eigen's allocations.
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64)

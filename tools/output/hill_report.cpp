@@ -20,7 +20,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr Index shown = 6;  // rows of a matrix, frequencies
+constexpr Index most_shown = 6;  // rows of a matrix, frequencies
 
 Index highest_harmonic(const std::array<FourierSeries, 3>& powers) {
   Index highest = 0;
@@ -114,19 +114,19 @@ std::string hill_table(const HillSystem& system, const Scene& scene) {
     const MatrixXd mean = mean_of(system, p);
     if (mean.size() == 0) continue;
     fmt::format_to(out, "mean stiffness{}{}:\n", factors[p],
-                   n > shown ? fmt::format(", the first {} of {} rows and columns", shown, n) : "");
-    for (Index i = 0; i < std::min(n, shown); ++i) {
+                   n > most_shown ? fmt::format(", the first {} of {} rows and columns", most_shown, n) : "");
+    for (Index i = 0; i < std::min(n, most_shown); ++i) {
       fmt::format_to(out, " ");
-      for (Index k = 0; k < std::min(n, shown); ++k) fmt::format_to(out, " {:>13.6g}", mean(i, k));
+      for (Index k = 0; k < std::min(n, most_shown); ++k) fmt::format_to(out, " {:>13.6g}", mean(i, k));
       fmt::format_to(out, "\n");
     }
   }
   const MeanFrequencies frequencies = mean_frequencies(system, scene);
   fmt::format_to(out, "natural frequencies of the mean system{}, rad/{}:",
                  frequencies.speed ? fmt::format(" at omega = {:.6g}", *frequencies.speed) : "", scene.units.time);
-  for (std::size_t i = 0; i < std::min<std::size_t>(frequencies.squares.size(), 2 * shown); ++i)
+  for (std::size_t i = 0; i < std::min<std::size_t>(frequencies.squares.size(), 2 * most_shown); ++i)
     fmt::format_to(out, "{} {}", i ? "," : "", frequency_text(frequencies.squares[i]));
-  fmt::format_to(out, "{}\n", frequencies.squares.size() > 2 * shown ? ", ..." : "");
+  fmt::format_to(out, "{}\n", frequencies.squares.size() > 2 * most_shown ? ", ..." : "");
   fmt::format_to(out, "mass {}; damping {}; stiffness {}\n", symmetry_text(asymmetry(system.mass)),
                  system.damping.isZero(0) ? "zero" : symmetry_text(asymmetry(system.damping)),
                  symmetry_text(asymmetry(system.stiffness, n)));
