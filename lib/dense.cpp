@@ -10,8 +10,6 @@
 
 namespace hb::dense {
 
-namespace {
-
 // Eigen's factorisation, of a large matrix a panel of columns at a time: with [A11; A21] = P [L11; L21] U11 the rest is
 //     U12 = L11^-1 (P A)12,   A22 <- (P A)22 - L21 U12.
 // Seconds of work look at the wish to stop between panels.
@@ -64,8 +62,6 @@ class EndingLu : public Eigen::PartialPivLU<Matrix<Scalar>> {
     return swaps;
   }
 };
-
-}  // namespace
 
 template <class Scalar>
 struct Lu<Scalar>::Factors {

@@ -183,8 +183,6 @@ double wiener_norm(const FourierSeries& series, Eigen::Index component) {
   return std::abs(series.c(component, 0)) + 2 * series.c.row(component).tail(series.num_harmonics()).cwiseAbs().sum();
 }
 
-namespace {
-
 class FftwPlans {
  public:
   explicit FftwPlans(int N) : samples_(fftw_alloc_real(at(N))), spectrum_(fftw_alloc_complex(at(N / 2 + 1))) {
@@ -247,13 +245,11 @@ class Plans {
   std::optional<FftwPlans> fftw_;
 };
 
-const Plans& plans(Eigen::Index N) {
+static const Plans& plans(Eigen::Index N) {
   static std::map<Eigen::Index, Plans> made;
   const std::lock_guard lock(planner_mutex());
   return made.try_emplace(N, static_cast<int>(N)).first->second;
 }
-
-}  // namespace
 
 struct RealTransform::Impl {
   Eigen::Index N, n;
