@@ -6,7 +6,7 @@ import pandas
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
-from .loads import AxialForce, NearestResonance, Peak, Stress
+from .machine_loads import AxialForce, NearestResonance, Peak, Stress
 
 version: str
 

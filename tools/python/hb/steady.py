@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import xarray
     from matplotlib.axes import Axes
 
-    from .loads import AxialForce, Bearing, Flywheel, Frame, NearestResonance, Peak, Power, SliderMotion, Stress
+    from .machine_loads import AxialForce, Bearing, Flywheel, Frame, NearestResonance, Peak, Power, SliderMotion, Stress
     from .scene import Scene
 
 
@@ -124,35 +124,35 @@ class Steady:
     def bearings(self) -> "dict[str, Bearing]":
         """Length of each joint's force by the joint's name: its largest value, where, mean and rms; empty where joint
         forces were not computed."""
-        from .loads import Bearing, made_by_name
+        from .machine_loads import Bearing, made_by_name
 
         return made_by_name(Bearing, self._doc.get("bearings"))
 
     @property
     def frame(self) -> "Optional[Frame]":
         """Shaking force and moment; None where not computed, and of a motion without linearisation."""
-        from .loads import Frame, made
+        from .machine_loads import Frame, made
 
         return made(Frame, self._doc.get("frame"))
 
     @property
     def power(self) -> "Optional[Power]":
         """Power of the drive; None where not computed."""
-        from .loads import Power, made
+        from .machine_loads import Power, made
 
         return made(Power, self._doc.get("power"))
 
     @property
     def flywheel(self) -> "Optional[Flywheel]":
         """What a flywheel takes up, and the fluctuation of the speed; None where not computed."""
-        from .loads import Flywheel, made
+        from .machine_loads import Flywheel, made
 
         return made(Flywheel, self._doc.get("flywheel"))
 
     @property
     def sliders(self) -> "dict[str, SliderMotion]":
         """Motion of each slider by name; empty where there is none or it was not computed."""
-        from .loads import SliderMotion, made_by_name
+        from .machine_loads import SliderMotion, made_by_name
 
         return made_by_name(SliderMotion, self._doc.get("sliders"))
 
@@ -351,7 +351,7 @@ def _entry(rod: Rod) -> dict[str, Any]:
 
 
 def _peak(rod: Rod, key: str) -> "Optional[Peak]":
-    from .loads import Peak, made
+    from .machine_loads import Peak, made
 
     return made(Peak, _entry(rod).get(key))
 
@@ -373,21 +373,21 @@ def _static_deflection(self: Rod) -> "Optional[Peak]":
 
 def _axial_force(self: Rod) -> "Optional[AxialForce]":
     """Largest pull and push, and the share of the buckling load; None: not computed."""
-    from .loads import AxialForce, made
+    from .machine_loads import AxialForce, made
 
     return made(AxialForce, _entry(self).get("axial_force"))
 
 
 def _stress(self: Rod) -> "Optional[Stress]":
     """Largest stress, widest cycle, safeties against yielding and fatigue, with errors; None: not computed."""
-    from .loads import Stress, made
+    from .machine_loads import Stress, made
 
     return made(Stress, _entry(self).get("stress"))
 
 
 def _nearest_resonance(self: Rod) -> "Optional[NearestResonance]":
     """The nearest speed at which a natural frequency is met; None: not computed, or none."""
-    from .loads import NearestResonance, made
+    from .machine_loads import NearestResonance, made
 
     return made(NearestResonance, _entry(self).get("nearest_resonance"))
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from .loads import Bearing, Flywheel, Frame, Power, Stress, Torque
+    from .machine_loads import Bearing, Flywheel, Frame, Power, Stress, Torque
 
 
 class CriticalPoint(dict[str, Any]):
@@ -97,7 +97,7 @@ class SweepRod:
     def stress(self) -> "Optional[Stress]":
         """max_abs, mean, amplitude, yield_safety, fatigue_safety as arrays, (points,); None where the scene gives no
         `section`, or shapes were not computed."""
-        from .loads import Stress, made
+        from .machine_loads import Stress, made
 
         return made(Stress, self._entry.get("stress"), floats)
 
@@ -266,35 +266,35 @@ class Sweep(Result):
     @cached_property
     def torque(self) -> "Optional[Torque]":
         """Driving torque: min, max, mean, rms, (points,), and `rigid` with min and max; None where not computed."""
-        from .loads import Torque, made
+        from .machine_loads import Torque, made
 
         return made(Torque, self._document.get("torque"), floats)
 
     @cached_property
     def bearings(self) -> "dict[str, Bearing]":
         """Largest resultant at each joint: `max`, (points,); empty where joint forces were not computed."""
-        from .loads import Bearing, made_by_name
+        from .machine_loads import Bearing, made_by_name
 
         return made_by_name(Bearing, self._document.get("bearings"), floats)
 
     @cached_property
     def frame(self) -> "Optional[Frame]":
         """Largest shaking force, `max`, and `moment`, (points,); None where not computed."""
-        from .loads import Frame, made
+        from .machine_loads import Frame, made
 
         return made(Frame, self._document.get("frame"), floats)
 
     @cached_property
     def power(self) -> "Optional[Power]":
         """Power of the drive, (points,) each; None where not computed."""
-        from .loads import Power, made
+        from .machine_loads import Power, made
 
         return made(Power, self._document.get("power"), floats)
 
     @cached_property
     def flywheel(self) -> "Optional[Flywheel]":
         """energy_fluctuation, speed_fluctuation, (points,); None where not computed."""
-        from .loads import Flywheel, made
+        from .machine_loads import Flywheel, made
 
         return made(Flywheel, self._document.get("flywheel"), floats)
 
