@@ -2,6 +2,8 @@
 function(hb_target_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic
     $<$<BOOL:${HB_WERROR}>:-Werror>
+    # A member that an initialiser leaves out keeps the default that its declaration gives.
+    -Wno-missing-field-initializers
     # GCC 12 sees overlapping copies in std::string operator+ where there are none (GCC bug 105651).
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
     # -ffast-math would remove the NaN tests that detect divergence; these three are safe.
