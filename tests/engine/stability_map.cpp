@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -347,6 +348,48 @@ TEST(StabilityMap, CurvesAreRefinedUntilTheirChordsAreStraight) {
   // The tip: least swing that is unstable, 2 c sqrt(1.2) to first order of the damping c.
   const auto tip = std::min_element(p.begin(), p.end(), [](const auto& a, const auto& b) { return a.y < b.y; });
   EXPECT_NEAR(tip->y, 2 * 0.1 * std::sqrt(1.2), 0.01);
+}
+
+TEST(StabilityMap, TongueTipsAreLocatedToASmallPartOfACell) {
+  // Least swing that a tongue of the damped equation reaches, by Hill's determinant at half-integer or integer
+  // harmonics (continued fraction), least over Omega.
+  struct Tip {
+    double Omega, swing;
+  };
+  constexpr std::array<Tip, 3> tips = {{{0.717225405545, 0.57930516576495},
+                                        {1.088738627121, 0.32397728120212643},
+                                        {2.190753312683, 0.04381757653589144}}};
+  const std::vector<double> swing = spaced(0, 0.9, 10);
+  const StabilityMap map = stability_map(speed_and_swing(0.02), spaced(0.6, 2.6, 21), swing);
+  ASSERT_EQ(map.boundaries.size(), tips.size());
+  for (const Tip& tip : tips) {
+    double nearest = HUGE_VAL, lowest = 0;
+    for (const BoundaryCurve& curve : map.boundaries) {
+      const auto low = std::ranges::min_element(curve.points, {}, &BoundaryPoint::y);
+      if (std::abs(low->x - tip.Omega) >= nearest) continue;
+      nearest = std::abs(low->x - tip.Omega);
+      lowest = low->y;
+    }
+    const double cell = swing[1] - swing[0];
+    EXPECT_GE(lowest, tip.swing - 1e-10) << tip.Omega;
+    EXPECT_LE(lowest, tip.swing + cell / 400) << tip.Omega;
+    EXPECT_LE(nearest, 5e-3) << tip.Omega;
+  }
+}
+
+TEST(StabilityMap, AThinGapTakesNoMorePointsThanItsCurvesNeed) {
+  // x'' + (a + 2 q cos 2t) x = 0: between a_0 and b_1 stable, 7e-7 wide at q = 25.
+  const MapSystemAt at = [](double a, double swing) { return scale_system(mathieu(0, a, swing), 2); };
+  const std::vector<double> a = spaced(-45, -22, 14), swing = spaced(30, 50, 6);
+  const StabilityMap map = stability_map(at, a, swing);
+  ASSERT_EQ(map.boundaries.size(), 2u);
+  EXPECT_NE(map.boundaries[0].kind, map.boundaries[1].kind);
+  for (const BoundaryCurve& curve : map.boundaries) {
+    EXPECT_GT(curve.points.size(), 10u);
+    EXPECT_LT(curve.points.size(), 150u);  // lines of the first mesh cross it 60 times
+    EXPECT_NEAR(std::ranges::min_element(curve.points, {}, &BoundaryPoint::y)->y, 30, 1e-9);
+    EXPECT_NEAR(std::ranges::max_element(curve.points, {}, &BoundaryPoint::y)->y, 50, 1e-9);
+  }
 }
 
 TEST(StabilityMap, RefusesAxesThatDoNotAscend) {

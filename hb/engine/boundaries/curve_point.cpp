@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "hb/engine/boundaries/finite_growth.hpp"
+#include "hb/engine/boundaries/interval_search.hpp"
 
 namespace hb {
 
@@ -54,6 +55,61 @@ int unstable_side(const CurveStretch& s, Vector left) {
   return side;
 }
 
+// The line along which a point is looked for: x or y, whichever is more across the curve.
+struct Line {
+  bool along_x;
+  double fixed, low, top, expected;  // expected: where the curve should cross it
+  double step;  // the first one away from there
+  bool unstable_above;
+  SystemAt at;
+
+  CurvePoint point(const StabilityBoundary& b) const {
+    return {{along_x ? b.x : fixed, along_x ? fixed : b.x, b.error, along_x}, b.kind, b.unstable_above, b.converged};
+  }
+};
+
+// Outward from the expected place to the side that has the other verdict.
+std::optional<CurvePoint> point_by_verdict(const Line& line, const SweepOptions& options) {
+  const auto sample = [&](double t) -> std::optional<StabilitySample> {
+    const std::optional<ScaledSystem> system = line.at(t);
+    if (!system) return std::nullopt;
+    return StabilitySample{t, system->speed, with_finite_growth(*system, options.stability)};
+  };
+  double t = line.expected, step = line.step;
+  std::optional<StabilitySample> here = sample(t);
+  if (!here) return std::nullopt;
+  const bool first_unstable = is_unstable(*here);
+  const double direction = first_unstable == line.unstable_above ? -1 : 1;
+  for (;; step *= 4) {
+    const double next = std::clamp(t + direction * step, line.low, line.top);
+    if (next == t) return std::nullopt;
+    std::optional<StabilitySample> there = sample(next);
+    if (!there) return std::nullopt;
+    if (is_unstable(*there) != first_unstable) {
+      const StabilitySample &a = next < t ? *there : *here, &b = next < t ? *here : *there;
+      return line.point(locate_boundary(line.at, a, b, options));
+    }
+    t = next;
+    here = std::move(there);
+  }
+}
+
+// By the search for bands and gaps that verdicts do not show, near the expected place.
+std::optional<CurvePoint> point_by_search(const Line& line, SweepOptions options) {
+  options.stability.leading_only = false;
+  constexpr double steps = 16;
+  const auto a = stability_sample(line.at, std::max(line.low, line.expected - steps * line.step), options.stability);
+  const auto b = stability_sample(line.at, std::min(line.top, line.expected + steps * line.step), options.stability);
+  if (!a || !b || !(a->x < b->x)) return std::nullopt;
+  std::optional<StabilityBoundary> nearest;
+  for (const StabilityBoundary& found : search_interval(line.at, *a, *b, nullptr, nullptr, options).boundaries) {
+    if (found.unstable_above != line.unstable_above) continue;
+    if (!nearest || std::abs(found.x - line.expected) < std::abs(nearest->x - line.expected)) nearest = found;
+  }
+  if (!nearest) return std::nullopt;
+  return line.point(*nearest);
+}
+
 }  // namespace
 
 std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretch& s, double wide, double high,
@@ -64,40 +120,21 @@ std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretc
   if (side == 0) return std::nullopt;
   const Vector straight = (p1 + p2) * 0.5, curved = middle_of_cubic(s, scaled);
   const bool along_x = std::abs(d.y) >= std::abs(d.x);
-  const double low = along_x ? s.low_x : s.low_y, top = along_x ? s.high_x : s.high_y;
+  const double low = along_x ? s.low_x : s.low_y, top = along_x ? s.high_x : s.high_y, unit = along_x ? wide : high;
   const double fixed =
       along_x ? std::clamp(curved.y * high, std::min(s.a.place.y, s.b.place.y), std::max(s.a.place.y, s.b.place.y))
               : std::clamp(curved.x * wide, std::min(s.a.place.x, s.b.place.x), std::max(s.a.place.x, s.b.place.x));
-  const SystemAt along = [&](double t) { return along_x ? at(t, fixed) : at(fixed, t); };
-  const auto sample = [&](double t) -> std::optional<StabilitySample> {
-    const std::optional<ScaledSystem> system = along(t);
-    if (!system) return std::nullopt;
-    return StabilitySample{t, system->speed, with_finite_growth(*system, options.stability)};
-  };
-
-  // Outward from the expected place to the side that has the other verdict.
-  const bool unstable_above = (along_x ? left.x : left.y) * side > 0;
-  const double unit = along_x ? wide : high;
-  double t = std::clamp((along_x ? curved.x : curved.y) * unit, low, top);
-  double step = unit * std::max(0.3 * (curved - straight).length(), 1e-3 * d.length());
-  std::optional<StabilitySample> here = sample(t);
-  if (!here) return std::nullopt;
-  const bool first_unstable = is_unstable(*here);
-  const double direction = first_unstable == unstable_above ? -1 : 1;
-  for (;; step *= 4) {
-    const double next = std::clamp(t + direction * step, low, top);
-    if (next == t) return std::nullopt;
-    std::optional<StabilitySample> there = sample(next);
-    if (!there) return std::nullopt;
-    if (is_unstable(*there) != first_unstable) {
-      const StabilitySample &a = next < t ? *there : *here, &b = next < t ? *here : *there;
-      const StabilityBoundary found = locate_boundary(along, a, b, options);
-      const double x = along_x ? found.x : fixed, y = along_x ? fixed : found.x;
-      return CurvePoint{{x, y, found.error, along_x}, found.kind, found.unstable_above, found.converged};
-    }
-    t = next;
-    here = std::move(there);
-  }
+  const Line line{along_x,
+                  fixed,
+                  low,
+                  top,
+                  std::clamp((along_x ? curved.x : curved.y) * unit, low, top),
+                  unit * std::max(0.3 * (curved - straight).length(), 1e-3 * d.length()),
+                  (along_x ? left.x : left.y) * side > 0,
+                  [&at, along_x, fixed](double t) { return along_x ? at(t, fixed) : at(fixed, t); }};
+  std::optional<CurvePoint> point = point_by_verdict(line, options);
+  if (!point && s.crowded) point = point_by_search(line, options);
+  return point;
 }
 
 }  // namespace hb

@@ -23,6 +23,7 @@ struct CurveStretch {
   std::optional<CurvePoint> before, after;  // the curve's points next to it
   CurvePoint a, b;
   double low_x, high_x, low_y, high_y;  // the curve stays in this box
+  bool crowded = false;  // other curves pass the box: a band or a gap may be too thin for verdicts to show it
 };
 
 // Near the middle of the stretch, by a cubic through its ends (hb/engine/README.md, (B8)), then along x or y, whichever

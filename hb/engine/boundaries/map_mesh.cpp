@@ -125,6 +125,11 @@ std::vector<std::size_t> MapMesh::rim(const MapCell& cell) const {
   return all;
 }
 
+bool MapMesh::holds_tip(const MapCell& cell) const {
+  return rim(cell).size() == 2 &&
+         std::ranges::any_of(cell.edges, [&](std::size_t e) { return crossings_along(e).size() == 2; });
+}
+
 void MapMesh::halve_edge(std::size_t e) {
   if (edges_[e].halved) return;
   const MapEdge edge = edges_[e];

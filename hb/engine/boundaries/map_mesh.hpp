@@ -79,6 +79,8 @@ class MapMesh {
   [[nodiscard]] std::vector<std::size_t> crossings_along(std::size_t edge) const;
   // Of a cell, counter-clockwise from the lower left corner.
   [[nodiscard]] std::vector<std::size_t> rim(const MapCell& cell) const;
+  // A curve leaves the cell through the side by which it entered: how far it reaches in between is not known.
+  [[nodiscard]] bool holds_tip(const MapCell& cell) const;
 
   // Adds nodes and edges at the end.
   void halve(std::size_t cell);

@@ -4,13 +4,13 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/map_grid.hpp"
 #include "hb/engine/boundaries/map_mesh.hpp"
 
 namespace hb {
@@ -68,7 +68,7 @@ class MapSearch {
 
   StabilityMap result() {
     StabilityMap map;
-    if (!options_.curves_only) fill(map);
+    if (!options_.curves_only) map.points = map_grid(mesh_, samples_);
     if (options_.boundaries) {
       for (const CurveChain& chain : chains_) {
         add_curves(chain, map.boundaries);
@@ -193,10 +193,10 @@ class MapSearch {
     const auto present = std::ranges::count_if(cell.corners, [&](std::size_t n) { return samples_[n].has_value(); });
     const std::size_t crossings = mesh_.rim(cell).size();
     if (larger_than_the_grid(cell)) {
-      if (options_.curves_only) return crossings != 0 && crossings != 2;
+      if (options_.curves_only) return (crossings != 0 && crossings != 2) || mesh_.holds_tip(cell);
       return crossings != 0 || (present > 0 && present < 4) || (present == 4 && uneven(cell));
     }
-    return present == 4 && crossings > 2 && !thin_band(cell);
+    return present == 4 && (crossings > 2 ? !thin_band(cell) : mesh_.holds_tip(cell));
   }
 
   // Two crossings of one kind on each of two sides: a tongue, or the gap between two, passes through. Points on both
@@ -261,6 +261,7 @@ class MapSearch {
   bool refine_curves() {
     join_crossings();
     for (;;) {
+      if (halve(cells_with_turns())) return true;
       const std::vector<Wanted> wanted = coarse_stretches();
       if (wanted.empty()) return false;
       using Found = std::optional<CurvePoint>;
@@ -296,8 +297,12 @@ class MapSearch {
       for (const auto& [position, point] : points)
         all.insert(all.begin() + static_cast<std::ptrdiff_t>(position), point);
     }
-    for (const std::size_t c : cells) mesh_.halve(c);
+    return halve(cells);
+  }
+
+  bool halve(const std::set<std::size_t>& cells) {
     if (cells.empty()) return false;
+    for (const std::size_t c : cells) mesh_.halve(c);
     std::erase_if(inserted_, [&](const auto& link) { return cells.contains(link.first.cell); });
     evaluate();
     return true;
@@ -370,6 +375,32 @@ class MapSearch {
     return curve;
   }
 
+  // Those in which a curve turns back: between its neighbours in the chain points show how wide the tip is, not how far
+  // it reaches.
+  std::set<std::size_t> cells_with_turns() const {
+    std::set<std::size_t> cells;
+    for (const CurveChain& chain : chains_) {
+      const Curve c = curve(chain);
+      const std::size_t n = c.stretches.size();
+      const auto turns_back = [&](std::size_t before, std::size_t after) {
+        const auto along = [&](std::size_t k, auto coordinate) {
+          return scaled(c.points[k + 1]).*coordinate - scaled(c.points[k]).*coordinate;
+        };
+        return along(before, &BoundaryPoint::x) * along(after, &BoundaryPoint::x) +
+                   along(before, &BoundaryPoint::y) * along(after, &BoundaryPoint::y) <
+               0;
+      };
+      for (std::size_t from = 0, to = 0; from < n; from = to) {
+        while (to < n && c.stretches[to].first == c.stretches[from].first) ++to;
+        const std::size_t cell = c.stretches[from].first.cell;
+        const std::size_t before = from > 0 || chain.closed ? (from + n - 1) % n : from;
+        const std::size_t after = to < n || chain.closed ? to % n : to - 1;
+        if (divisible(mesh_.cells()[cell]) && turns_back(before, after)) cells.insert(cell);
+      }
+    }
+    return cells;
+  }
+
   std::vector<Wanted> coarse_stretches() const {
     std::vector<Wanted> wanted;
     for (const CurveChain& chain : chains_) {
@@ -400,6 +431,7 @@ class MapSearch {
                    mesh_.x_of(cell.corners[2]),
                    mesh_.y_of(cell.corners[0]),
                    mesh_.y_of(cell.corners[2])};
+    s.crowded = unclear_.contains(c.stretches[k].first.cell);
     if (k > 0 || closed) s.before = c.points[k > 0 ? k - 1 : n - 1];
     if (k + 1 < n || closed) s.after = c.points[k + 1 < n ? k + 2 : 1];
     return s;
@@ -427,59 +459,6 @@ class MapSearch {
       piece.points.push_back(piece.points.front());
     }
     curves.push_back(std::move(piece));
-  }
-
-  // --- The grid ---
-
-  static MapPoint known(const StabilitySample& sample) {
-    const Stability& s = sample.stability;
-    return {MapSource::evaluated,           sample.speed, s.growth_rate, s.growth_error, s.verdict,
-            boundary_kind(s, sample.speed), s.converged};
-  }
-
-  // Values at the places that the caller gave: those of the nodes, and inside larger cells between the corners.
-  void fill(StabilityMap& map) const {
-    const MapAxis &along_x = mesh_.x(), &along_y = mesh_.y();
-    const std::size_t nx = along_x.values.size(), ny = along_y.values.size();
-    map.points.assign(nx * ny, {});
-    std::vector<bool> done(nx * ny, false);
-    for (std::size_t n = 0; n < samples_.size(); ++n) {
-      const MapNode& node = mesh_.nodes()[n];
-      if (node.i % along_x.units != 0 || node.j % along_y.units != 0) continue;
-      const std::size_t place =
-          static_cast<std::size_t>(node.i / along_x.units) + nx * static_cast<std::size_t>(node.j / along_y.units);
-      done[place] = true;
-      if (samples_[n]) map.points[place] = known(*samples_[n]);
-    }
-    for (const MapCell& cell : mesh_.cells()) {
-      if (cell.halved || (mesh_.width(cell) <= along_x.units && mesh_.height(cell) <= along_y.units)) continue;
-      const MapNode &low = mesh_.nodes()[cell.corners[0]], &high = mesh_.nodes()[cell.corners[2]];
-      std::array<MapPoint, 4> corner;
-      for (std::size_t k = 0; k < 4; ++k) {
-        if (const auto& s = samples_[cell.corners[k]]) corner[k] = known(*s);
-      }
-      for (int j = (low.j + along_y.units - 1) / along_y.units; j * along_y.units <= high.j; ++j) {
-        for (int i = (low.i + along_x.units - 1) / along_x.units; i * along_x.units <= high.i; ++i) {
-          const std::size_t place = static_cast<std::size_t>(i) + nx * static_cast<std::size_t>(j);
-          if (done[place]) continue;
-          done[place] = true;
-          const double u = static_cast<double>(i * along_x.units - low.i) / (high.i - low.i);
-          const double v = static_cast<double>(j * along_y.units - low.j) / (high.j - low.j);
-          const std::array<double, 4> weight = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
-          MapPoint& point = map.points[place];
-          if (corner[0].source == MapSource::missing) continue;
-          point = corner[0];
-          point.source = MapSource::interpolated;
-          point.growth_error = std::numeric_limits<double>::quiet_NaN();
-          point.growth_rate = point.speed = 0;
-          for (std::size_t k = 0; k < 4; ++k) {
-            point.growth_rate += weight[k] * corner[k].growth_rate;
-            point.speed += weight[k] * corner[k].speed;
-            point.converged = point.converged && corner[k].converged;
-          }
-        }
-      }
-    }
   }
 
   const MapSystemAt& at_;
