@@ -15,7 +15,7 @@ SteadyOptions response_options(const Settings& settings) {
   options.method = settings.steady_method;
   options.bound = settings.bound;
   // The difference between two numbers of modes must not drown in the error of either.
-  if (std::holds_alternative<AutoModes>(settings.modes)) options.tolerance = std::max(0.05 * settings.tolerance, 1e-14);
+  if (is_auto(settings.modes)) options.tolerance = std::max(0.05 * settings.tolerance, 1e-14);
   return options;
 }
 

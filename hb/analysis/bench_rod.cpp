@@ -8,10 +8,11 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
-#include <numbers>
 
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/engine/time/fixed_step.hpp"
+#include "hb/engine/time/marching.hpp"
+#include "lib/constants.hpp"
 #include "lib/stopwatch.hpp"
 
 namespace hb {
@@ -35,7 +36,7 @@ double error_of(const Eigen::MatrixXd& q, const Eigen::MatrixXd& reference) {
 Eigen::MatrixXd at_angles(const FourierSeries& series, Eigen::Index N) {
   Eigen::MatrixXd values(series.num_components(), N);
   for (Eigen::Index j = 0; j < N; ++j)
-    values.col(j) = fourier::evaluate(series, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N));
+    values.col(j) = fourier::evaluate(series, two_pi * static_cast<double>(j) / static_cast<double>(N));
   return values;
 }
 
@@ -68,6 +69,100 @@ const BenchRow* quickest(const RodBench& bench, double error, bool harmonic_bala
   return best;
 }
 
+// The rows of one rod, method by method, against orbits of the reference at its crank angles.
+class RodRows {
+ public:
+  RodRows(const RodModel& rod, const TimeDomainSystem& system, const BenchOptions& with,
+          const ShootingResult& reference, RodBench& bench)
+      : rod_(rod),
+        system_(system),
+        with_(with),
+        growth_rate_(reference.growth_rate),
+        exact_(reference.orbit.q.topRows(rod.num_modes)),
+        bench_(bench) {}
+
+  void harmonic_balance(const char* method, const SteadyOptions& options, double asked) {
+    BenchRow row{rod_.name, method, asked, 0, 0, 0, 0, true};
+    SteadyState state;
+    time_row(row, [&] { state = solve_rod(rod_.system, rod_.num_modes, system_.speed, options); });
+    with_.done();
+    if (state.status == SteadyStatus::singular) return;
+    add(row, state.num_harmonics, at_angles(state.q, exact_.cols()));
+  }
+
+  void shooting(Integrator integrator, double tolerance) {
+    BenchRow row{rod_.name, std::string("shooting, ") + to_string(integrator), tolerance};
+    ShootingResult result;
+    time_row(row, [&] {
+      result = solve_by_shooting(system_,
+                                 {.integrator = integrator, .time_limit = with_.time_limit, .single_run = tolerance});
+    });
+    with_.done();
+    if (result.orbit.q.size() == 0) return note(fmt::format("{} at {:.0e}: {}", row.method, tolerance, result.message));
+    add(row, result.steps, result.orbit.q);
+  }
+
+  void marching(Integrator integrator, double tolerance) {
+    BenchRow row{rod_.name, std::string("marching, ") + to_string(integrator), tolerance};
+    MarchingResult result;
+    time_row(row, [&] {
+      result = march_from_rest(system_, {.tolerance = tolerance,
+                                         .integrator_tolerance = tolerance / 10,
+                                         .integrator = integrator,
+                                         .time_limit = with_.time_limit,
+                                         .growth_rate = growth_rate_});
+    });
+    with_.done();
+    if (result.status != ShootingStatus::converged)
+      return note(fmt::format("{} at {:.0e}: {}", row.method, tolerance,
+                              result.message.empty() ? to_string(result.status) : result.message));
+    add(row, result.steps, result.orbit.q);
+  }
+
+  // With more and more steps, as long as the time allows.
+  void fixed_steps(FixedStep method) {
+    const char* name = method == FixedStep::newmark ? "marching, Newmark" : "marching, Runge-Kutta 4";
+    const int order = method == FixedStep::newmark ? 2 : 4;
+    double seconds_before = 0;
+    for (const int steps : steps_a_turn) {
+      with_.done();
+      if (4 * seconds_before > with_.time_limit)
+        return note(fmt::format("{} with {} steps a turn: would take about {:.0f} s, more than the time limit", name,
+                                steps, 4 * seconds_before));
+      // The transient is followed well below the error of such steps, h^order or more.
+      const double h = two_pi / steps;
+      const double settled = std::max(0.1 * std::pow(h, order), 1e-12);
+      BenchRow row{rod_.name, name};
+      MarchingResult result;
+      time_row(row, [&] { result = march_fixed_step(system_, method, steps, settled, 100000, with_.time_limit); });
+      if (result.status != ShootingStatus::converged) {
+        note(fmt::format("{} with {} steps a turn: {}", name, steps, result.message));
+        if (result.status == ShootingStatus::time_limit) return;
+        continue;
+      }
+      seconds_before = row.seconds;
+      add(row, result.steps, result.orbit.q);
+    }
+  }
+
+  void note(const std::string& sentence) { bench_.notes.push_back(sentence); }
+
+ private:
+  template <class Size>
+  void add(BenchRow& row, Size size, const Eigen::MatrixXd& q) {
+    row.size = size;
+    row.error = error_of(q, exact_);
+    bench_.rows.push_back(row);
+  }
+
+  const RodModel& rod_;
+  const TimeDomainSystem& system_;
+  const BenchOptions& with_;
+  double growth_rate_;
+  Eigen::MatrixXd exact_;
+  RodBench& bench_;
+};
+
 }  // namespace
 
 // The reference, then every method (harmonic balance in two ways, the others in two kinds each).
@@ -77,14 +172,12 @@ std::size_t bench_cases() {
 }
 
 RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const BenchOptions& with) {
-  const double time_limit = with.time_limit;
-  const double speed = system.speed;
   RodBench bench;
   bench.name = rod.name;
   ShootingOptions tight;
   tight.integrator = Integrator::collocation;
   tight.tolerance = 1e-13;
-  tight.time_limit = 10 * time_limit;
+  tight.time_limit = 10 * with.time_limit;
   const ShootingResult reference = solve_by_shooting(system, tight);
   with.done();
   if (reference.orbit.q.size() == 0 || !(reference.orbit.q.cwiseAbs().maxCoeff() > 0)) {
@@ -92,98 +185,24 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
                           (reference.message.empty() ? "the rod carries no load" : reference.message));
     return bench;
   }
-  const Eigen::MatrixXd exact = reference.orbit.q.topRows(rod.num_modes);
   bench.reference_error = reference.q_error;
   bench.verdict = reference.verdict;
-  const auto note = [&](const std::string& sentence) { bench.notes.push_back(sentence); };
 
-  const auto series_row = [&](const char* method, const SteadyOptions& options, double asked) {
-    BenchRow row{rod.name, method, asked, 0, 0, 0, 0, true};
-    SteadyState state;
-    time_row(row, [&] { state = solve_rod(rod.system, rod.num_modes, speed, options); });
-    with.done();
-    if (state.status == SteadyStatus::singular) return;
-    row.size = state.num_harmonics;
-    row.error = error_of(at_angles(state.q, exact.cols()), exact);
-    bench.rows.push_back(row);
-  };
+  RodRows rows(rod, system, with, reference, bench);
   for (const int H : given_harmonics)
-    series_row("harmonic balance, given harmonics", {.tolerance = 1e-14, .num_harmonics = H, .method = with.method}, 0);
+    rows.harmonic_balance("harmonic balance, given harmonics",
+                          {.tolerance = 1e-14, .num_harmonics = H, .method = with.method}, 0);
   for (const double tolerance : asked_tolerances)
-    series_row("harmonic balance, automatic", {.tolerance = tolerance, .method = with.method}, tolerance);
-
-  for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
-    for (const double tolerance : shooting_tolerances) {
-      BenchRow row{rod.name, std::string("shooting, ") + to_string(integrator), tolerance};
-      ShootingResult result;
-      time_row(row, [&] {
-        result =
-            solve_by_shooting(system, {.integrator = integrator, .time_limit = time_limit, .single_run = tolerance});
-      });
-      with.done();
-      if (result.orbit.q.size() == 0) {
-        note(fmt::format("{} at {:.0e}: {}", row.method, tolerance, result.message));
-        continue;
-      }
-      row.size = result.steps;
-      row.error = error_of(result.orbit.q, exact);
-      bench.rows.push_back(row);
-    }
-  }
+    rows.harmonic_balance("harmonic balance, automatic", {.tolerance = tolerance, .method = with.method}, tolerance);
+  for (const Integrator integrator : {Integrator::adams, Integrator::bdf})
+    for (const double tolerance : shooting_tolerances) rows.shooting(integrator, tolerance);
   if (bench.verdict == Verdict::unstable) {
-    note("marching: the motion is unstable, no integration from rest settles on the periodic state");
+    rows.note("marching: the motion is unstable, no integration from rest settles on the periodic state");
     return bench;
   }
-  for (const Integrator integrator : {Integrator::adams, Integrator::bdf}) {
-    for (const double tolerance : marching_tolerances) {
-      BenchRow row{rod.name, std::string("marching, ") + to_string(integrator), tolerance};
-      MarchingResult result;
-      time_row(row, [&] {
-        result = march_from_rest(system, {.tolerance = tolerance,
-                                          .integrator_tolerance = tolerance / 10,
-                                          .integrator = integrator,
-                                          .time_limit = time_limit,
-                                          .growth_rate = reference.growth_rate});
-      });
-      with.done();
-      if (result.status != ShootingStatus::converged) {
-        note(fmt::format("{} at {:.0e}: {}", row.method, tolerance,
-                         result.message.empty() ? to_string(result.status) : result.message));
-        continue;
-      }
-      row.size = result.steps;
-      row.error = error_of(result.orbit.q, exact);
-      bench.rows.push_back(row);
-    }
-  }
-  for (const FixedStep method : {FixedStep::newmark, FixedStep::runge_kutta}) {
-    const char* name = method == FixedStep::newmark ? "marching, Newmark" : "marching, Runge-Kutta 4";
-    const int order = method == FixedStep::newmark ? 2 : 4;
-    double seconds_before = 0;
-    for (const int steps : steps_a_turn) {
-      with.done();
-      if (4 * seconds_before > time_limit) {
-        note(fmt::format("{} with {} steps a turn: would take about {:.0f} s, more than the time limit", name, steps,
-                         4 * seconds_before));
-        break;
-      }
-      // The transient is followed well below the error of such steps, h^order or more.
-      const double h = 2 * std::numbers::pi / steps;
-      const double settled = std::max(0.1 * std::pow(h, order), 1e-12);
-      BenchRow row{rod.name, name};
-      MarchingResult result;
-      time_row(row, [&] { result = march_fixed_step(system, method, steps, settled, 100000, time_limit); });
-      if (result.status != ShootingStatus::converged) {
-        note(fmt::format("{} with {} steps a turn: {}", name, steps, result.message));
-        if (result.status == ShootingStatus::time_limit) break;
-        continue;
-      }
-      seconds_before = row.seconds;
-      row.size = result.steps;
-      row.error = error_of(result.orbit.q, exact);
-      bench.rows.push_back(row);
-    }
-  }
+  for (const Integrator integrator : {Integrator::adams, Integrator::bdf})
+    for (const double tolerance : marching_tolerances) rows.marching(integrator, tolerance);
+  for (const FixedStep method : {FixedStep::newmark, FixedStep::runge_kutta}) rows.fixed_steps(method);
   return bench;
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
-#include "hb/engine/time/shooting.hpp"
+#include "hb/engine/time/marching.hpp"
 
 namespace hb {
 

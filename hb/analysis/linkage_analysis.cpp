@@ -17,19 +17,11 @@
 namespace hb {
 namespace {
 
-constexpr Eigen::Index first_auto_modes = 3;
-constexpr Eigen::Index max_auto_modes = max_modes;
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
 bool wants_modes_error(const Only& only) { return only.steady || only.shape; }
 
 bool wants_response(const Only& only) { return only.steady || only.shape || only.reactions; }
-
-bool is_auto(const Settings& settings) { return std::holds_alternative<AutoModes>(settings.modes); }
-
-Eigen::Index start_modes(const Settings& settings) {
-  return is_auto(settings) ? first_auto_modes : std::get<int>(settings.modes);
-}
 
 const Body& link_of(const SceneModel& model, const RodModel& rod) { return *body_at(*model.linkage(), rod.link); }
 
@@ -50,7 +42,7 @@ HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Inde
   return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
 }
 
-// Modes that the growth rate needs: as many as leave it within the tolerance when there are more, to `max_auto_modes`.
+// Modes that the growth rate needs: as many as leave it within the tolerance when there are more, to `max_modes`.
 Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
                               RodResult& result, std::vector<Stage>& stages) {
   // As for the deflection; usually the growth rate settles like I^-4 or faster.
@@ -73,11 +65,11 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
     // be damped less than the one before it.
     const bool shrinks = change <= previous / 2 && previous < HUGE_VAL;
     const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
-    const double steps = shrinks ? 1 : std::max(1.0, (square(max_auto_modes) - square(I)) / (square(more) - square(I)));
+    const double steps = shrinks ? 1 : std::max(1.0, (square(max_modes) - square(I)) / (square(more) - square(I)));
     const double scale = std::max(std::abs(fine.growth_rate), speed);
     result.growth_modes_error = (safety * steps * change + bars) / scale;
-    if (*result.growth_modes_error <= settings.tolerance || I == max_auto_modes) break;
-    I = std::min(more, max_auto_modes);
+    if (*result.growth_modes_error <= settings.tolerance || I == max_modes) break;
+    I = more_modes(I);
     coarse = I == more ? std::move(fine) : growth(I);
     previous = change;
   }
@@ -86,11 +78,11 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
 }
 
 // Steady state with I modes, and the error of its cut where asked; in auto mode the number of modes grows until that
-// error is within the tolerance or `max_auto_modes` is reached.
+// error is within the tolerance or `max_modes` is reached.
 void solve_steady(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings, bool with_cut,
                   Eigen::Index I, RodResult& result, std::vector<Stage>& stages) {
   const SteadyOptions options = response_options(settings);
-  const bool grows = is_auto(settings) && rod.link >= 0;
+  const bool grows = is_auto(settings.modes) && rod.link >= 0;
   Stopwatch watch;
   SteadyState state = solve_rod(system_with(model, rod, I), I, speed, options);
   stages.push_back({"steady state of " + rod.name, watch.seconds(), steady_note(state, I)});
@@ -106,8 +98,8 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
       result.modes_error = cut_error(link, coefficients, speed, state.q, finer_state.q);
       result.more_modes = finer_state.q;
       stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
-      if (!grows || *result.modes_error <= settings.tolerance || I == max_auto_modes) break;
-      I = std::min(more, max_auto_modes);
+      if (!grows || *result.modes_error <= settings.tolerance || I == max_modes) break;
+      I = more_modes(I);
       state = I == more ? std::move(finer_state) : solve_rod(system_with(model, rod, I), I, speed, options);
     }
   }
@@ -165,7 +157,7 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Settings& set
                                       rod.name, rod.steady->error_bound, settings.tolerance));
     }
   }
-  if (is_auto(settings) && rod.modes_error && !(*rod.modes_error <= settings.tolerance)) {
+  if (is_auto(settings.modes) && rod.modes_error && !(*rod.modes_error <= settings.tolerance)) {
     sentences.push_back(fmt::format("{}: with {} modes the error of the cut is {:.1e}, above the tolerance {:.1e}",
                                     rod.name, rod.num_modes, *rod.modes_error, settings.tolerance));
   }
@@ -251,8 +243,6 @@ Only available(const SceneModel& model, Only only) {
   if (!model.linkage()) only.reactions = only.shape = false;
   return only;
 }
-
-Eigen::Index comparison_modes(Eigen::Index num_modes) { return num_modes + std::max<Eigen::Index>(3, num_modes / 2); }
 
 double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                  const FourierSeries& finer) {
@@ -347,7 +337,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
     for (RodModel& rod : model.rods) {
       rod.coefficients = static_cast<int>(std::find(links.begin(), links.end(), rod.link) - links.begin());
       const Body& link = link_of(model, rod);
-      const Eigen::Index I = start_modes(settings);
+      const Eigen::Index I = start_modes(settings.modes);
       rod.num_modes = I;
       rod.system = ritz_system(link, coefficients_of(model, rod), I);
       if (compares_modes && rod.reported && wants_modes_error(settings.only)) {
@@ -355,9 +345,9 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
       }
     }
     model.stages.push_back({"Ritz matrices", ritz_watch.seconds(), ""});
-    if (wants_response(settings.only) && !is_auto(settings))
+    if (wants_response(settings.only) && !is_auto(settings.modes))
       model.exact = std::make_shared<const ExactModel>(
-          theory_model(*linkage, std::vector<Eigen::Index>(model.rods.size(), start_modes(settings))));
+          theory_model(*linkage, std::vector<Eigen::Index>(model.rods.size(), start_modes(settings.modes))));
   }
   return model;
 }
@@ -367,7 +357,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
   result.speed = speed;
   const Only only = result.computed = available(model, settings.only);
   std::vector<Stage>& stages = result.stages;
-  const bool auto_modes = is_auto(settings);
+  const bool auto_modes = is_auto(settings.modes);
 
   for (const RodModel& rod : model.rods) {
     RodResult entry;

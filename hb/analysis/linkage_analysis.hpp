@@ -113,7 +113,6 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
 }
 
 // Number of modes that I modes are compared with to see the error of the cut: I + max(3, I/2).
-[[nodiscard]] Eigen::Index comparison_modes(Eigen::Index num_modes);
 
 // Estimate described at RodResult::modes_error from two solutions of the same rod, the second with more modes.
 [[nodiscard]] double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "hb/analysis/modes.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/scene/scene.hpp"
@@ -34,9 +35,6 @@ struct Speed {
   [[nodiscard]] static Speed from_omega(double omega, const Units& units);
 };
 
-// Largest number of Ritz terms: what the Ritz matrices are made for.
-inline constexpr int max_modes = 60;
-
 // What is wanted; only that is computed.
 struct Only {
   bool steady = true;  // Fourier coefficients and peaks of q
@@ -57,7 +55,7 @@ struct Only {
 // What is left open is taken from the scene's [analysis].
 struct Request {
   std::optional<double> rpm, omega;  // one of them; omega in rad per the scene's unit of time
-  std::optional<std::variant<int, AutoModes>> modes;  // Ritz terms per elastic link
+  std::optional<Modes> modes;  // Ritz terms per elastic link
   std::optional<double> tolerance;  // relative error wanted
   std::vector<std::string> rods;  // names of elastic links; empty: all
   Only only;
@@ -71,7 +69,7 @@ struct Request {
 
 // A request with nothing left open but the speed.
 struct Settings {
-  std::variant<int, AutoModes> modes = 5;
+  Modes modes = 5;
   double tolerance = 1e-10;
   std::vector<std::string> rods;
   Only only;

@@ -14,19 +14,12 @@
 #include "lib/rod/rod.hpp"
 
 namespace hb {
-namespace {
+namespace scene_plane {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr std::size_t num_powers = 3;
-
-// Relative to the entries of a matrix; the Fourier coefficients of a geometry carry rounding of a few 1e-14.
-constexpr double interpolation_tolerance = 1e-13;
-constexpr std::array<Index, 5> degrees_1d = {2, 4, 8, 16, 32};
-constexpr std::array<Index, 3> degrees_2d = {2, 4, 8};
-constexpr int max_depth_1d = 5, max_depth_2d = 2;
 
 // The numbers of a Hill system in one vector: mass, damping, then per power the harmonics of the stiffness.
 struct Layout {
@@ -40,6 +33,47 @@ struct Layout {
     for (std::size_t p = 0; p < num_powers; ++p) columns[p] = std::max(columns[p], system.stiffness[p].c.cols());
   }
 };
+
+struct Box {
+  std::array<double, 2> low{}, high{};
+
+  double unit(std::size_t axis, double v) const {
+    const double width = high[axis] - low[axis];
+    return width > 0 ? ((v - low[axis]) - (high[axis] - v)) / width : 0;
+  }
+  double value(std::size_t axis, double t) const { return 0.5 * ((1 - t) * low[axis] + (1 + t) * high[axis]); }
+  bool contains(double u, double v) const { return u >= low[0] && u <= high[0] && v >= low[1] && v <= high[1]; }
+};
+
+// Part of the plane of scene numbers: interpolated, divided further, or (neither) computed place by place.
+struct Patch {
+  Box box;
+  std::array<Index, 2> degree{};
+  std::vector<Layout> layouts;  // per rod
+  std::vector<MatrixXd> coefficients;  // per rod: numbers x products of Chebyshev polynomials, first axis fastest
+  std::vector<Patch> parts;
+
+  bool interpolates() const { return !coefficients.empty(); }
+};
+
+}  // namespace scene_plane
+
+using scene_plane::Box;
+using scene_plane::Layout;
+using scene_plane::Patch;
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using scene_plane::num_powers;
+
+// Relative to the entries of a matrix; the Fourier coefficients of a geometry carry rounding of a few 1e-14.
+constexpr double interpolation_tolerance = 1e-13;
+constexpr std::array<Index, 5> degrees_1d = {2, 4, 8, 16, 32};
+constexpr std::array<Index, 3> degrees_2d = {2, 4, 8};
+constexpr int max_depth_1d = 5, max_depth_2d = 2;
 
 VectorXd packed(const HillSystem& system, const Layout& layout) {
   VectorXd v = VectorXd::Zero(layout.size());
@@ -128,28 +162,6 @@ MatrixXd to_coefficients(Index n) {
   D.col(n) *= 0.5;
   return D;
 }
-
-struct Box {
-  std::array<double, 2> low{}, high{};
-
-  double unit(std::size_t axis, double v) const {
-    const double width = high[axis] - low[axis];
-    return width > 0 ? ((v - low[axis]) - (high[axis] - v)) / width : 0;
-  }
-  double value(std::size_t axis, double t) const { return 0.5 * ((1 - t) * low[axis] + (1 + t) * high[axis]); }
-  bool contains(double u, double v) const { return u >= low[0] && u <= high[0] && v >= low[1] && v <= high[1]; }
-};
-
-// Part of the plane of scene numbers: interpolated, divided further, or (neither) computed place by place.
-struct Patch {
-  Box box;
-  std::array<Index, 2> degree{};
-  std::vector<Layout> layouts;  // per rod
-  std::vector<MatrixXd> coefficients;  // per rod: numbers x products of Chebyshev polynomials, first axis fastest
-  std::vector<Patch> parts;
-
-  bool interpolates() const { return !coefficients.empty(); }
-};
 
 }  // namespace
 
@@ -409,8 +421,7 @@ int plane_modes(const SceneFamily& family, const PlaneAxis& x, const PlaneAxis& 
     const double here = rpm ? speed_from_rpm(*rpm, member.scene->units) : omega.value_or(speed);
     try {
       const SceneModel model = make_model(std::move(*member.scene), growth, false);
-      for (const RodResult& rod : analyse(model, here, growth).rods)
-        modes = std::max(modes, static_cast<int>(rod.num_modes));
+      modes = most_modes(analyse(model, here, growth).rods, modes);
     } catch (const ObstructedLinkage&) {  // a corner that the map leaves out too
     }
   }

@@ -73,11 +73,7 @@ std::vector<NamedMetric> metrics_of(const SteadyResult& result) {
 std::vector<BandSlope> slopes_of(const Scene& scene, const SteadyResult& result, BandParameter parameter) {
   std::vector<BandSlope> slopes;
   Settings settings = result.settings;
-  if (std::holds_alternative<AutoModes>(settings.modes)) {
-    int modes = 1;
-    for (const RodResult& rod : result.rods) modes = std::max(modes, static_cast<int>(rod.num_modes));
-    settings.modes = modes;
-  }
+  if (is_auto(settings.modes)) settings.modes = most_modes(result.rods);
   const auto model = [&](double factor) { return make_model(scaled_scene(scene, parameter, factor), settings); };
   const DesignFamily family{[&](const std::vector<double>& x) { return model(x[0]); },
                             [](const SceneModel&) { return SectionHeights(); },

@@ -85,7 +85,6 @@ std::optional<Speeds> read_speeds(const TableView& analysis, const char* key) {
 }
 
 std::variant<int, AutoModes> read_modes(const TableView& analysis, int num_modes) {
-  constexpr int most = 60;
   const toml::node* node = analysis.node("modes");
   const auto* number = node ? node->as_integer() : nullptr;
   const auto* word = node ? node->as_string() : nullptr;
@@ -97,10 +96,10 @@ std::variant<int, AutoModes> read_modes(const TableView& analysis, int num_modes
     return num_modes;
   }
   if (word && word->get() == "auto") return AutoModes{};
-  if (number && number->get() >= 1 && number->get() <= most) return static_cast<int>(number->get());
+  if (number && number->get() >= 1 && number->get() <= max_modes) return static_cast<int>(number->get());
   if (node)
     analysis.problem("modes",
-                     fmt::format("found {}, allowed an integer from 1 to {} or \"auto\"", describe(*node), most));
+                     fmt::format("found {}, allowed an integer from 1 to {} or \"auto\"", describe(*node), max_modes));
   return AnalysisDefaults().modes;
 }
 

@@ -39,6 +39,7 @@ struct Units {
 };
 
 struct AutoModes {};  // modes = "auto"
+inline constexpr int max_modes = 60;  // Ritz terms: what the Ritz matrices are made for
 
 struct Speeds {  // rpm = number, or [from, to, step]
   double from = 0, to = 0, step = 0;  // step == 0: the single speed `from`

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "hb/engine/time/floquet_product.hpp"
+#include "hb/engine/time/marching.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/time_domain_rod.hpp"
 #include "tests/support/six_link.hpp"

@@ -14,4 +14,6 @@ struct TuneFlags : CommonFlags {
   std::vector<std::string> vary, keep, tie, height;
 };
 
+void add_tune_flags(CLI::App& command, TuneFlags& flags);
+
 }  // namespace hb::tools

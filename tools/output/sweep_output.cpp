@@ -147,6 +147,85 @@ std::string about(const SweepScene& scene, const std::string& what) {
   return fmt::format("{}: {}", scene_name(scene.scene()), what);
 }
 
+// Of all elastic links; null where the linkage does not close.
+Json verdicts_json(const std::vector<SweepPoint>& points) {
+  Json verdicts = Json::array();
+  for (const SweepPoint& point : points) {
+    Verdict verdict = Verdict::stable;
+    for (const RodPoint& rod : point.rods)
+      if (rod.stability) verdict = worst(verdict, rod.stability->stability.verdict);
+    verdicts.push_back(point.rods.empty() ? Json() : Json(to_string(verdict)));
+  }
+  return verdicts;
+}
+
+void add_critical(Json& json, const SweepScene& scene, const SweepResult& result) {
+  std::vector<double> critical, critical_x;
+  for (const CriticalPoint& point : result.critical) critical_x.push_back(point.peak.x);
+  std::sort(critical_x.begin(), critical_x.end());
+  critical_x.erase(std::unique(critical_x.begin(), critical_x.end()), critical_x.end());
+  if (is_speed(scene)) {
+    for (const double x : critical_x)
+      critical.push_back(scene.axis().kind == Axis::Kind::rpm ? x : rpm_from_speed(x, scene.scene().units));
+    json["critical_rpm"] = critical;
+  } else {
+    json["critical_rpm"] = Json::array();
+  }
+  json["critical_x"] = critical_x;
+  Json& list = json["critical"] = Json::array();
+  for (const CriticalPoint& point : result.critical) list.push_back(critical_json(result, point, scene));
+}
+
+void add_bands(Json& json, const SweepResult& result) {
+  Json bands = Json::object(), not_excluded = Json::object(), details = Json::object();
+  for (const SweepRod& rod : result.rods) {
+    if (!rod.reported) continue;
+    Json pairs = Json::array(), list = Json::array();
+    for (const UnstableBand& band : rod.bands) {
+      pairs.push_back(Json::array({band.from, band.to}));
+      list.push_back(band_json(band));
+    }
+    bands[rod.name] = std::move(pairs);
+    not_excluded[rod.name] = rod.not_excluded;
+    details[rod.name] = std::move(list);
+  }
+  json["unstable_bands"] = std::move(bands);
+  json["not_excluded"] = std::move(not_excluded);
+  json["band_details"] = std::move(details);
+}
+
+// The columns after x and "asked for", as sweep_rod_csv names them, up to those of stress.
+void fill_rod_point(Eigen::MatrixXd::RowXpr row, const SweepScene& scene, const SweepResult& result,
+                    const RodPoint& here, Eigen::Index num_modes, const std::vector<ModeState>& modes) {
+  const OutputUnits units = output_units(scene.scene());
+  const FrequencyUnit frequency = frequency_unit(scene.scene());
+  const Only& only = result.computed;
+  Eigen::Index column = 2;
+  if (only.steady) {
+    for (std::size_t i = 0; i < here.max_abs.size(); ++i) row(column + static_cast<Eigen::Index>(i)) = here.max_abs[i];
+    column += num_modes;
+    row(column++) = here.error_bound;
+  }
+  if (only.shape) {
+    row(column++) = here.deflection.value_or(nan);
+    row(column++) = here.bending_moment.value_or(nan) * units.moment;
+  }
+  if (has_theory(scene, result)) {
+    row(column++) = here.theory_error.value_or(nan);
+    row(column++) = beyond_theory(here.theory_error) || beyond_limits(here) ? 1 : 0;
+  }
+  if (only.stability) {
+    const Stability& stability = here.stability->stability;
+    row(column++) = stability.growth_rate;
+    row(column++) = stability.growth_error;
+    row(column++) = verdict_number(stability.verdict);
+    for (const ModeState& mode : modes) {
+      row(column++) = mode.frequency * frequency.factor;
+      row(column++) = mode.growth;
+    }
+  }
+}
+
 }  // namespace
 
 std::string axis_label(const SweepScene& scene) {
@@ -184,52 +263,12 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   }
   json["rpm"] = std::move(rpm);
   json["omega"] = std::move(omega);
-  if (result.computed.stability && !result.rods.empty()) {
-    // Of all elastic links; null where the linkage does not close.
-    Json& verdicts = json["verdict"] = Json::array();
-    for (const SweepPoint& point : points) {
-      Verdict verdict = Verdict::stable;
-      for (const RodPoint& rod : point.rods)
-        if (rod.stability) verdict = worst(verdict, rod.stability->stability.verdict);
-      verdicts.push_back(point.rods.empty() ? Json() : Json(to_string(verdict)));
-    }
-  }
+  if (result.computed.stability && !result.rods.empty()) json["verdict"] = verdicts_json(points);
   Json& rods = json["rods"] = Json::object();
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(scene, result, r, points);
-  if (result.searched_peaks) {
-    std::vector<double> critical, critical_x;
-    for (const CriticalPoint& point : result.critical) critical_x.push_back(point.peak.x);
-    std::sort(critical_x.begin(), critical_x.end());
-    critical_x.erase(std::unique(critical_x.begin(), critical_x.end()), critical_x.end());
-    if (is_speed(scene)) {
-      for (const double x : critical_x)
-        critical.push_back(scene.axis().kind == Axis::Kind::rpm ? x : rpm_from_speed(x, units));
-      json["critical_rpm"] = critical;
-    } else {
-      json["critical_rpm"] = Json::array();
-    }
-    json["critical_x"] = critical_x;
-    Json& list = json["critical"] = Json::array();
-    for (const CriticalPoint& point : result.critical) list.push_back(critical_json(result, point, scene));
-  }
-  if (result.searched_bands) {
-    Json bands = Json::object(), not_excluded = Json::object(), details = Json::object();
-    for (const SweepRod& rod : result.rods) {
-      if (!rod.reported) continue;
-      Json pairs = Json::array(), list = Json::array();
-      for (const UnstableBand& band : rod.bands) {
-        pairs.push_back(Json::array({band.from, band.to}));
-        list.push_back(band_json(band));
-      }
-      bands[rod.name] = std::move(pairs);
-      not_excluded[rod.name] = rod.not_excluded;
-      details[rod.name] = std::move(list);
-    }
-    json["unstable_bands"] = std::move(bands);
-    json["not_excluded"] = std::move(not_excluded);
-    json["band_details"] = std::move(details);
-  }
+  if (result.searched_peaks) add_critical(json, scene, result);
+  if (result.searched_bands) add_bands(json, result);
   if (result.computed.reactions) add_forces(json, result);
   Json problems = Json::array();
   for (std::size_t k = 0; k < points.size(); ++k)
@@ -318,35 +357,11 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   for (std::size_t k = 0; k < points.size(); ++k) {
     const SweepPoint& point = *points[k];
     auto row = file.rows.row(static_cast<Eigen::Index>(k));
-    Eigen::Index column = 0;
-    row(column++) = point.x;
-    row(column++) = in_grid(points[k]) ? 1 : 0;
+    row(0) = point.x;
+    row(1) = in_grid(points[k]) ? 1 : 0;
     if (!point.problem.empty()) continue;
     const RodPoint& here = point.rods[r];
-    if (only.steady) {
-      for (std::size_t i = 0; i < here.max_abs.size(); ++i)
-        row(column + static_cast<Eigen::Index>(i)) = here.max_abs[i];
-      column += I;
-      row(column++) = here.error_bound;
-    }
-    if (only.shape) {
-      row(column++) = here.deflection.value_or(nan);
-      row(column++) = here.bending_moment.value_or(nan) * units.moment;
-    }
-    if (has_theory(scene, result)) {
-      row(column++) = here.theory_error.value_or(nan);
-      row(column++) = beyond_theory(here.theory_error) || beyond_limits(here) ? 1 : 0;
-    }
-    if (only.stability) {
-      const Stability& stability = here.stability->stability;
-      row(column++) = stability.growth_rate;
-      row(column++) = stability.growth_error;
-      row(column++) = verdict_number(stability.verdict);
-      for (const ModeState& mode : modes[k]) {
-        row(column++) = mode.frequency * frequency.factor;
-        row(column++) = mode.growth;
-      }
-    }
+    fill_rod_point(row, scene, result, here, I, only.stability ? modes[k] : std::vector<ModeState>());
     Eigen::RowVectorXd stresses = row.tail(static_cast<Eigen::Index>(stress.size()));
     fill_stress(here, units.megapascal, stress, stresses);
     row.tail(stresses.size()) = stresses;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/scene_in_folder.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -185,6 +185,156 @@ std::string outcome_line(const TuneTask& task, const TuneResult& result, const S
   return line + "\n";
 }
 
+std::string variables_text(const TuneTask& task, const TuneResult& result) {
+  std::string text = fmt::format("\n{:<28}{:>15}{:>15}  {}\n", "variable", "before", "after", "bounds");
+  for (std::size_t i = 0; i < task.variables.size(); ++i) {
+    const TuneVariable& variable = task.variables[i];
+    const std::string bound = at_bound(variable, result.tuned[i]);
+    text += fmt::format("{:<28}{:>15.8g}{:>15.8g}  {:g} to {:g}{}\n", variable.path, result.start[i], result.tuned[i],
+                        variable.lower, variable.upper, bound.empty() ? "" : ", " + bound);
+    for (const TiedNumber& tied : variable.tied)
+      text += fmt::format("{:<28}{:>15.8g}{:>15.8g}  tied to {}\n", tied.path, tied.factor * result.start[i],
+                          tied.factor * result.tuned[i], variable.path);
+  }
+  return text;
+}
+
+std::string worst_cases_text(const TuneTask& task, const TuneResult& result, const Scene& scene) {
+  std::string text = fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
+  bool confirmed = true, unstable_before = false, unstable_after = false;
+  for (const TuneRow& row : result.rows) {
+    const MetricKind kind = row.metric.kind;
+    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric, scene),
+                        worst_text(row.before, row.before_confirmed, kind),
+                        worst_text(row.after, row.after_confirmed, kind),
+                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, scene));
+    confirmed = confirmed && row.before_confirmed && row.after_confirmed;
+    unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
+    unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
+  }
+  if (task.goal.weighted)
+    text += fmt::format("{:<34}{:>17.7g}{:>17.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
+                        std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
+  if (!confirmed)
+    text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
+  for (const bool after : {false, true})
+    if (after ? unstable_after : unstable_before)
+      text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
+                          after ? "after" : "before");
+  return text;
+}
+
+std::string places_text(const TuneTask& task, const TuneResult& result, const Scene& scene) {
+  std::string text = fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
+  for (const TuneRow& row : result.rows) {
+    const std::string before = place(task, row.before, scene.units), after = place(task, row.after, scene.units);
+    if (!before.empty() || !after.empty())
+      text += fmt::format("{:<36}{:<40}{}\n", label(row.metric, scene), before, after);
+  }
+  return text;
+}
+
+std::string conditions_text(const TuneResult& result, const Scene& scene) {
+  std::string text;
+  if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
+  for (const TuneCondition& condition : result.conditions) {
+    text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric, scene), bound_text(condition.keep, scene),
+                        !condition.met     ? not_met_text(result, condition, scene)
+                        : condition.active ? "active"
+                                           : "met with room");
+    if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
+      text += fmt::format(": relaxed by {}, the goal gains {:.3g}{}{} ({:.3g} %)", relaxation(condition, scene),
+                          gain(condition), result.goal_unit.empty() ? "" : " ", result.goal_unit,
+                          100 * gain(condition) / std::abs(result.goal_after));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string changes_of_goal_text(const TuneTask& task, const TuneResult& result) {
+  std::string text;
+  if (result.sensitivity && !smooth(result) && result.design.status == DesignStatus::optimal)
+    text += fmt::format(
+        "several worst cases meet at this design: changes below hold to one side, and what relaxing a condition gains "
+        "is not given ({:.0f} % of the goal's slope is not balanced)\n",
+        100 * result.slope_left_over);
+  if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
+    text += "\n1 % more of      changes the goal by\n";
+    if (!result.worst_at_once.empty())
+      text += fmt::format("  {} are worst at once: less changes the goal in another way than more\n",
+                          fmt::join(result.worst_at_once, " and "));
+    for (std::size_t i = 0; i < task.variables.size(); ++i) {
+      const double change = result.goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
+      text += fmt::format("{:<28}{:>+10.3g} %\n", task.variables[i].path, change / result.goal_after);
+    }
+    if (result.damping_sensitivity)
+      text += fmt::format("{:<28}{:>+10.3g} %\n", "internal damping, all links", *result.damping_sensitivity);
+    if (result.damping_sensitivity_of_best)
+      text +=
+          fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
+  }
+  return text;
+}
+
+std::string search_text(const TuneResult& result, const Scene& scene) {
+  std::string text = fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
+                                 result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
+                                 result.design.evidence, result.confirmations);
+  if (result.counts.gradients > 0)
+    text += fmt::format("{} gradients from adjoint solutions and Floquet vectors\n", result.counts.gradients);
+  if (result.counts.not_closing > 0)
+    text += fmt::format("{} designs tried do not close over the turn\n", result.counts.not_closing);
+  if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
+  if (result.without_response > 0)
+    text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
+  if (std::holds_alternative<Linkage>(scene.model)) text += counted(result.num_modes, "mode") + " of each rod\n";
+  if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
+  if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)
+    text += "conditions hold with the estimated errors of their values\n";
+  return text;
+}
+
+Json variables_json(const TuneTask& task, const TuneResult& result) {
+  Json variables = Json::array();
+  for (std::size_t i = 0; i < task.variables.size(); ++i) {
+    const TuneVariable& variable = task.variables[i];
+    Json entry = {{"path", variable.path},
+                  {"before", result.start[i]},
+                  {"after", result.tuned[i]},
+                  {"lower", variable.lower},
+                  {"upper", variable.upper}};
+    if (variable.moved_from) entry["moved_from"] = *variable.moved_from;
+    if (result.sensitivity) {
+      const auto k = static_cast<Eigen::Index>(i);
+      entry["goal_gradient"] = result.goal_gradient(k);
+      entry["multiplier_lower"] = result.sensitivity->below(k);
+      entry["multiplier_upper"] = result.sensitivity->above(k);
+    }
+    Json tied = Json::object();
+    for (const TiedNumber& number : variable.tied) tied[number.path] = number.factor * result.tuned[i];
+    if (!tied.empty()) entry["tied"] = std::move(tied);
+    variables.push_back(std::move(entry));
+  }
+  return variables;
+}
+
+Json conditions_json(const TuneResult& result) {
+  Json conditions = Json::array();
+  for (const TuneCondition& condition : result.conditions) {
+    conditions.push_back({{"condition", condition.keep.text},
+                          {"value", number(condition.value)},
+                          {"error", number(condition.error)},
+                          {"at", condition.where},
+                          {"best_tried", number(condition.best)},
+                          {"bound", condition.keep.bound},
+                          {"met", condition.met},
+                          {"active", condition.active},
+                          {"multiplier", smooth(result) ? Json(condition.multiplier) : Json()},
+                          {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
+  }
+  return conditions;
+}
+
 }  // namespace
 
 std::string shortfall(const TuneResult& result) {
@@ -223,102 +373,14 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
   const std::string problem = shortfall(result);
   const char* found = task.keeps.empty() ? "a design was found\n" : "a design was found that meets every condition\n";
   text += problem.empty() ? found : "NOT REACHED: " + problem + "\n";
-
-  text += fmt::format("\n{:<28}{:>15}{:>15}  {}\n", "variable", "before", "after", "bounds");
-  for (std::size_t i = 0; i < task.variables.size(); ++i) {
-    const TuneVariable& variable = task.variables[i];
-    const std::string bound = at_bound(variable, result.tuned[i]);
-    text += fmt::format("{:<28}{:>15.8g}{:>15.8g}  {:g} to {:g}{}\n", variable.path, result.start[i], result.tuned[i],
-                        variable.lower, variable.upper, bound.empty() ? "" : ", " + bound);
-    for (const TiedNumber& tied : variable.tied)
-      text += fmt::format("{:<28}{:>15.8g}{:>15.8g}  tied to {}\n", tied.path, tied.factor * result.start[i],
-                          tied.factor * result.tuned[i], variable.path);
-  }
-
+  text += variables_text(task, result);
   if (const std::string changes = changes_text(task); !changes.empty())
     text += "before: the scene with " + changes + "\n";
-
-  text += fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
-  bool confirmed = true, unstable_before = false, unstable_after = false;
-  for (const TuneRow& row : result.rows) {
-    const MetricKind kind = row.metric.kind;
-    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric, scene),
-                        worst_text(row.before, row.before_confirmed, kind),
-                        worst_text(row.after, row.after_confirmed, kind),
-                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, scene));
-    confirmed = confirmed && row.before_confirmed && row.after_confirmed;
-    unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
-    unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
-  }
-  if (task.goal.weighted)
-    text += fmt::format("{:<34}{:>17.7g}{:>17.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
-                        std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
-  if (!confirmed)
-    text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
-  for (const bool after : {false, true})
-    if (after ? unstable_after : unstable_before)
-      text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
-                          after ? "after" : "before");
-
-  text += fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
-  for (const TuneRow& row : result.rows) {
-    const std::string before = place(task, row.before, units), after = place(task, row.after, units);
-    if (!before.empty() || !after.empty())
-      text += fmt::format("{:<36}{:<40}{}\n", label(row.metric, scene), before, after);
-  }
-
-  if (!result.conditions.empty()) text += "\ncondition                            bound               \n";
-  for (const TuneCondition& condition : result.conditions) {
-    text += fmt::format("{:<36} {:<20}{}", label(condition.keep.metric, scene), bound_text(condition.keep, scene),
-                        !condition.met     ? not_met_text(result, condition, scene)
-                        : condition.active ? "active"
-                                           : "met with room");
-    if (condition.met && condition.active && condition.multiplier > 0 && smooth(result))
-      text += fmt::format(": relaxed by {}, the goal gains {:.3g}{}{} ({:.3g} %)", relaxation(condition, scene),
-                          gain(condition), result.goal_unit.empty() ? "" : " ", result.goal_unit,
-                          100 * gain(condition) / std::abs(result.goal_after));
-    text += "\n";
-  }
-
-  if (result.sensitivity && !smooth(result) && result.design.status == DesignStatus::optimal)
-    text += fmt::format(
-        "several worst cases meet at this design: changes below hold to one side, and what relaxing a condition gains "
-        "is not given ({:.0f} % of the goal's slope is not balanced)\n",
-        100 * result.slope_left_over);
-  if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
-    text += "\n1 % more of      changes the goal by\n";
-    if (!result.worst_at_once.empty())
-      text += fmt::format("  {} are worst at once: less changes the goal in another way than more\n",
-                          fmt::join(result.worst_at_once, " and "));
-    for (std::size_t i = 0; i < task.variables.size(); ++i) {
-      const double change = result.goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
-      text += fmt::format("{:<28}{:>+10.3g} %\n", task.variables[i].path, change / result.goal_after);
-    }
-    if (result.damping_sensitivity)
-      text += fmt::format("{:<28}{:>+10.3g} %\n", "internal damping, all links", *result.damping_sensitivity);
-    if (result.damping_sensitivity_of_best)
-      text +=
-          fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
-  }
-
+  text += worst_cases_text(task, result, scene) + places_text(task, result, scene) + conditions_text(result, scene) +
+          changes_of_goal_text(task, result);
   for (const std::string& path : result.without_effect)
     text += fmt::format("the goal and conditions do not depend on {} here\n", path);
-
-  text += fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
-                      result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
-                      result.design.evidence, result.confirmations);
-  if (result.counts.gradients > 0)
-    text += fmt::format("{} gradients from adjoint solutions and Floquet vectors\n", result.counts.gradients);
-  if (result.counts.not_closing > 0)
-    text += fmt::format("{} designs tried do not close over the turn\n", result.counts.not_closing);
-  if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
-  if (result.without_response > 0)
-    text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
-  if (std::holds_alternative<Linkage>(scene.model)) text += counted(result.num_modes, "mode") + " of each rod\n";
-  if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
-  if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)
-    text += "conditions hold with the estimated errors of their values\n";
-  return text;
+  return text + search_text(result, scene);
 }
 
 Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene, bool stats) {
@@ -339,26 +401,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                   {"after", number(result.goal_after)},
                   {"error", number(result.goal_error)},
                   {"unit", result.goal_unit}};
-  Json& variables = json["variables"] = Json::array();
-  for (std::size_t i = 0; i < task.variables.size(); ++i) {
-    const TuneVariable& variable = task.variables[i];
-    Json entry = {{"path", variable.path},
-                  {"before", result.start[i]},
-                  {"after", result.tuned[i]},
-                  {"lower", variable.lower},
-                  {"upper", variable.upper}};
-    if (variable.moved_from) entry["moved_from"] = *variable.moved_from;
-    if (result.sensitivity) {
-      const auto k = static_cast<Eigen::Index>(i);
-      entry["goal_gradient"] = result.goal_gradient(k);
-      entry["multiplier_lower"] = result.sensitivity->below(k);
-      entry["multiplier_upper"] = result.sensitivity->above(k);
-    }
-    Json tied = Json::object();
-    for (const TiedNumber& number : variable.tied) tied[number.path] = number.factor * result.tuned[i];
-    if (!tied.empty()) entry["tied"] = std::move(tied);
-    variables.push_back(std::move(entry));
-  }
+  json["variables"] = variables_json(task, result);
   Json& changes = json["before_differs"] = Json::array();  // from the scene
   for (const StartChange& change : start_changes(task))
     changes.push_back({{"path", change.path}, {"value", change.value}, {"scene", change.scene}, {"tied", change.tied}});
@@ -369,19 +412,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
                        {"before", metric_json(task, row.before, row.before_confirmed, units)},
                        {"after", metric_json(task, row.after, row.after_confirmed, units)}});
   }
-  Json& conditions = json["conditions"] = Json::array();
-  for (const TuneCondition& condition : result.conditions) {
-    conditions.push_back({{"condition", condition.keep.text},
-                          {"value", number(condition.value)},
-                          {"error", number(condition.error)},
-                          {"at", condition.where},
-                          {"best_tried", number(condition.best)},
-                          {"bound", condition.keep.bound},
-                          {"met", condition.met},
-                          {"active", condition.active},
-                          {"multiplier", smooth(result) ? Json(condition.multiplier) : Json()},
-                          {"gain_of_1_percent", smooth(result) ? Json(gain(condition)) : Json()}});
-  }
+  json["conditions"] = conditions_json(result);
   if (result.sensitivity) json["slope_left_over"] = number(result.slope_left_over);
   json["without_effect"] = result.without_effect;
   json["worst_at_once"] = result.worst_at_once;
@@ -446,35 +477,7 @@ std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Un
   std::string changed;
   if (const std::string problem = shortfall(result); !problem.empty()) changed = "# NOT REACHED: " + problem + "\n";
   if (speeds_vary(task)) changed += "# Speeds found: " + span_text(task, result.span_after, units) + "\n";
-  // Values of keys called `file`: file = "..." or '...'. Anything else (comments, longer names, "" or '\'\'') stays.
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t key = std::min(text.find("file", at), text.size());
-    changed.append(text, at, key - at);
-    const auto in_name = [](char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-    };
-    std::size_t value = std::min(key + 4, text.size());
-    const bool whole = key == 0 || !in_name(text[key - 1]);
-    while (value < text.size() && (text[value] == ' ' || text[value] == '\t')) ++value;
-    const bool assigned = value < text.size() && text[value] == '=';
-    value += assigned ? 1 : 0;
-    while (value < text.size() && (text[value] == ' ' || text[value] == '\t')) ++value;
-    const char quote = value < text.size() ? text[value] : '\0';
-    const std::size_t end = text.find_first_of(std::string{quote, '\n'}, value + 1);
-    if (whole && assigned && (quote == '"' || quote == '\'') && end != std::string::npos && text[end] == quote) {
-      const fs::path file = text.substr(value + 1, end - value - 1);
-      const bool stays = file.is_absolute() || file.empty();
-      changed.append(text, key, value - key);
-      changed += stays ? text.substr(value, end + 1 - value)
-                       : fmt::format("\"{}\"", (from / file).lexically_relative(to).string());
-      at = end + 1;
-    } else {
-      const std::size_t next = std::min(key + 4, text.size());
-      changed.append(text, key, next - key);
-      at = next;
-    }
-  }
-  return changed;
+  return changed + in_folder(text, from, to);
 }
 
 }  // namespace hb::tools

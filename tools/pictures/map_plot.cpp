@@ -115,6 +115,39 @@ std::string line_labels(const MapResult& r) {
   return text;
 }
 
+std::vector<std::string> boundary_layers(const MapResult& r, const MapFiles& files) {
+  std::vector<std::string> layers;
+  struct Kind {
+    BoundaryKind kind;
+    int number;
+    const char *colour, *title;
+  };
+  for (const Kind& kind : {Kind{BoundaryKind::minus_one, -1, "#000000", "boundary −1: period doubling"},
+                           Kind{BoundaryKind::plus_one, 1, "#00735a", "boundary +1: once per turn"},
+                           Kind{BoundaryKind::complex, 0, "#7b3294", "boundary, complex pair"}}) {
+    const auto has = [&](const std::vector<RodCurve>& curves) {
+      return std::any_of(curves.begin(), curves.end(), [&](const RodCurve& rc) { return rc.curve.kind == kind.kind; });
+    };
+    if (has(r.boundaries)) {
+      layers.push_back(
+          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 2.2 linecolor '{}' title '{}'",
+                      files.boundaries, kind.number, kind.colour, kind.title));
+    }
+    for (std::size_t d = 0; d < r.damping.size(); ++d) {
+      if (!has(r.damping[d].boundaries)) continue;
+      layers.push_back(
+          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 1.2 dashtype {} linecolor '{}' "
+                      "title '{} at damping x {:g}'",
+                      files.damping[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
+                      kind.number == 0   ? "complex"
+                      : kind.number == 1 ? "+1"
+                                         : "−1",
+                      r.damping[d].factor));
+    }
+  }
+  return layers;
+}
+
 }  // namespace
 
 Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour colour) {
@@ -173,34 +206,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                     "'resonance, speed = label'",
                     files.resonance));
   }
-  struct Kind {
-    BoundaryKind kind;
-    int number;
-    const char *colour, *title;
-  };
-  for (const Kind& kind : {Kind{BoundaryKind::minus_one, -1, "#000000", "boundary −1: period doubling"},
-                           Kind{BoundaryKind::plus_one, 1, "#00735a", "boundary +1: once per turn"},
-                           Kind{BoundaryKind::complex, 0, "#7b3294", "boundary, complex pair"}}) {
-    const auto has = [&](const std::vector<RodCurve>& curves) {
-      return std::any_of(curves.begin(), curves.end(), [&](const RodCurve& rc) { return rc.curve.kind == kind.kind; });
-    };
-    if (has(r.boundaries)) {
-      layers.push_back(
-          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 2.2 linecolor '{}' title '{}'",
-                      files.boundaries, kind.number, kind.colour, kind.title));
-    }
-    for (std::size_t d = 0; d < r.damping.size(); ++d) {
-      if (!has(r.damping[d].boundaries)) continue;
-      layers.push_back(
-          fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 1.2 dashtype {} linecolor '{}' "
-                      "title '{} at damping x {:g}'",
-                      files.damping[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
-                      kind.number == 0   ? "complex"
-                      : kind.number == 1 ? "+1"
-                                         : "−1",
-                      r.damping[d].factor));
-    }
-  }
+  for (std::string& layer : boundary_layers(r, files)) layers.push_back(std::move(layer));
   figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));
   figure.commands += "unset label\nunset object\nset key default\nset bmargin -1\nset xrange [*:*]\nset yrange [*:*]\n";
   return figure;

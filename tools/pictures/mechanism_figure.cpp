@@ -98,21 +98,13 @@ std::pair<Point, Point> inside_box(Point point, Point u, Point low, Point high) 
   return {point + from * u, point + to * u};
 }
 
-}  // namespace
+// Lines that draw a body: joint 0 - joint 1, and out to its points.
+struct Stroke {
+  std::size_t from, to;
+  int body;
+};
 
-Figure mechanism_figure(const Scene& scene, const CsvFile& csv) {
-  constexpr int poses = 12;
-  const Linkage& linkage = std::get<Linkage>(scene.model);
-  const std::vector<TracedPoint> points = traced_points(linkage);
-  const Eigen::Index num_angles = csv.rows.rows() - 1;
-  const auto column_of = [](std::size_t k) { return 1 + 2 * static_cast<Eigen::Index>(k); };  // of x in csv.rows
-  const auto x_of = [](std::size_t k) { return 2 + 2 * static_cast<int>(k); };  // in gnuplot
-
-  // Lines that draw a body: joint 0 - joint 1, and out to its points.
-  struct Stroke {
-    std::size_t from, to;
-    int body;
-  };
+std::vector<Stroke> body_strokes(const std::vector<TracedPoint>& points) {
   std::vector<Stroke> strokes;
   for (std::size_t k = 0; k < points.size(); ++k) {
     std::vector<std::size_t> same;
@@ -124,24 +116,166 @@ Figure mechanism_figure(const Scene& scene, const CsvFile& csv) {
       strokes.push_back({same[m], k, points[k].body});
     }
   }
+  return strokes;
+}
 
-  const Eigen::MatrixXd& rows = csv.rows;
+Eigen::Index x_column(std::size_t k) { return 1 + 2 * static_cast<Eigen::Index>(k); }  // in the rows
+int x_field(std::size_t k) { return 2 + 2 * static_cast<int>(k); }  // in gnuplot
+
+// The corners of what the points sweep over, and room around.
+struct SweptBox {
+  Point low, high;
+  double margin;
+};
+
+SweptBox swept_box(const Eigen::MatrixXd& rows, std::size_t num_points) {
   double low_x = rows(0, 1), high_x = low_x, low_y = rows(0, 2), high_y = low_y;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Eigen::Index column = column_of(k);
+  for (std::size_t k = 0; k < num_points; ++k) {
+    const Eigen::Index column = x_column(k);
     low_x = std::min(low_x, rows.col(column).minCoeff());
     high_x = std::max(high_x, rows.col(column).maxCoeff());
     low_y = std::min(low_y, rows.col(column + 1).minCoeff());
     high_y = std::max(high_y, rows.col(column + 1).maxCoeff());
   }
   const double margin = 0.08 * std::max(high_x - low_x, high_y - low_y);
-  low_x -= margin, high_x += margin, low_y -= margin, high_y += margin;
+  return {{low_x - margin, low_y - margin}, {high_x + margin, high_y + margin}, margin};
+}
+
+// gnuplot's commands of the picture, curve by curve and label by label.
+class MechanismDrawing {
+ public:
+  MechanismDrawing(const Scene& scene, const CsvFile& csv)
+      : linkage_(std::get<Linkage>(scene.model)),
+        csv_(csv),
+        points_(traced_points(linkage_)),
+        strokes_(body_strokes(points_)),
+        box_(swept_box(csv.rows, points_.size())) {}
+
+  [[nodiscard]] const SweptBox& box() const { return box_; }
+  [[nodiscard]] std::string commands() const { return labels_ + plot_; }
+
+  // Guides of sliders, behind everything.
+  void guides() {
+    for (const auto& dyad : linkage_.dyads) {
+      if (const auto* slider = std::get_if<Slider>(&dyad.closing)) {
+        const auto [from, to] = inside_box(slider->guide, std::polar(1.0, slider->direction), box_.low, box_.high);
+        labels_ += fmt::format("set arrow {} from {},{} to {},{} nohead dashtype 4 linecolor '#888888' linewidth 0.8\n",
+                               label_++, from.real(), from.imag(), to.real(), to.imag());
+      }
+    }
+  }
+
+  // Every so many angles, light.
+  void poses(int count) {
+    for (const Stroke& stroke : strokes_)
+      add_stroke(stroke, fmt::format("every {}", num_angles() / count), "linewidth 0.7 linecolor '#c4ccd4'");
+  }
+
+  // Paths of what moves; points that stay together (a coupler's joint 0 and the point that it hangs on) have one.
+  void paths() {
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      if (points_[k].fixed) continue;
+      const Eigen::MatrixXd& rows = csv_.rows;
+      const auto same = std::find_if(paths_.begin(), paths_.end(), [&](const auto& path) {
+        return (rows.middleCols(x_column(path.first), 2) - rows.middleCols(x_column(k), 2)).cwiseAbs().maxCoeff() <=
+               1e-9 * box_.margin;
+      });
+      if (same == paths_.end()) {
+        paths_.push_back({k, points_[k].name});
+      } else {
+        same->second += " = " + points_[k].name;
+      }
+    }
+    for (std::size_t k = 0; k < paths_.size(); ++k) {
+      // Seven colours; then the same, dashed.
+      add(fmt::format("'{}' using {}:{} with lines lt {} dashtype {} linewidth 1.2 title '{}'", csv_.name,
+                      x_field(paths_[k].first), x_field(paths_[k].first) + 1, 1 + k % 7, 1 + k / 7,
+                      literal(paths_[k].second)));
+    }
+  }
+
+  // At crank angle 0.
+  void links() {
+    for (const Stroke& stroke : strokes_) {
+      const Body* body = body_at(linkage_, stroke.body);
+      const bool elastic = body != nullptr && body->elastic.has_value();
+      add_stroke(stroke, "every ::0::0",
+                 fmt::format("linewidth {} linecolor '{}'", elastic ? 2.0 : 3.0, elastic ? "#b03060" : "#333333"));
+    }
+  }
+
+  // Joints, and the names of links and sliders where nothing else is drawn; after paths(). scale: picture points per
+  // unit of length.
+  void joints_and_names(double scale) {
+    LabelPlaces place(scale);
+    avoid_lines(place);
+    bool any_elastic = false;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const Body* body = body_at(linkage_, points_[k].body);
+      const bool is_slider = body == nullptr && points_[k].point == std::complex<double>(0);
+      const char* style = points_[k].fixed ? "pointtype 9 pointsize 1.6"
+                          : is_slider      ? "pointtype 5 pointsize 1.8"
+                                           : "pointtype 7 pointsize 0.8";
+      add(fmt::format("'{}' using {}:{} every ::0::0 with points {} linecolor '{}' notitle", csv_.name, x_field(k),
+                      x_field(k) + 1, style, is_slider ? "#666666" : "#222222"));
+      // A link is named where its joint 1 comes.
+      const bool link = body != nullptr && k > 0 && points_[k - 1].body == points_[k].body &&
+                        (k < 2 || points_[k - 2].body != points_[k].body);
+      if (!link && !is_slider) continue;
+      any_elastic = any_elastic || (link && body->elastic.has_value());
+      const std::string& name = link ? body->name : points_[k].name;
+      const Point at =
+          link ? place.beside(position(k - 1), position(k), name) : place.beside(position(k), position(k), name);
+      labels_ += fmt::format("set label {} {} at {},{} center font ',11' textcolor '{}' front boxed\n", label_++,
+                             quoted(name), at.real(), at.imag(), link && body->elastic ? "#b03060" : "#333333");
+    }
+    if (any_elastic) add("NaN with lines linewidth 2 linecolor '#b03060' title 'elastic link'");
+  }
+
+ private:
+  [[nodiscard]] Eigen::Index num_angles() const { return csv_.rows.rows() - 1; }
+  [[nodiscard]] Point position(std::size_t k, Eigen::Index row = 0) const {
+    return {csv_.rows(row, x_column(k)), csv_.rows(row, x_column(k) + 1)};
+  }
+
+  void add(const std::string& curve) { plot_ += (plot_.empty() ? "plot " : ", ") + curve; }
+
+  void add_stroke(const Stroke& stroke, const std::string& every, const std::string& style) {
+    const int from = x_field(stroke.from), to = x_field(stroke.to);
+    add(fmt::format("'{}' using {}:{}:(${}-${}):(${}-${}) {} with vectors nohead {} notitle", csv_.name, from, from + 1,
+                    to, from, to + 1, from + 1, every, style));
+  }
+
+  void avoid_lines(LabelPlaces& place) const {
+    for (const Stroke& stroke : strokes_) place.avoid(position(stroke.from), position(stroke.to));
+    constexpr Eigen::Index step = 10;
+    for (const auto& [k, names] : paths_)
+      for (Eigen::Index j = 0; j + step <= num_angles(); j += step)
+        place.avoid_path(position(k, j), position(k, j + step));
+  }
+
+  const Linkage& linkage_;
+  const CsvFile& csv_;
+  std::vector<TracedPoint> points_;
+  std::vector<Stroke> strokes_;
+  SweptBox box_;
+  std::vector<std::pair<std::size_t, std::string>> paths_;  // a point of it, the names of all
+  std::string labels_, plot_;
+  int label_ = 1;
+};
+
+}  // namespace
+
+Figure mechanism_figure(const Scene& scene, const CsvFile& csv) {
+  constexpr int poses = 12;
+  MechanismDrawing drawing(scene, csv);
+  const auto& [low, high, margin] = drawing.box();
+  const double width = high.real() - low.real(), height = high.imag() - low.imag();
 
   Figure figure;
   figure.name = "mechanism";
-  const double aspect = (high_y - low_y) / (high_x - low_x);
   figure.width = 960;
-  figure.height = static_cast<int>(std::clamp(110 + 700 * aspect, 320.0, 1100.0));
+  figure.height = static_cast<int>(std::clamp(110 + 700 * height / width, 320.0, 1100.0));
   figure.commands = fmt::format(
       "set title {}\nset size ratio -1\nset xrange [{}:{}]\nset yrange [{}:{}]\nset xtics autofreq\nset ytics "
       "autofreq\n"
@@ -149,86 +283,14 @@ Figure mechanism_figure(const Scene& scene, const CsvFile& csv) {
       "set style textbox opaque noborder fillcolor '#ffffff' margins 0.6, 0.6\n",
       two_lines(short_name(scene),
                 fmt::format("crank angle 0 dark, every {} deg light; paths of the joints", 360 / poses)),
-      low_x, high_x, low_y, high_y, scene.units.length, scene.units.length);
+      low.real(), high.real(), low.imag(), high.imag(), scene.units.length, scene.units.length);
 
-  std::string plot;
-  const auto add = [&](const std::string& curve) { plot += (plot.empty() ? "plot " : ", ") + curve; };
-  // Guides of sliders, behind everything.
-  int label = 1;
-  std::string labels;
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
-    if (const auto* slider = std::get_if<Slider>(&linkage.dyads[d].closing)) {
-      const auto [from, to] =
-          inside_box(slider->guide, std::polar(1.0, slider->direction), {low_x, low_y}, {high_x, high_y});
-      labels += fmt::format("set arrow {} from {},{} to {},{} nohead dashtype 4 linecolor '#888888' linewidth 0.8\n",
-                            label++, from.real(), from.imag(), to.real(), to.imag());
-    }
-  }
-  for (const Stroke& stroke : strokes) {
-    add(fmt::format(
-        "'{}' using {}:{}:(${}-${}):(${}-${}) every {} with vectors nohead linewidth 0.7 linecolor '#c4ccd4' notitle",
-        csv.name, x_of(stroke.from), x_of(stroke.from) + 1, x_of(stroke.to), x_of(stroke.from), x_of(stroke.to) + 1,
-        x_of(stroke.from) + 1, num_angles / poses));
-  }
-  // Paths of what moves; points that stay together (a coupler's joint 0 and the point that it hangs on) have one.
-  std::vector<std::pair<std::size_t, std::string>> paths;  // a point of it, the names of all
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (points[k].fixed) continue;
-    const auto same = std::find_if(paths.begin(), paths.end(), [&](const auto& path) {
-      return (rows.middleCols(column_of(path.first), 2) - rows.middleCols(column_of(k), 2)).cwiseAbs().maxCoeff() <=
-             1e-9 * margin;
-    });
-    if (same == paths.end()) {
-      paths.push_back({k, points[k].name});
-    } else {
-      same->second += " = " + points[k].name;
-    }
-  }
-  for (std::size_t k = 0; k < paths.size(); ++k) {
-    // Seven colours; then the same, dashed.
-    add(fmt::format("'{}' using {}:{} with lines lt {} dashtype {} linewidth 1.2 title '{}'", csv.name,
-                    x_of(paths[k].first), x_of(paths[k].first) + 1, 1 + k % 7, 1 + k / 7, literal(paths[k].second)));
-  }
-  for (const Stroke& stroke : strokes) {
-    const bool elastic = [&] {
-      const Body* body = body_at(linkage, stroke.body);
-      return body != nullptr && body->elastic.has_value();
-    }();
-    add(fmt::format(
-        "'{}' using {}:{}:(${}-${}):(${}-${}) every ::0::0 with vectors nohead linewidth {} linecolor '{}' notitle",
-        csv.name, x_of(stroke.from), x_of(stroke.from) + 1, x_of(stroke.to), x_of(stroke.from), x_of(stroke.to) + 1,
-        x_of(stroke.from) + 1, elastic ? 2.0 : 3.0, elastic ? "#b03060" : "#333333"));
-  }
-  LabelPlaces place(std::min(630 / (high_x - low_x), (figure.height - 110) / (high_y - low_y)));
-  const auto position = [&](std::size_t k) { return Point(rows(0, column_of(k)), rows(0, column_of(k) + 1)); };
-  for (const Stroke& stroke : strokes) place.avoid(position(stroke.from), position(stroke.to));
-  for (const auto& [k, names] : paths) {
-    constexpr Eigen::Index step = 10;
-    const auto at = [&, column = column_of(k)](Eigen::Index j) { return Point(rows(j, column), rows(j, column + 1)); };
-    for (Eigen::Index j = 0; j + step <= num_angles; j += step) place.avoid_path(at(j), at(j + step));
-  }
-  bool any_elastic = false;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const Body* body = body_at(linkage, points[k].body);
-    const bool is_slider = body == nullptr && points[k].point == std::complex<double>(0);
-    const char* style = points[k].fixed ? "pointtype 9 pointsize 1.6"
-                        : is_slider     ? "pointtype 5 pointsize 1.8"
-                                        : "pointtype 7 pointsize 0.8";
-    add(fmt::format("'{}' using {}:{} every ::0::0 with points {} linecolor '{}' notitle", csv.name, x_of(k),
-                    x_of(k) + 1, style, is_slider ? "#666666" : "#222222"));
-    // A link is named where its joint 1 comes.
-    const bool link = body != nullptr && k > 0 && points[k - 1].body == points[k].body &&
-                      (k < 2 || points[k - 2].body != points[k].body);
-    if (!link && !is_slider) continue;
-    any_elastic = any_elastic || (link && body->elastic.has_value());
-    const std::string& name = link ? body->name : points[k].name;
-    const Point at =
-        link ? place.beside(position(k - 1), position(k), name) : place.beside(position(k), position(k), name);
-    labels += fmt::format("set label {} {} at {},{} center font ',11' textcolor '{}' front boxed\n", label++,
-                          quoted(name), at.real(), at.imag(), link && body->elastic ? "#b03060" : "#333333");
-  }
-  if (any_elastic) add("NaN with lines linewidth 2 linecolor '#b03060' title 'elastic link'");
-  figure.commands += labels + plot +
+  drawing.guides();
+  drawing.poses(poses);
+  drawing.paths();
+  drawing.links();
+  drawing.joints_and_names(std::min(630 / width, (figure.height - 110) / height));
+  figure.commands += drawing.commands() +
                      "\nunset label\nunset arrow\nset size noratio\nset xrange [*:*]\nset yrange [*:*]\n"
                      "unset title\nunset xlabel\nunset ylabel\nset key default\n";
   return figure;

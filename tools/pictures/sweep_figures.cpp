@@ -1,6 +1,7 @@
 #include "tools/pictures/sweep_figures.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -172,134 +173,154 @@ int highest_order(const SweepResult& result, std::size_t r) {
   return std::min(highest, most);
 }
 
+// What the parts of a Campbell diagram share.
+struct CampbellFrame {
+  double from, to;  // speeds
+  double factor = 0, constant = 0;  // the crank's frequency: factor * x + constant, one of them 0
+  double top = 0;  // highest frequency shown
+  FrequencyUnit unit;
+
+  [[nodiscard]] double crank(double x) const { return factor * x + constant; }
+};
+
+CampbellFrame campbell_frame(const SweepScene& scene, const SweepResult& result) {
+  CampbellFrame frame{scene.axis().values.front(), scene.axis().values.back(), 0, 0, 0, frequency_unit(scene.scene())};
+  switch (scene.axis().kind) {
+    case Axis::Kind::rpm:
+      frame.factor = frame.unit.factor * speed_from_rpm(1, scene.scene().units);
+      break;
+    case Axis::Kind::omega:
+      frame.factor = frame.unit.factor;
+      break;
+    case Axis::Kind::parameter:
+      frame.constant = frame.unit.factor * result.points.front().speed;
+      break;
+  }
+  return frame;
+}
+
+// Title, axes, shaded bands and palette.
+std::string campbell_settings(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
+                              const CampbellFrame& frame, double scale) {
+  std::string notes =
+      (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") + shaded_note(result, r);
+  if (!notes.empty()) notes.erase(0, 2);
+  const bool several = result.rods[r].num_modes > 1;
+  return title(scene, result, r,
+               "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(several ? ", dotted: (ω_i ± ω_j)/2" : "") +
+                   (notes.empty() ? "" : "'.\"\\n\".'" + notes) + beyond_note(csv, sweep_columns(scene, result, r))) +
+         axis(scene) + shaded(result, r) +
+         fmt::format("set yrange [0:{}]\nset ylabel 'frequency [{}]'\nunset key\nset rmargin 20\n", frame.top,
+                     literal(frame.unit.name)) +
+         fmt::format(
+             "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 "
+             "'#fc8d59', "
+             "1 '#99000d')\nset cbrange [{}:{}]\nset cblabel 'growth rate of the mode [{}]' font ',11' offset -0.5, 0\n"
+             "set cbtics font ',10'\nset colorbox user origin 0.88, 0.2 size 0.018, 0.6\n",
+             -scale, scale, literal(output_units(scene.scene()).rate));
+}
+
+// Multiples and odd halves of the crank's frequency. Orders that leave the picture before its right end are labelled at
+// the top, the others at the right.
+void add_orders(const CampbellFrame& frame, int most, std::vector<std::string>& curves, std::string& labels) {
+  const auto [from, to, factor, constant, top, unit] = frame;
+  double last_label = HUGE_VAL;
+  for (int half = 1; half <= 2 * most; ++half) {
+    const bool whole = half % 2 == 0;
+    const double order = half / 2.0;
+    if (!whole && half > 12) continue;
+    if (order * frame.crank(from) > top) break;
+    curves.push_back(fmt::format("{} * ({} * x + {}) with lines linecolor rgb '{}' linewidth {} dashtype {} notitle",
+                                 order, factor, constant, whole ? "#b0b0b0" : "#c8c8c8", whole ? 0.9 : 0.6,
+                                 whole ? 1 : 2));
+    if (!whole) continue;
+    const double at_end = order * frame.crank(to);
+    const std::string name = order == 1 ? "Ω" : fmt::format("{}Ω", half / 2);
+    if (at_end <= top) {
+      labels += fmt::format("set label '{}' at {}, {} left offset 0.4, 0 textcolor rgb '#777777' font ',10'\n", name,
+                            to, at_end);
+    } else if (const double x = factor > 0 ? (top / order - constant) / factor : HUGE_VAL;
+               x < last_label - 0.045 * (to - from) && x > from) {
+      last_label = x;
+      labels += fmt::format("set label '{}' at {}, {} center offset 0, 0.5 textcolor rgb '#777777' font ',10'\n", name,
+                            x, top);
+    }
+  }
+}
+
+// Half sums and differences of the lowest modes' frequencies.
+void add_combinations(const CsvFile& csv, const SweepColumns& columns, int shown, std::vector<std::string>& curves) {
+  for (int i = 0; i < std::min(shown, 3); ++i)
+    for (int j = i + 1; j < std::min(shown, 3); ++j)
+      for (const char* sign : {"+", "-"})
+        curves.push_back(fmt::format(
+            "'{}' using 1:(abs(column({}) {} column({}))/2) with lines linecolor rgb '#56b4e9' linewidth 0.8 "
+            "dashtype 3 notitle",
+            csv.name, columns.first_frequency + 2 * j, sign, columns.first_frequency + 2 * i));
+}
+
+// One mode's frequency, coloured by its growth. Locked to the crank a mode's frequency is known up to a multiple of
+// half the speed: the line breaks where that changes.
+void add_mode(const CampbellFrame& frame, const CsvFile& csv, const SweepColumns& columns, int mode, double scale,
+              const std::string& name, std::vector<std::string>& curves, std::string& commands) {
+  constexpr double jump = 0.25;  // of the speed
+  const int frequency = columns.first_frequency + 2 * mode, growth = frequency + 1;
+  commands += fmt::format("before{} = NaN\n", mode);
+  // Grey first, the palette over what is within the theory.
+  const std::string beyond = columns.beyond > 0 ? fmt::format("column({}) > 0", columns.beyond) : "0";
+  if (columns.beyond > 0) {
+    commands += fmt::format("grey{} = NaN\n", mode);
+    curves.push_back(
+        fmt::format("'{}' using 1:(now = column({}), jumps = abs(now - grey{}) > {} * ({} * $1 + {}), grey{} = now, "
+                    "jumps ? NaN : now) with lines linecolor rgb '#999999' dashtype 2 linewidth 2 notitle",
+                    csv.name, frequency, mode, jump, frame.factor, frame.constant, mode));
+  }
+  curves.push_back(
+      fmt::format("'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
+                  "jumps || {} ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
+                  "linewidth 3 linecolor palette notitle",
+                  csv.name, frequency, mode, jump, frame.factor, frame.constant, mode, beyond, growth, scale, scale,
+                  growth, -scale, -scale, growth));
+  // Named where it is first seen inside the picture.
+  for (Eigen::Index k = 0; k < csv.rows.rows(); ++k) {
+    const double y = csv.rows(k, frequency - 1), x = csv.rows(k, 0);
+    if (!(y <= 0.97 * frame.top) || !(x >= frame.from + 0.01 * (frame.to - frame.from))) continue;
+    commands +=
+        fmt::format("set label '{}mode {}' at {}, {} left offset 0.3, 0.7 font ',11' front\n", name, mode + 1, x, y);
+    break;
+  }
+}
+
 }  // namespace
 
 Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
                        const std::string& critical) {
   const SweepRod& rod = result.rods[r];
   const SweepColumns columns = sweep_columns(scene, result, r);
-  const int I = rod.num_modes;
-  const auto frequency = [&](int mode) { return columns.first_frequency + 2 * mode; };
-  const double from = scene.axis().values.front(), to = scene.axis().values.back();
-
-  // The crank's frequency: factor * x, or constant.
-  const FrequencyUnit unit = frequency_unit(scene.scene());
-  double factor = 0, constant = 0;
-  switch (scene.axis().kind) {
-    case Axis::Kind::rpm:
-      factor = unit.factor * speed_from_rpm(1, scene.scene().units);
-      break;
-    case Axis::Kind::omega:
-      factor = unit.factor;
-      break;
-    case Axis::Kind::parameter:
-      constant = unit.factor * result.points.front().speed;
-      break;
-  }
-  const double fastest = factor * to + constant;
+  CampbellFrame frame = campbell_frame(scene, result);
   // High enough for the two lowest modes and for two turns of the crank.
-  double top = 2 * fastest;
-  for (int mode = 0; mode < std::min(I, 2); ++mode) top = std::max(top, 1.15 * largest(finite(csv, frequency(mode))));
+  frame.top = 2 * frame.crank(frame.to);
+  for (int mode = 0; mode < std::min(rod.num_modes, 2); ++mode)
+    frame.top = std::max(frame.top, 1.15 * largest(finite(csv, columns.first_frequency + 2 * mode)));
+  const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
 
   Figure figure;
   figure.name = figure_name("campbell", rod.name);
   figure.width = 1060;
   figure.height = 640;
-  std::string& text = figure.commands;
-  std::string notes =
-      (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") + shaded_note(result, r);
-  if (!notes.empty()) notes.erase(0, 2);
-  text += title(scene, result, r,
-                "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(I > 1 ? ", dotted: (ω_i ± ω_j)/2" : "") +
-                    (notes.empty() ? "" : "'.\"\\n\".'" + notes) + beyond_note(csv, columns));
-  text += axis(scene) + shaded(result, r);
-  text += fmt::format("set yrange [0:{}]\nset ylabel 'frequency [{}]'\nunset key\nset rmargin 20\n", top,
-                      literal(unit.name));
-  const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
-  text += fmt::format(
-      "set palette defined (-1 '#08306b', -0.5 '#08519c', -0.2 '#2b8cbe', -0.02 '#7bccc4', 0 '#999999', 0.02 "
-      "'#fc8d59', "
-      "1 '#99000d')\nset cbrange [{}:{}]\nset cblabel 'growth rate of the mode [{}]' font ',11' offset -0.5, 0\n"
-      "set cbtics font ',10'\nset colorbox user origin 0.88, 0.2 size 0.018, 0.6\n",
-      -scale, scale, literal(output_units(scene.scene()).rate));
-
-  std::string plot = "plot ";
-  std::string separator;
-  const auto add = [&](const std::string& item) {
-    plot += separator + item;
-    separator = ", \\\n  ";
-  };
-  // Orders that leave the picture before its right end are labelled at the top, the others at the right.
-  const double lowest = factor * from + constant;
-  const int most = highest_order(result, r);
-  double last_label = HUGE_VAL;
-  for (int half = 1; half <= 2 * most; ++half) {
-    const bool whole = half % 2 == 0;
-    const double order = half / 2.0;
-    if (!whole && half > 12) continue;
-    if (order * lowest > top) break;
-    add(fmt::format("{} * ({} * x + {}) with lines linecolor rgb '{}' linewidth {} dashtype {} notitle", order, factor,
-                    constant, whole ? "#b0b0b0" : "#c8c8c8", whole ? 0.9 : 0.6, whole ? 1 : 2));
-    if (!whole) continue;
-    const double at_end = order * fastest;
-    const std::string name = order == 1 ? "Ω" : fmt::format("{}Ω", half / 2);
-    if (at_end <= top) {
-      text += fmt::format("set label '{}' at {}, {} left offset 0.4, 0 textcolor rgb '#777777' font ',10'\n", name, to,
-                          at_end);
-    } else if (const double x = factor > 0 ? (top / order - constant) / factor : HUGE_VAL;
-               x < last_label - 0.045 * (to - from) && x > from) {
-      last_label = x;
-      text += fmt::format("set label '{}' at {}, {} center offset 0, 0.5 textcolor rgb '#777777' font ',10'\n", name, x,
-                          top);
-    }
-  }
-  const int shown = std::min(I, max_curves);
-  for (int i = 0; i < std::min(shown, 3); ++i) {
-    for (int j = i + 1; j < std::min(shown, 3); ++j) {
-      for (const char* sign : {"+", "-"}) {
-        add(fmt::format(
-            "'{}' using 1:(abs(column({}) {} column({}))/2) with lines linecolor rgb '#56b4e9' linewidth 0.8 "
-            "dashtype 3 notitle",
-            csv.name, frequency(j), sign, frequency(i)));
-      }
-    }
-  }
-  // Locked to the crank a mode's frequency is known up to a multiple of half the speed: the line breaks where that
-  // changes.
-  constexpr double jump = 0.25;  // of the speed
-  for (int mode = 0; mode < shown; ++mode) {
-    text += fmt::format("before{} = NaN\n", mode);
-    // Grey first, the palette over what is within the theory.
-    const std::string beyond = columns.beyond > 0 ? fmt::format("column({}) > 0", columns.beyond) : "0";
-    if (columns.beyond > 0) {
-      text += fmt::format("grey{} = NaN\n", mode);
-      add(
-          fmt::format("'{}' using 1:(now = column({}), jumps = abs(now - grey{}) > {} * ({} * $1 + {}), grey{} = now, "
-                      "jumps ? NaN : now) with lines linecolor rgb '#999999' dashtype 2 linewidth 2 notitle",
-                      csv.name, frequency(mode), mode, jump, factor, constant, mode));
-    }
-    add(fmt::format(
-        "'{}' using 1:(now = column({}), jumps = abs(now - before{}) > {} * ({} * $1 + {}), before{} = now, "
-        "jumps || {} ? NaN : now):(column({}) > {} ? {} : column({}) < {} ? {} : column({})) with lines "
-        "linewidth 3 linecolor palette notitle",
-        csv.name, frequency(mode), mode, jump, factor, constant, mode, beyond, frequency(mode) + 1, scale, scale,
-        frequency(mode) + 1, -scale, -scale, frequency(mode) + 1));
-    // Named where it is first seen inside the picture.
-    for (Eigen::Index k = 0; k < csv.rows.rows(); ++k) {
-      const double y = csv.rows(k, frequency(mode) - 1), x = csv.rows(k, 0);
-      if (!(y <= 0.97 * top) || !(x >= from + 0.01 * (to - from))) continue;
-      text += fmt::format("set label '{}mode {}' at {}, {} left offset 0.3, 0.7 font ',11' front\n",
-                          scene.first().linkage() ? literal(rod.name) + " " : "", mode + 1, x, y);
-      break;
-    }
-  }
-  if (result.computed.steady && !result.critical.empty()) {
-    add(fmt::format(
+  figure.commands = campbell_settings(scene, result, r, csv, frame, scale);
+  std::vector<std::string> curves;
+  add_orders(frame, highest_order(result, r), curves, figure.commands);
+  const int shown = std::min(rod.num_modes, max_curves);
+  add_combinations(csv, columns, shown, curves);
+  const std::string name = scene.first().linkage() ? literal(rod.name) + " " : "";
+  for (int mode = 0; mode < shown; ++mode) add_mode(frame, csv, columns, mode, scale, name, curves, figure.commands);
+  if (result.computed.steady && !result.critical.empty())
+    curves.push_back(fmt::format(
         "'{}' using (column(1) == {} && column(6) > 0 ? column(2) : NaN):8 with points pointtype 7 pointsize "
         "0.7 linecolor rgb '#000000' notitle",
         critical, r + 1));
-  }
-  text += plot + "\nunset colorbox\nunset cblabel\n" + clean_up;
+  figure.commands += fmt::format("plot {}\nunset colorbox\nunset cblabel\n", fmt::join(curves, ", \\\n  ")) + clean_up;
   return figure;
 }
 

@@ -203,10 +203,59 @@ nlohmann::ordered_json document_of(const Answer& answer) {
   return document;
 }
 
-void add_rod(py::module_& module) {
-  py::class_<RodView>(module, "Rod", "The response and stability of one elastic link at one speed.")
+// Exponents and verdict.
+void add_rod_stability(py::class_<RodView>& rod) {
+  rod.def_property_readonly("stability", &stability_of, "Everything known of its stability; None: not computed.")
+      .def_property_readonly("exponents", of_stability([](const Stability& s, const py::object& self) {
+                               return view(s.exponents, &Exponent::value, self);
+                             }),
+                             "Floquet exponents, 1/time, read-only; see Stability.")
+      .def_property_readonly("exponent_errors", of_stability([](const Stability& s, const py::object& self) {
+                               return view(s.exponents, &Exponent::error, self);
+                             }),
+                             "Error of each exponent, read-only.")
+      .def_property_readonly("growth_rate", of_stability([](const Stability& s, const py::object&) {
+                               return py::float_(s.growth_rate + 0.0);
+                             }),
+                             "Largest real part of the exponents, 1/time.")
+      .def_property_readonly("growth_error", of_stability([](const Stability& s, const py::object&) {
+                               return py::float_(s.growth_error);
+                             }),
+                             "Error of the growth rate.")
       .def_property_readonly(
-          "name", [](const RodView& rod) { return decoded(rod.result().name); }, "Its name.")
+          "verdict", of_stability([](const Stability& s, const py::object&) { return py::str(to_string(s.verdict)); }),
+          "\"stable\", \"bounded\", \"unstable\" or \"undecided\"; None: not computed.");
+}
+
+// Functions of the crank angle.
+void add_rod_functions(py::class_<RodView>& rod) {
+  rod.def(
+         "response",
+         [](const RodView& rod, const py::object& angle) {
+           const FourierSeries& q = solved_q(rod);
+           const Angles at = angles(*rod.answer, angle);
+           return shaped(values_at(q, at.phase), false, at.single);
+         },
+         py::arg("angle"), "q_i at crank angles in the scene's unit: (I, len(angle)).")
+      .def(
+          "deflection",
+          [](const RodView& rod, const py::object& x, const py::object& angle) {
+            return field_at(rod, x, angle, false);
+          },
+          py::arg("x"), py::arg("angle"),
+          "Deflection at x from joint 0, (len(x), len(angle)), in the scene's unit of length; to the left positive.")
+      .def(
+          "bending_moment",
+          [](const RodView& rod, const py::object& x, const py::object& angle) {
+            return field_at(rod, x, angle, true);
+          },
+          py::arg("x"), py::arg("angle"), "Bending moment EJ w'' at x, (len(x), len(angle)), in the scene's units.");
+}
+
+void add_rod(py::module_& module) {
+  py::class_<RodView> rod(module, "Rod", "The response and stability of one elastic link at one speed.");
+  rod.def_property_readonly(
+         "name", [](const RodView& rod) { return decoded(rod.result().name); }, "Its name.")
       .def_property_readonly(
           "modes", [](const RodView& rod) { return rod.result().num_modes; }, "Number of Ritz terms I.")
       .def_property_readonly(
@@ -259,47 +308,6 @@ void add_rod(py::module_& module) {
             return theory ? optional(theory->rods[rod.rod].q) : py::none();
           },
           "By how much the linear theory itself is off, relative; None: beyond it, or not judged.")
-      .def_property_readonly("stability", &stability_of, "Everything known of its stability; None: not computed.")
-      .def_property_readonly("exponents", of_stability([](const Stability& s, const py::object& self) {
-                               return view(s.exponents, &Exponent::value, self);
-                             }),
-                             "Floquet exponents, 1/time, read-only; see Stability.")
-      .def_property_readonly("exponent_errors", of_stability([](const Stability& s, const py::object& self) {
-                               return view(s.exponents, &Exponent::error, self);
-                             }),
-                             "Error of each exponent, read-only.")
-      .def_property_readonly("growth_rate", of_stability([](const Stability& s, const py::object&) {
-                               return py::float_(s.growth_rate + 0.0);
-                             }),
-                             "Largest real part of the exponents, 1/time.")
-      .def_property_readonly("growth_error", of_stability([](const Stability& s, const py::object&) {
-                               return py::float_(s.growth_error);
-                             }),
-                             "Error of the growth rate.")
-      .def_property_readonly(
-          "verdict", of_stability([](const Stability& s, const py::object&) { return py::str(to_string(s.verdict)); }),
-          "\"stable\", \"bounded\", \"unstable\" or \"undecided\"; None: not computed.")
-      .def(
-          "response",
-          [](const RodView& rod, const py::object& angle) {
-            const FourierSeries& q = solved_q(rod);
-            const Angles at = angles(*rod.answer, angle);
-            return shaped(values_at(q, at.phase), false, at.single);
-          },
-          py::arg("angle"), "q_i at crank angles in the scene's unit: (I, len(angle)).")
-      .def(
-          "deflection",
-          [](const RodView& rod, const py::object& x, const py::object& angle) {
-            return field_at(rod, x, angle, false);
-          },
-          py::arg("x"), py::arg("angle"),
-          "Deflection at x from joint 0, (len(x), len(angle)), in the scene's unit of length; to the left positive.")
-      .def(
-          "bending_moment",
-          [](const RodView& rod, const py::object& x, const py::object& angle) {
-            return field_at(rod, x, angle, true);
-          },
-          py::arg("x"), py::arg("angle"), "Bending moment EJ w'' at x, (len(x), len(angle)), in the scene's units.")
       .def("_table", [](const RodView& rod, const std::string& what) { return table_of(rod_table(rod, what)); })
       .def_property_readonly("_owner", [](const RodView& rod) { return rod.owner; })
       .def_property_readonly("_index", [](const RodView& rod) { return rod.rod; })
@@ -310,6 +318,8 @@ void add_rod(py::module_& module) {
         if (result.stability) text += fmt::format(", {}", to_string(result.stability->verdict));
         return decoded(text + ">");
       });
+  add_rod_stability(rod);
+  add_rod_functions(rod);
 }
 
 using SeriesOf = const FourierSeries* ForceView::*;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <span>
 #include <stdexcept>
 
 #include "lib/stop_wish.hpp"
@@ -65,81 +66,104 @@ void SharedWork::compute_or_leave(const std::function<void(std::size_t)>& comput
   }
 }
 
-void SharedWork::step(const std::string& what, const Parts& parts) {
-  const std::size_t count = parts.count;
-  const std::uint64_t step = step_++ << 32;
-  const std::size_t chunk_size = parts_per_chunk(count);
-  Progress progress(what, count);
-  const auto from = [&](std::size_t chunk) { return chunk * chunk_size; };
-  const auto to = [&](std::size_t chunk) { return std::min(from(chunk) + chunk_size, count); };
-  const auto compute = [&](std::size_t chunk) {
-    for (std::size_t k = from(chunk); k < to(chunk); ++k) compute_or_leave(parts.compute, k);
-  };
-  const auto keep = [&](std::size_t chunk) {
-    if (kept_ != nullptr) kept_->store(step + chunk, joined(parts, from(chunk), to(chunk)));
-  };
-  const std::size_t num_chunks = (count + chunk_size - 1) / chunk_size;
-  if (ranks().size() == 1) {
-    Forecast forecast(what, count, num_threads_);
+// A step in chunks of parts: what is kept or sent at once.
+class SharedWork::Chunks {
+ public:
+  Chunks(SharedWork& work, const std::string& what, const Parts& parts)
+      : work_(work),
+        parts_(parts),
+        step_(work.step_++ << 32),
+        size_(parts_per_chunk(parts.count)),
+        count_((parts.count + size_ - 1) / size_),
+        what_(what),
+        progress_(what, parts.count) {}
+
+  void run_alone() {
+    Forecast forecast(what_, parts_.count, work_.num_threads_);
     const bool complete = parallel_for(
-        num_chunks, num_threads_,
+        count_, work_.num_threads_,
         [&](std::size_t chunk) {
-          if (const Part* earlier = kept_ != nullptr ? kept_->find(step + chunk) : nullptr) {
-            split(*earlier, parts, from(chunk), to(chunk));
+          if (const Part* earlier = kept(chunk)) {
+            split(*earlier, parts_, from(chunk), to(chunk));
           } else {
             compute(chunk);
-            if (!ends_early()) keep(chunk);
+            if (!work_.ends_early()) keep(chunk);
           }
-          progress.advance(to(chunk) - from(chunk));
+          progress_.advance(to(chunk) - from(chunk));
           forecast.advance(to(chunk) - from(chunk));
         },
-        stop_);
+        work_.stop_);
     if (!complete) throw WorkStopped();
-    return;
   }
 
+  // Rounds of the chunks that are not known, each shared among the ranks: often enough for a kill to lose little.
+  void run_with_other_ranks() {
+    known_.assign(count_, false);
+    take_kept();
+    std::vector<std::size_t> pending;
+    for (std::size_t chunk = 0; chunk < count_; ++chunk)
+      if (!known_[chunk]) pending.push_back(chunk);
+    const std::size_t per_round =
+        static_cast<std::size_t>(ranks().size()) * static_cast<std::size_t>(work_.num_threads_) * 2;
+    for (std::size_t first = 0; first < pending.size(); first += per_round)
+      round(std::span(pending).subspan(first, std::min(per_round, pending.size() - first)));
+  }
+
+ private:
   // Messages between the ranks: a state, then chunk, length and numbers of each chunk.
-  std::vector<bool> known(num_chunks, false);
-  const auto add = [&](Part& message, std::size_t chunk) {
-    const Part numbers = joined(parts, from(chunk), to(chunk));
+  static constexpr double running = 0, stopped = 1, failed = 2;
+
+  [[nodiscard]] std::size_t from(std::size_t chunk) const { return chunk * size_; }
+  [[nodiscard]] std::size_t to(std::size_t chunk) const { return std::min(from(chunk) + size_, parts_.count); }
+
+  void compute(std::size_t chunk) const {
+    for (std::size_t k = from(chunk); k < to(chunk); ++k) work_.compute_or_leave(parts_.compute, k);
+  }
+  [[nodiscard]] const Part* kept(std::size_t chunk) const {
+    return work_.kept_ != nullptr ? work_.kept_->find(step_ + chunk) : nullptr;
+  }
+  void keep(std::size_t chunk) const {
+    if (work_.kept_ != nullptr) work_.kept_->store(step_ + chunk, joined(parts_, from(chunk), to(chunk)));
+  }
+
+  void add(Part& message, std::size_t chunk) const {
+    const Part numbers = joined(parts_, from(chunk), to(chunk));
     message.push_back(static_cast<double>(chunk));
     message.push_back(static_cast<double>(numbers.size()));
     message.insert(message.end(), numbers.begin(), numbers.end());
-  };
-  const auto take = [&](const Part& message) {
+  }
+  void take(const Part& message) {
     for (std::size_t next = 1; next < message.size();) {
       const auto chunk = static_cast<std::size_t>(message[next]), length = static_cast<std::size_t>(message[next + 1]);
       const auto start = message.begin() + static_cast<std::ptrdiff_t>(next) + 2;
-      split(Part(start, start + static_cast<std::ptrdiff_t>(length)), parts, from(chunk), to(chunk));
-      known[chunk] = true;
-      progress.advance(to(chunk) - from(chunk));
+      split(Part(start, start + static_cast<std::ptrdiff_t>(length)), parts_, from(chunk), to(chunk));
+      known_[chunk] = true;
+      progress_.advance(to(chunk) - from(chunk));
       next += 2 + length;
     }
-  };
-  constexpr double running = 0, stopped = 1, failed = 2;
-  Part earlier = {running};
-  for (std::size_t chunk = 0; kept_ != nullptr && chunk < num_chunks; ++chunk)
-    if (const Part* found = kept_->find(step + chunk)) {
-      split(*found, parts, from(chunk), to(chunk));
-      add(earlier, chunk);
-    }
-  take(ranks().gathered(earlier).front());
+  }
 
-  std::vector<std::size_t> pending;
-  for (std::size_t chunk = 0; chunk < num_chunks; ++chunk)
-    if (!known[chunk]) pending.push_back(chunk);
-  const auto size = static_cast<std::size_t>(ranks().size()), rank = static_cast<std::size_t>(ranks().rank());
-  // Rounds: often enough for a kill to lose little.
-  const std::size_t per_round = size * static_cast<std::size_t>(num_threads_) * 2;
-  for (std::size_t first = 0; first < pending.size(); first += per_round) {
+  // What an earlier run finished, from the first rank to all.
+  void take_kept() {
+    Part earlier = {running};
+    for (std::size_t chunk = 0; chunk < count_; ++chunk)
+      if (const Part* found = kept(chunk)) {
+        split(*found, parts_, from(chunk), to(chunk));
+        add(earlier, chunk);
+      }
+    take(ranks().gathered(earlier).front());
+  }
+
+  void round(std::span<const std::size_t> chunks) {
+    const auto size = static_cast<std::size_t>(ranks().size()), rank = static_cast<std::size_t>(ranks().rank());
     std::vector<std::size_t> own;
-    for (std::size_t i = first; i < std::min(first + per_round, pending.size()); ++i)
-      if (i % size == rank) own.push_back(pending[i]);
+    for (std::size_t i = 0; i < chunks.size(); ++i)
+      if (i % size == rank) own.push_back(chunks[i]);
     Part message = {running};
     std::exception_ptr failure;
     try {
       const bool complete = parallel_for(
-          own.size(), num_threads_, [&](std::size_t i) { compute(own[i]); }, stop_);
+          own.size(), work_.num_threads_, [&](std::size_t i) { compute(own[i]); }, work_.stop_);
       if (!complete) message[0] = stopped;
       if (complete)
         for (const std::size_t chunk : own) add(message, chunk);
@@ -147,28 +171,47 @@ void SharedWork::step(const std::string& what, const Parts& parts) {
       message = {failed};
       failure = std::current_exception();
     }
-    bool stop = false, other_failed = false;
-    for (const Part& numbers : ranks().gathered(message)) {
+    bool stop = false;
+    const std::vector<Part> all = ranks().gathered(message);
+    for (const Part& numbers : all) {
       take(numbers);
       stop = stop || numbers[0] == stopped;
-      other_failed = other_failed || numbers[0] == failed;
     }
-    if (failure) std::rethrow_exception(failure);
-    if (other_failed) throw OtherRankFailed();
+    end_if_failed(all, failure);
     // The first rank keeps what all have done; should that fail, the others have to know.
     Part state = {running};
     try {
-      for (std::size_t i = first; i < std::min(first + per_round, pending.size()); ++i)
-        if (known[pending[i]]) keep(pending[i]);
+      for (const std::size_t chunk : chunks)
+        if (known_[chunk]) keep(chunk);
     } catch (...) {
       state = {failed};
       failure = std::current_exception();
     }
-    for (const Part& numbers : ranks().gathered(state)) other_failed = other_failed || numbers[0] == failed;
-    if (failure) std::rethrow_exception(failure);
-    if (other_failed) throw OtherRankFailed();
+    end_if_failed(ranks().gathered(state), failure);
     if (stop) throw WorkStopped();
   }
+
+  static void end_if_failed(const std::vector<Part>& states, const std::exception_ptr& failure) {
+    if (failure) std::rethrow_exception(failure);
+    for (const Part& numbers : states)
+      if (numbers[0] == failed) throw OtherRankFailed();
+  }
+
+  SharedWork& work_;
+  const Parts& parts_;
+  std::uint64_t step_;
+  std::size_t size_, count_;
+  std::string what_;
+  Progress progress_;
+  std::vector<bool> known_;
+};
+
+void SharedWork::step(const std::string& what, const Parts& parts) {
+  Chunks chunks(*this, what, parts);
+  if (ranks().size() == 1)
+    chunks.run_alone();
+  else
+    chunks.run_with_other_ranks();
 }
 
 KeptRun::KeptRun(std::string command, const std::optional<std::filesystem::path>& out, EarlierParts earlier,

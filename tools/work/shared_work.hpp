@@ -32,6 +32,7 @@ class SharedWork : public Work {
   [[nodiscard]] bool ends_early() const override { return early_ && early_(); }
 
  private:
+  class Chunks;
   void compute_or_leave(const std::function<void(std::size_t)>& compute, std::size_t k) const;
 
   int num_threads_;

@@ -95,7 +95,7 @@ std::optional<PeriodicMotion> MotionFinder::with_more_harmonics() const {
 // The same motion with more modes of every rod, from this one.
 std::optional<std::vector<FourierSeries>> MotionFinder::with_more_modes() const {
   std::vector<Index> more;
-  for (const Index I : modes_) more.push_back(std::min<Index>(comparison_modes(I), max_modes));
+  for (const Index I : modes_) more.push_back(more_modes(I));
   const auto finer = with_modes(more);
   std::vector<FourierSeries> start;
   for (std::size_t r = 0; r < modes_.size(); ++r) {

@@ -240,7 +240,7 @@ NonlinearResult with_automatic_modes(SceneModel model, double speed, Settings se
       const NonlinearRod& rod = result.rods[r];
       const Index I = rod.q.num_components();
       const bool enough = rod.modes_error && *rod.modes_error <= wanted;
-      const Index more = enough ? I : std::min<Index>(comparison_modes(I), max_modes);
+      const Index more = enough ? I : more_modes(I);
       grows = grows || more > I;
       if (more > I) set_modes(model, r, more);
       near.emplace_back(more, rod.q.num_harmonics());
@@ -280,7 +280,7 @@ void require_nonlinear(const SceneModel& model, int turns) {
 NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                  const NonlinearOptions& options) {
   require_nonlinear(model, options.turns);
-  if (std::holds_alternative<AutoModes>(settings.modes)) return with_automatic_modes(model, speed, settings, options);
+  if (is_auto(settings.modes)) return with_automatic_modes(model, speed, settings, options);
   return at_given_modes(model, speed, settings, options, nullptr);
 }
 

@@ -24,7 +24,7 @@ SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double 
   // The error of the cut is no part of a sweep: no finer Ritz matrices.
   Settings model_settings = settings_;
   constexpr bool compares_modes = false;
-  const bool auto_modes = std::holds_alternative<AutoModes>(settings_.modes);
+  const bool auto_modes = is_auto(settings_.modes);
   if (axis_.kind != Axis::Kind::parameter) {
     Scene scene = family_.scene();
     units_ = scene.units;
@@ -49,8 +49,7 @@ SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double 
     for (const double x : {values.front(), values[values.size() / 2], values.back()}) {
       const ScenePlace place = at(x);
       if (!place.model) continue;
-      for (const RodResult& rod : analyse(*place.model, place.speed, steady).rods)
-        modes = std::max(modes, static_cast<int>(rod.num_modes));
+      modes = most_modes(analyse(*place.model, place.speed, steady).rods, modes);
     }
     settings_.modes = modes;
     model_settings.modes = modes;

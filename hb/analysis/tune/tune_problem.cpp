@@ -78,7 +78,7 @@ class Tuner {
   }
 
  private:
-  bool auto_modes() const { return std::holds_alternative<AutoModes>(task_.settings.modes); }
+  bool auto_modes() const { return is_auto(task_.settings.modes); }
   Scene scene_at(const std::vector<double>& x) const { return task_.source.with(overrides_at(task_, x)); }
 
   // As many as the ends of the range and `speeds` need.
@@ -92,9 +92,7 @@ class Tuner {
     const SpeedSpan span = span_at(task_, x);
     speeds.insert(speeds.end(), {span.from, span.to});
     int modes = 1;
-    for (const double speed : speeds)
-      for (const RodResult& rod : analyse(model, speed, settings).rods)
-        modes = std::max(modes, static_cast<int>(rod.num_modes));
+    for (const double speed : speeds) modes = most_modes(analyse(model, speed, settings).rods, modes);
     return modes;
   }
 

@@ -256,7 +256,7 @@ double theory_error_of_modes(const SceneModel& model, std::size_t rod, double sp
     return theory_of(other, speed, q)[rod];
   };
   const Eigen::Index I = model.rods[rod].num_modes;
-  return safety * std::abs(value(std::min<Eigen::Index>(comparison_modes(I), max_modes)) - value(I));
+  return safety * std::abs(value(more_modes(I)) - value(I));
 }
 
 // What its error bar and the modes left out may change of the growth rate. Changes that do not shrink with more modes
@@ -271,7 +271,6 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
   const Body& link = *body_at(*model.linkage(), rod.link);
   const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
   const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
-  constexpr Eigen::Index most = 60;
   const Eigen::Index more = comparison_modes(rod.num_modes), still_more = comparison_modes(more);
   const Stability second = stability(ritz_system(link, coefficients, more)),
                   third = stability(ritz_system(link, coefficients, still_more));
@@ -279,13 +278,13 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
                next = std::abs(third.growth_rate - second.growth_rate);
   double error = own.growth_error + safety * change;
   if (!(next <= change / 2 + second.growth_error + third.growth_error))
-    error += safety * next * std::max(1.0, (square(most) - square(more)) / (square(still_more) - square(more)));
-  if (error < std::abs(own.growth_rate) || rod.num_modes >= most) return error;
+    error += safety * next * std::max(1.0, (square(max_modes) - square(more)) / (square(still_more) - square(more)));
+  if (error < std::abs(own.growth_rate) || rod.num_modes >= max_modes) return error;
   error = 0;
-  for (Eigen::Index modes = still_more;; modes = std::min(comparison_modes(modes), most)) {
+  for (Eigen::Index modes = still_more;; modes = more_modes(modes)) {
     const Stability direct = modes == still_more ? third : stability(ritz_system(link, coefficients, modes));
     error = std::max(error, std::abs(direct.growth_rate - own.growth_rate) + direct.growth_error);
-    if (modes >= most) break;
+    if (modes >= max_modes) break;
   }
   return own.growth_error + std::max(error, change + second.growth_error);
 }

@@ -1,6 +1,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "hb/engine/design/design.hpp"
@@ -55,6 +56,69 @@ VectorXd nonnegative_least_squares(const MatrixXd& A, const VectorXd& b) {
   return x;
 }
 
+namespace {
+
+using Values = std::function<OptionalVector(const VectorXd&)>;  // goal, conditions and parts
+
+// Their slopes, rows f, g, f_k; columns x_i.
+std::optional<MatrixXd> slopes_at(const DesignProblem& problem, const Values& at, const VectorXd& x, double step) {
+  std::optional<DesignGradient> gradient;
+  if (problem.gradient) gradient = problem.gradient(x);
+  if (!gradient)
+    return difference_jacobian(at, x, problem.lower, problem.upper, step * (problem.upper - problem.lower));
+  const Index m = problem.num_conditions, p = problem.num_parts;
+  MatrixXd slopes(1 + m + p, x.size());
+  slopes.row(0) = gradient->goal.transpose();
+  slopes.middleRows(1, m) = gradient->conditions;
+  if (p > 0) slopes.bottomRows(p) = gradient->parts;
+  return slopes;
+}
+
+// Columns of the least-squares problem of the multipliers.
+struct Balance {
+  std::vector<VectorXd> columns;
+  std::vector<double*> places;  // where each multiplier belongs
+  std::vector<double> units;
+  double steepest = 0;  // of the parts of the goal, which come first
+
+  void add(VectorXd column, double& place, double unit) {
+    columns.push_back(std::move(column));
+    places.push_back(&place);
+    units.push_back(unit);
+  }
+};
+
+// Weights of the parts and multipliers of conditions and bounds, with which the slopes balance best.
+void balance_slopes(Balance& balance, std::size_t num_parts, DesignSensitivity& result) {
+  auto& [columns, places, units, steepest] = balance;
+  const Index n = columns.front().size();
+  if (!(steepest > 0)) {
+    for (std::size_t k = 0; k < num_parts; ++k) *places[k] = 1.0 / static_cast<double>(num_parts);
+    return;
+  }
+  // Conditions and bounds as steep as the parts: nothing depends on their units.
+  for (std::size_t k = num_parts; k < columns.size(); ++k) {
+    const double norm = columns[k].norm();
+    if (!(norm > 0)) continue;
+    columns[k] *= steepest / norm;
+    units[k] *= steepest / norm;
+  }
+  // |D z|^2 is least with sum mu_k = 1 in the direction in which |D z|^2 + c^2 (sum mu_k - 1)^2 is, whatever c: with
+  // z = s z1 the latter is c^2 r^2/(c^2 + r^2) at the best s, which grows with r = |D z1|.
+  MatrixXd A = MatrixXd::Zero(n + 1, static_cast<Index>(columns.size()));
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    A.col(static_cast<Index>(k)).head(n) = columns[k];
+    if (k < num_parts) A(n, static_cast<Index>(k)) = steepest;
+  }
+  VectorXd multipliers = nonnegative_least_squares(A, steepest * VectorXd::Unit(n + 1, n));
+  multipliers /= multipliers.head(static_cast<Index>(num_parts)).sum();
+  for (std::size_t k = 0; k < columns.size(); ++k) *places[k] = multipliers(static_cast<Index>(k)) * units[k];
+  result.left_over = (A * multipliers).head(n).norm();
+  result.residual = result.left_over / steepest;
+}
+
+}  // namespace
+
 std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem, const VectorXd& x, double active,
                                                     double step) {
   const Index n = x.size(), m = problem.num_conditions, p = problem.num_parts;
@@ -68,18 +132,9 @@ std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem
   const OptionalVector here = at(x);
   if (!here || !here->allFinite()) return std::nullopt;
   const VectorXd width = problem.upper - problem.lower;
-  MatrixXd slopes(1 + m + p, n);  // rows f, g, f_k; columns x_i
-  std::optional<DesignGradient> gradient;
-  if (problem.gradient) gradient = problem.gradient(x);
-  if (gradient) {
-    slopes.row(0) = gradient->goal.transpose();
-    slopes.middleRows(1, m) = gradient->conditions;
-    if (p > 0) slopes.bottomRows(p) = gradient->parts;
-  } else {
-    const std::optional<MatrixXd> differences = difference_jacobian(at, x, problem.lower, problem.upper, step * width);
-    if (!differences) return std::nullopt;
-    slopes = *differences;
-  }
+  const std::optional<MatrixXd> found = slopes_at(problem, at, x, step);
+  if (!found) return std::nullopt;
+  MatrixXd slopes = *found;
   DesignSensitivity result;
   result.gradient = {slopes.row(0).transpose(), slopes.middleRows(1, m), slopes.bottomRows(p)};
   result.upward = result.gradient.goal;
@@ -94,61 +149,22 @@ std::optional<DesignSensitivity> design_sensitivity(const DesignProblem& problem
   slopes *= width.asDiagonal();  // x over the bounds' distance
   result.multipliers = VectorXd::Zero(m);
   result.below = result.above = VectorXd::Zero(n);
-  // Columns of the least-squares problem: active parts of the goal, conditions and bounds. One smooth goal is a part
-  // whose weight is 1.
+  // Active parts of the goal, conditions and bounds. One smooth goal is a part whose weight is 1.
   if (parts.empty()) parts.push_back(0);
-  std::vector<VectorXd> columns;
-  std::vector<double*> places;
-  std::vector<double> units;
-  double one = 0, steepest = 0;
+  Balance balance;
+  double one = 0;
   for (const Index k : parts) {
-    columns.push_back(slopes.row(k).transpose());
-    places.push_back(k == 0 ? &one : &result.weights(k - 1 - m));
-    units.push_back(1);
-    steepest = std::max(steepest, columns.back().norm());
+    balance.add(slopes.row(k).transpose(), k == 0 ? one : result.weights(k - 1 - m), 1);
+    balance.steepest = std::max(balance.steepest, balance.columns.back().norm());
   }
-  for (Index j = 0; j < m; ++j) {
-    if (!(std::abs((*here)(j + 1)) <= active)) continue;
-    columns.push_back(slopes.row(j + 1).transpose());
-    places.push_back(&result.multipliers(j));
-    units.push_back(1);
-  }
+  for (Index j = 0; j < m; ++j)
+    if (std::abs((*here)(j + 1)) <= active) balance.add(slopes.row(j + 1).transpose(), result.multipliers(j), 1);
   for (Index i = 0; i < n; ++i) {
     const double tolerance = active * width(i);
-    if (x(i) - problem.lower(i) <= tolerance) {
-      columns.push_back(-VectorXd::Unit(n, i));
-      places.push_back(&result.below(i));
-      units.push_back(1 / width(i));
-    }
-    if (problem.upper(i) - x(i) <= tolerance) {
-      columns.push_back(VectorXd::Unit(n, i));
-      places.push_back(&result.above(i));
-      units.push_back(1 / width(i));
-    }
+    if (x(i) - problem.lower(i) <= tolerance) balance.add(-VectorXd::Unit(n, i), result.below(i), 1 / width(i));
+    if (problem.upper(i) - x(i) <= tolerance) balance.add(VectorXd::Unit(n, i), result.above(i), 1 / width(i));
   }
-  if (!(steepest > 0)) {
-    for (std::size_t k = 0; k < parts.size(); ++k) *places[k] = 1.0 / static_cast<double>(parts.size());
-    return result;
-  }
-  // Conditions and bounds as steep as the parts: nothing depends on their units.
-  for (std::size_t k = parts.size(); k < columns.size(); ++k) {
-    const double norm = columns[k].norm();
-    if (!(norm > 0)) continue;
-    columns[k] *= steepest / norm;
-    units[k] *= steepest / norm;
-  }
-  // |D z|^2 is least with sum mu_k = 1 in the direction in which |D z|^2 + c^2 (sum mu_k - 1)^2 is, whatever c: with
-  // z = s z1 the latter is c^2 r^2/(c^2 + r^2) at the best s, which grows with r = |D z1|.
-  MatrixXd A = MatrixXd::Zero(n + 1, static_cast<Index>(columns.size()));
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    A.col(static_cast<Index>(k)).head(n) = columns[k];
-    if (k < parts.size()) A(n, static_cast<Index>(k)) = steepest;
-  }
-  VectorXd multipliers = nonnegative_least_squares(A, steepest * VectorXd::Unit(n + 1, n));
-  multipliers /= multipliers.head(static_cast<Index>(parts.size())).sum();
-  for (std::size_t k = 0; k < columns.size(); ++k) *places[k] = multipliers(static_cast<Index>(k)) * units[k];
-  result.left_over = (A * multipliers).head(n).norm();
-  result.residual = result.left_over / steepest;
+  balance_slopes(balance, parts.size(), result);
   return result;
 }
 

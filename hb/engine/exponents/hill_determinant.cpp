@@ -57,111 +57,141 @@ HillDeterminant::HillDeterminant(const ScaledSystem& system)
   }
 }
 
-HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
-  end_if_wished();
-  const auto E = [&](Index i, Index j, Index m) {
+// The infinite matrix at one s, each row over its divisor.
+class HillDeterminant::Matrix {
+ public:
+  Matrix(const FourierSeries& K, const VectorXcd& p, const VectorXcd& p_other, cplx s, Index P)
+      : K_(K), p_(p), p_other_(p_other), s_(s), I_(p.size()), P_(P) {}
+
+  // Harmonics up to it, where the coupling is strong.
+  [[nodiscard]] Index core(Index H) const {
+    VectorXd pull = VectorXd::Zero(I_);
+    for (Index i = 0; i < I_; ++i)
+      for (Index j = 0; j < I_; ++j) pull(i) += 2 * K_.c.row(i + I_ * j).cwiseAbs().sum();
+    Index core = std::min(P_, H);
+    for (Index k = core; k <= H; ++k)
+      for (Index i = 0; i < I_; ++i)
+        if (pull(i) > 0.5 * std::min(std::abs(D(i, k)), std::abs(D(i, -k)))) core = k;
+    return core;
+  }
+
+  // Of harmonics up to H: S = A_nn - A_n,n+1 S_{n+1}^-1 A_n+1,n from the outermost harmonics to the core, on both
+  // sides.
+  [[nodiscard]] Value window_determinant(Index H, Index core) const {
+    cplx log_det = 0;
+    MatrixXcd A = block({-core, core}, {-core, core});
+    const Index step = std::max<Index>(P_, 1);
+    for (const Index side : {1, -1}) {
+      const auto rows = [&](Index a, Index b) { return side > 0 ? Range{a, b} : Range{-b, -a}; };
+      MatrixXcd S;
+      Range outer;  // the block before
+      for (Index to = H; to > core;) {
+        const Index from = std::max(core + 1, to - step + 1);
+        const Range range = rows(from, to);
+        MatrixXcd here = block(range, range);
+        if (S.size() > 0) log_det += eliminate(S, outer, range, here);
+        S = std::move(here);
+        outer = range;
+        to = from - 1;
+      }
+      if (S.size() > 0) log_det += eliminate(S, outer, {-core, core}, A);
+    }
+    const dense::Lu<cplx> lu(A);
+    log_det += log_determinant(lu);
+    return {log_det, 16 * eps * double(A.rows()) / lu.rcond()};
+  }
+
+  // -1/2 sum E_ij,m E_ji,-m / (D_i(k) D_j(k - m)) over pairs of harmonics that are not both inside; D ~ -k^2 far out.
+  [[nodiscard]] cplx beyond_window(Index H) const {
+    const Index far = 4 * H;
+    MatrixXcd inverse(I_, 2 * (far + P_) + 1);
+    for (Index k = -far - P_; k <= far + P_; ++k)
+      for (Index i = 0; i < I_; ++i) inverse(i, k + far + P_) = 1.0 / D(i, k);
+    cplx second = 0;
+    double trace = 0;
+    for (Index m = -P_; m <= P_; ++m)
+      for (Index i = 0; i < I_; ++i) {
+        end_if_wished();
+        for (Index j = 0; j < I_; ++j) {
+          const cplx product = E(i, j, m) * E(j, i, -m);
+          if (product == 0.0) continue;
+          cplx sum = 0;
+          for (Index k = -far; k <= far; ++k)
+            if (std::abs(k) > H || std::abs(k - m) > H) sum += inverse(i, k + far + P_) * inverse(j, k - m + far + P_);
+          second -= 0.5 * product * sum;
+          trace += product.real();
+        }
+      }
+    return second - trace / (3 * std::pow(double(far) + 0.5, 3));
+  }
+
+  // ln of the product of all 2 sinh pi (s - p_j), over the divisors of the rows.
+  [[nodiscard]] cplx sines() const {
+    cplx sum = 0;
+    for (Index i = 0; i < I_; ++i)
+      for (const cplx p : {p_(i), p_other_(i)}) {
+        // s - p + ik with the k that makes it smallest: sinh pi (s - p) = (-1)^k sinh pi (s - p + ik).
+        const double k = -std::round((s_ - p).imag());
+        const cplx rest = s_ - p + cplx(0, k);
+        sum += cplx(0, pi * k) + (std::abs(rest) > near ? log_two_sinh(rest) : log_two_sinh_over(rest));
+      }
+    return sum;
+  }
+
+ private:
+  // Harmonics.
+  struct Range {
+    Index from = 0, to = 0;
+  };
+
+  [[nodiscard]] cplx E(Index i, Index j, Index m) const {
     const cplx c = K_.c(i + I_ * j, std::abs(m));
     return m >= 0 ? c : std::conj(c);
-  };
-  const auto D = [&](Index i, Index k) {
-    const cplx z = s + cplx(0, double(k));
+  }
+  [[nodiscard]] cplx D(Index i, Index k) const {
+    const cplx z = s_ + cplx(0, double(k));
     return (z - p_(i)) * (z - p_other_(i));
-  };
+  }
   // D without the roots that are near.
-  const auto divisor = [&](Index i, Index k) {
-    const cplx z = s + cplx(0, double(k));
+  [[nodiscard]] cplx divisor(Index i, Index k) const {
+    const cplx z = s_ + cplx(0, double(k));
     cplx d = 1;
     for (const cplx p : {p_(i), p_other_(i)})
       if (std::abs(z - p) > near) d *= z - p;
     return d;
-  };
-  // Rows k = from..to, columns l = left..right, each row over its divisor.
-  const auto block = [&](Index from, Index to, Index left, Index right) {
-    MatrixXcd A = MatrixXcd::Zero((to - from + 1) * I_, (right - left + 1) * I_);
-    for (Index k = from; k <= to; ++k)
-      for (Index l = std::max(left, k - P_); l <= std::min(right, k + P_); ++l)
+  }
+
+  [[nodiscard]] MatrixXcd block(Range rows, Range columns) const {
+    MatrixXcd A = MatrixXcd::Zero((rows.to - rows.from + 1) * I_, (columns.to - columns.from + 1) * I_);
+    for (Index k = rows.from; k <= rows.to; ++k)
+      for (Index l = std::max(columns.from, k - P_); l <= std::min(columns.to, k + P_); ++l)
         for (Index i = 0; i < I_; ++i)
           for (Index j = 0; j < I_; ++j)
-            A((k - from) * I_ + i, (l - left) * I_ + j) =
+            A((k - rows.from) * I_ + i, (l - columns.from) * I_ + j) =
                 (E(i, j, k - l) + (k == l && i == j ? D(i, k) : cplx(0))) / divisor(i, k);
     return A;
-  };
-
-  // Harmonics where the coupling is strong make up the core.
-  VectorXd pull = VectorXd::Zero(I_);
-  for (Index i = 0; i < I_; ++i)
-    for (Index j = 0; j < I_; ++j) pull(i) += 2 * K_.c.row(i + I_ * j).cwiseAbs().sum();
-  Index core = std::min(P_, H);
-  for (Index k = core; k <= H; ++k)
-    for (Index i = 0; i < I_; ++i)
-      if (pull(i) > 0.5 * std::min(std::abs(D(i, k)), std::abs(D(i, -k)))) core = k;
-
-  if ((2 * core + 1) * I_ > most_unknowns || P_ * I_ > most_unknowns) return {0, HUGE_VAL};
-
-  // S = A_nn - A_n,n+1 S_{n+1}^-1 A_n+1,n from the outermost harmonics to the core, on both sides.
-  cplx log_det = 0;
-  MatrixXcd A = block(-core, core, -core, core);
-  const Index step = std::max<Index>(P_, 1);
-  for (const Index side : {1, -1}) {
-    MatrixXcd S;
-    Index outer_from = 0, outer_to = 0;  // |k| of the block before
-    for (Index to = H; to > core;) {
-      const Index from = std::max(core + 1, to - step + 1);
-      const auto rows = [&](Index a, Index b) { return side > 0 ? std::pair(a, b) : std::pair(-b, -a); };
-      const auto [lo, hi] = rows(from, to);
-      MatrixXcd here = block(lo, hi, lo, hi);
-      if (S.size() > 0) {
-        const auto [olo, ohi] = rows(outer_from, outer_to);
-        const dense::Lu<cplx> lu(S);
-        log_det += log_determinant(lu);
-        here -= block(lo, hi, olo, ohi) * lu.solve(block(olo, ohi, lo, hi));
-      }
-      S = std::move(here);
-      outer_from = from;
-      outer_to = to;
-      to = from - 1;
-    }
-    if (S.size() > 0) {
-      const auto [olo, ohi] = side > 0 ? std::pair(outer_from, outer_to) : std::pair(-outer_to, -outer_from);
-      const dense::Lu<cplx> lu(S);
-      log_det += log_determinant(lu);
-      A -= block(-core, core, olo, ohi) * lu.solve(block(olo, ohi, -core, core));
-    }
   }
-  const dense::Lu<cplx> lu(A);
-  log_det += log_determinant(lu);
 
-  // -1/2 sum E_ij,m E_ji,-m / (D_i(k) D_j(k - m)) over pairs of harmonics that are not both inside; D ~ -k^2 far out.
-  const Index far = 4 * H;
-  MatrixXcd inverse(I_, 2 * (far + P_) + 1);
-  for (Index k = -far - P_; k <= far + P_; ++k)
-    for (Index i = 0; i < I_; ++i) inverse(i, k + far + P_) = 1.0 / D(i, k);
-  cplx second = 0;
-  double trace = 0;
-  for (Index m = -P_; m <= P_; ++m)
-    for (Index i = 0; i < I_; ++i) {
-      end_if_wished();
-      for (Index j = 0; j < I_; ++j) {
-        const cplx product = E(i, j, m) * E(j, i, -m);
-        if (product == 0.0) continue;
-        cplx sum = 0;
-        for (Index k = -far; k <= far; ++k)
-          if (std::abs(k) > H || std::abs(k - m) > H) sum += inverse(i, k + far + P_) * inverse(j, k - m + far + P_);
-        second -= 0.5 * product * sum;
-        trace += product.real();
-      }
-    }
-  second -= trace / (3 * std::pow(double(far) + 0.5, 3));
+  // Takes what the harmonics `outer`, reduced to S, add to `A` of the harmonics `inner`; ln det S.
+  [[nodiscard]] cplx eliminate(const MatrixXcd& S, Range outer, Range inner, MatrixXcd& A) const {
+    const dense::Lu<cplx> lu(S);
+    A -= block(inner, outer) * lu.solve(block(outer, inner));
+    return log_determinant(lu);
+  }
 
-  cplx sines = 0;
-  for (Index i = 0; i < I_; ++i)
-    for (const cplx p : {p_(i), p_other_(i)}) {
-      // s - p + ik with the k that makes it smallest: sinh pi (s - p) = (-1)^k sinh pi (s - p + ik).
-      const double k = -std::round((s - p).imag());
-      const cplx rest = s - p + cplx(0, k);
-      sines += cplx(0, pi * k) + (std::abs(rest) > near ? log_two_sinh(rest) : log_two_sinh_over(rest));
-    }
-  return {log_det + second + sines, 16 * eps * double(A.rows()) / lu.rcond()};
+  const FourierSeries& K_;
+  const VectorXcd &p_, &p_other_;
+  cplx s_;
+  Index I_, P_;
+};
+
+HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
+  end_if_wished();
+  const Matrix matrix(K_, p_, p_other_, s, P_);
+  const Index core = matrix.core(H);
+  if ((2 * core + 1) * I_ > most_unknowns || P_ * I_ > most_unknowns) return {0, HUGE_VAL};
+  const Value inside = matrix.window_determinant(H, core);
+  return {inside.log + matrix.beyond_window(H) + matrix.sines(), inside.error};
 }
 
 HillDeterminant::Value HillDeterminant::operator()(cplx s) const {

@@ -44,6 +44,7 @@ class HillDeterminant {
     Eigen::VectorXd a;
     double change = 0;
   };
+  class Matrix;
   Value truncated(std::complex<double> s, Eigen::Index H) const;
   Polynomial on_circle(double c) const;
   Exponents roots_near(double c) const;

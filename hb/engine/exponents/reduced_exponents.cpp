@@ -1,7 +1,6 @@
 #include "hb/engine/exponents/reduced_exponents.hpp"
 
 #include <algorithm>
-#include <numbers>
 #include <optional>
 
 #include "hb/engine/exponents/mathieu_determinant.hpp"
@@ -62,21 +61,82 @@ std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tol
   return result;
 }
 
-}  // namespace
-
-// Exponents of a reduced system by propagation with growing numbers of cells.
-Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+// About the frequencies of the modes kept, which balance the coordinates.
+VectorXd mode_sizes(const ReducedSystem& reduced) {
   const Index m = reduced.num_modes;
-  // Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
   VectorXd W(m);
   for (Index i = 0; i < m; ++i) W(i) = std::max(1.0, std::sqrt(std::abs(reduced.alpha.c(i + m * i, 0))));
+  return W;
+}
+
+// Fastest frequency kept: sqrt of the largest row sum of |alpha| in balanced coordinates.
+double fastest_frequency(const ReducedSystem& reduced, const VectorXd& W) {
+  const Index m = reduced.num_modes;
   double fastest2 = 1;
   for (Index i = 0; i < m; ++i) {
     double row = 0;
     for (Index j = 0; j < m; ++j) row += fourier::wiener_norm(reduced.alpha, i + m * j) / (W(i) * W(j)) * W(i) * W(i);
     fastest2 = std::max(fastest2, row);
   }
-  const double fastest = std::sqrt(fastest2);
+  return std::sqrt(fastest2);
+}
+
+// Cells to begin with.
+Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance) {
+  // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
+  // agree by chance.
+  constexpr Index fewest_cells = 12;
+  Index least =
+      std::max({fewest_cells, Index(std::ceil(0.8 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance) + 1});
+  // The phase of one oscillator comes out to (0.61 w/cells)^15 of a turn (measured).
+  if (reduced.num_modes == 1 && reduced.alpha.c(0, 0).real() > 0) {
+    const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
+    const double needed = 0.61 * w * std::pow(allowed(tolerance, -b / 2), -1.0 / 15);
+    if (b < w && needed < 8.0 * double(least)) least = std::max(least, Index(std::ceil(needed)));
+  }
+  return radau_cells(least);
+}
+
+// Exponents with so many cells, and how much each differs from those with fewer.
+struct Cells {
+  Index count = 0;
+  TurnExponents turn;
+  std::vector<double> change;  // empty: nothing to compare with
+};
+
+// Errors of the exponents of `fine` from their distances to those of `coarse`, which become fine.change.
+std::vector<double> errors_from(const Cells& coarse, Cells& fine) {
+  const std::size_t n = fine.turn.s.size();
+  std::vector<double> error(n, HUGE_VAL);
+  fine.change.assign(n, HUGE_VAL);
+  for (std::size_t i = 0; i < n; ++i) {
+    // The nearest coarse exponent; angles modulo 1.
+    double nearest = HUGE_VAL;
+    std::size_t its = 0;
+    for (std::size_t k = 0; k < coarse.turn.s.size(); ++k) {
+      double turn = std::abs(fine.turn.s[i].imag() - coarse.turn.s[k].imag());
+      turn = std::min(turn, std::abs(1 - turn));
+      const double distance = std::hypot(fine.turn.s[i].real() - coarse.turn.s[k].real(), turn);
+      if (!(distance < nearest)) continue;
+      nearest = distance;
+      its = k;
+    }
+    fine.change[i] = nearest;
+    // Two that agree by chance do not make up for the step before, which order 15 shrinks.
+    const double before =
+        coarse.change.empty() ? 0 : coarse.change[its] * std::pow(double(coarse.count) / double(fine.count), 15);
+    error[i] = std::max(nearest, before) + fine.turn.error[i];
+  }
+  return error;
+}
+
+}  // namespace
+
+// Exponents of a reduced system by propagation with growing numbers of cells.
+Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
+  const Index m = reduced.num_modes;
+  const VectorXd W = mode_sizes(reduced);
+  const double fastest = fastest_frequency(reduced, W);
 
   // Beyond some seconds' work nothing is known.
   constexpr double most_work = 1e8;
@@ -86,80 +146,47 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     nothing.others_below = HUGE_VAL;
     return nothing;
   }
-  // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
-  // agree by chance.
-  constexpr Index fewest_cells = 12;
-  Index least =
-      std::max({fewest_cells, Index(std::ceil(0.8 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance) + 1});
-  // The phase of one oscillator comes out to (0.61 w/cells)^15 of a turn (measured).
-  if (m == 1 && reduced.alpha.c(0, 0).real() > 0) {
-    const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
-    const double needed = 0.61 * w * std::pow(allowed(tolerance, -b / 2), -1.0 / 15);
-    if (b < w && needed < 8.0 * double(least)) least = std::max(least, Index(std::ceil(needed)));
-  }
-  Index cells = radau_cells(least);
-  const Index most = std::max<Index>(512, 12 * cells);
+  const Index least = first_cells(reduced, fastest, tolerance), most = std::max<Index>(512, 12 * least);
   // The other exponents are wanted too, but for so much work only.
   constexpr double further_tolerance = 1e-9;
   constexpr Index most_further = 4;
   Index enough = 0;  // cells for the leading one
   Exponents result;
-  std::optional<TurnExponents> coarse;
-  Index coarse_cells = 0;
-  std::vector<double> coarse_change;  // of coarse exponents from those before
+  std::optional<Cells> coarse;
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error(0) / 2 : 0;
-  while (cells <= most && work(double(cells)) < most_work) {
+  for (Index cells = least; cells <= most && work(double(cells)) < most_work; cells = radau_cells(cells + 1)) {
     // Errors of the coefficients over a cell: h d alpha W^-1, h d beta.
     MatrixXd given = MatrixXd::Zero(2 * m, 2 * m);
-    const double h = 2 * std::numbers::pi / double(cells);
+    const double h = two_pi / double(cells);
     given.bottomLeftCorner(m, m) = h * reduced.alpha_error * W.cwiseInverse().asDiagonal();
     given.bottomRightCorner(m, m) = h * reduced.beta_error;
-    TurnExponents fine = turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, leading_only,
-                                        coarse ? coarse->subspaces : MatrixXd());
-    std::vector<double> change;
+    Cells fine{cells,
+               turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, leading_only,
+                              coarse ? coarse->turn.subspaces : MatrixXd()),
+               {}};
     if (coarse) {
-      result.s = fine.s;
-      result.others_below = fine.others_below;
-      result.error.assign(fine.s.size(), HUGE_VAL);
-      change.assign(fine.s.size(), HUGE_VAL);
-      for (std::size_t i = 0; i < fine.s.size(); ++i) {
-        // The nearest coarse exponent; angles modulo 1.
-        double nearest = HUGE_VAL;
-        std::size_t its = 0;
-        for (std::size_t k = 0; k < coarse->s.size(); ++k) {
-          double turn = std::abs(fine.s[i].imag() - coarse->s[k].imag());
-          turn = std::min(turn, std::abs(1 - turn));
-          const double distance = std::hypot(fine.s[i].real() - coarse->s[k].real(), turn);
-          if (!(distance < nearest)) continue;
-          nearest = distance;
-          its = k;
-        }
-        change[i] = nearest;
-        // Two that agree by chance do not make up for the step before, which order 15 shrinks.
-        const double before =
-            coarse_change.empty() ? 0 : coarse_change[its] * std::pow(double(coarse_cells) / double(cells), 15);
-        result.error[i] = std::max(nearest, before) + fine.error[i] + damping_error;
-      }
+      result.s = fine.turn.s;
+      result.others_below = fine.turn.others_below;
+      result.error = errors_from(*coarse, fine);
+      for (double& error : result.error) error += damping_error;
       if (result.s.empty()) break;
       // At rounding more cells gain nothing.
-      const auto at_rounding = [&](std::size_t i) { return result.error[i] <= 2 * fine.error[i]; };
-      result.converged = result.error[0] <= allowed(tolerance, fine.s[0]);
+      const auto at_rounding = [&](std::size_t i) { return result.error[i] <= 2 * fine.turn.error[i]; };
+      result.converged = result.error[0] <= allowed(tolerance, fine.turn.s[0]);
       bool done = result.converged || at_rounding(0);
       if (done && enough == 0) enough = cells;
-      for (std::size_t i = 1; i < fine.s.size() && !leading_only && cells < most_further * enough; ++i)
-        done = done && (at_rounding(i) || result.error[i] <= further_tolerance * std::max(std::abs(fine.s[i]), 1.0));
+      for (std::size_t i = 1; i < fine.turn.s.size() && !leading_only && cells < most_further * enough; ++i)
+        done =
+            done && (at_rounding(i) || result.error[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
       if (done) break;
     }
     coarse = std::move(fine);
-    coarse_cells = cells;
-    coarse_change = std::move(change);
-    cells = radau_cells(cells + 1);
   }
   if (result.s.empty() && coarse) {
-    result.s = coarse->s;
-    result.error.assign(coarse->s.size(), HUGE_VAL);
-    result.others_below = coarse->others_below;
+    result.s = coarse->turn.s;
+    result.error.assign(coarse->turn.s.size(), HUGE_VAL);
+    result.others_below = coarse->turn.others_below;
   }
   return result;
 }

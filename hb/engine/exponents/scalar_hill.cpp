@@ -38,6 +38,88 @@ struct Mean {
   }
 };
 
+// psi = e^L at M nodes of the turn, and what follows from it.
+struct PhaseFunction {
+  // left: how much the last correction differed.
+  PhaseFunction(double sigma, double left, const FourierSeries& L, const FourierSeries& alpha,
+                const FourierSeries& beta, Index M)
+      : sigma(sigma),
+        left(left),
+        a(sampled(alpha, M)),
+        b(sampled(beta, M)),
+        b1(sampled(fourier::derivative(beta), M)),
+        psi(sampled(L, M).exp()),
+        psi2(psi.square()),
+        correction(schwarzian(L, M)),
+        defect((psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)).abs().maxCoeff()),
+        frequency(psi) {}
+
+  [[nodiscard]] ExponentPair exponents(double alpha_error, double beta_error) const {
+    return sigma > 0 ? oscillating(alpha_error, beta_error) : overdamped(alpha_error, beta_error);
+  }
+
+  double sigma, left;
+  ArrayXd a, b, b1, psi, psi2, correction;
+  double defect;
+  Mean frequency;
+
+ private:
+  [[nodiscard]] ExponentPair oscillating(double alpha_error, double beta_error) const;
+  [[nodiscard]] ExponentPair overdamped(double alpha_error, double beta_error) const;
+
+  // What an error of Q and those of the coefficients do to psi.
+  [[nodiscard]] double dQ() const { return 2 * std::max(defect, left); }
+  [[nodiscard]] double floor() const { return 2 * psi.minCoeff(); }
+};
+
+ExponentPair PhaseFunction::oscillating(double alpha_error, double beta_error) const {
+  const double largest_b = b.abs().maxCoeff();
+  ExponentPair pair;
+  const double error =
+      (dQ() + alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor() +
+      beta_error + 4 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
+  pair.s = {std::complex<double>(-b.mean() / 2, frequency.value),
+            std::complex<double>(-b.mean() / 2, -frequency.value)};
+  pair.error = {error, error};
+  return pair;
+}
+
+ExponentPair PhaseFunction::overdamped(double alpha_error, double beta_error) const {
+  const double largest_b = b.abs().maxCoeff();
+  ExponentPair pair;
+  // r = -beta/2 +- chi - chi'/(2 chi); of the two the one that nearly cancels is
+  // chi - |beta|/2 = (chi^2 - beta^2/4)/(chi + |beta|/2) with chi^2 - beta^2/4 = -alpha + beta'/2 - correction.
+  const ArrayXd near = (-a + b1 / 2 - correction) / (psi + b.abs() / 2);
+  const double sign = b.mean() >= 0 ? 1 : -1;
+  const Mean mean(near);
+  const double slow = sign > 0 ? mean.value : -mean.value, fast = -b.mean() - slow;
+  if (b.minCoeff() * sign < 0) {  // |beta| is not smooth: no cancellation to avoid either
+    const double up = -b.mean() / 2 + frequency.value, down = -b.mean() / 2 - frequency.value;
+    pair.s = {up, down};
+    const double error = (dQ() + alpha_error + beta_error * (largest_b + psi.maxCoeff())) / floor() + beta_error +
+                         8 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
+    pair.error = {error, error};
+  } else {
+    // Residual of the slow root's own Riccati equation r' + r^2 + beta r + alpha: relative to alpha, not to beta^2.
+    const double reach = std::abs(slow) + near.abs().maxCoeff();
+    const double relative = 8 * eps * psi2.maxCoeff() / psi2.minCoeff();
+    // Rounding of psi^2 hides in `defect`, but harms `near` in proportion only.
+    const double slow_dQ = 2 * std::max(defect - 8 * eps * psi2.maxCoeff(), left);
+    const double slow_error = relative * near.abs().maxCoeff() + slow_dQ / floor() + mean.change +
+                              (alpha_error + beta_error * reach) / floor() +
+                              8 * eps * (reach + (a.abs().maxCoeff() + correction.abs().maxCoeff()) / floor());
+    const double fast_error = (dQ() + alpha_error + beta_error * (largest_b + psi.maxCoeff())) / floor() + beta_error +
+                              8 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
+    pair.s = {slow, fast};
+    pair.error = {slow_error, fast_error};
+    if (slow < fast) {
+      std::swap(pair.s[0], pair.s[1]);
+      std::swap(pair.error[0], pair.error[1]);
+    }
+  }
+  return pair;
+}
+
 }  // namespace
 
 std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, const FourierSeries& given_beta,
@@ -69,57 +151,10 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
     if (!std::isfinite(left)) return std::nullopt;
     // From here on psi = exp(L), L a trigonometric polynomial, is what it is; its defect at twice the nodes says how
     // good it is, sampling included.
-    const Index M = 2 * N;
-    a = sampled(alpha, M), b = sampled(beta, M), b1 = sampled(fourier::derivative(beta), M);
-    const ArrayXd psi = sampled(L, M).exp(), psi2 = psi.square();
-    correction = schwarzian(L, M);
-    const double defect = (psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)).abs().maxCoeff();
-    const double floor = 2 * psi.minCoeff();
-    const double dQ = 2 * std::max(defect, left);
-    const double largest_b = b.abs().maxCoeff();
-    const Mean frequency(psi);
-    ExponentPair pair;
-    if (sigma > 0) {
-      const double error =
-          (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor +
-          beta_error + 4 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
-      pair.s = {std::complex<double>(-b.mean() / 2, frequency.value),
-                std::complex<double>(-b.mean() / 2, -frequency.value)};
-      pair.error = {error, error};
-    } else {
-      // r = -beta/2 +- chi - chi'/(2 chi); of the two the one that nearly cancels is
-      // chi - |beta|/2 = (chi^2 - beta^2/4)/(chi + |beta|/2) with chi^2 - beta^2/4 = -alpha + beta'/2 - correction.
-      const ArrayXd near = (-a + b1 / 2 - correction) / (psi + b.abs() / 2);
-      const double sign = b.mean() >= 0 ? 1 : -1;
-      const Mean mean(near);
-      const double slow = sign > 0 ? mean.value : -mean.value, fast = -b.mean() - slow;
-      if (b.minCoeff() * sign < 0) {  // |beta| is not smooth: no cancellation to avoid either
-        const double up = -b.mean() / 2 + frequency.value, down = -b.mean() / 2 - frequency.value;
-        pair.s = {up, down};
-        const double error = (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff())) / floor + beta_error +
-                             8 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
-        pair.error = {error, error};
-      } else {
-        // Residual of the slow root's own Riccati equation r' + r^2 + beta r + alpha: relative to alpha, not to beta^2.
-        const double reach = std::abs(slow) + near.abs().maxCoeff();
-        const double relative = 8 * eps * psi2.maxCoeff() / psi2.minCoeff();
-        // Rounding of psi^2 hides in `defect`, but harms `near` in proportion only.
-        const double slow_dQ = 2 * std::max(defect - 8 * eps * psi2.maxCoeff(), left);
-        const double slow_error = relative * near.abs().maxCoeff() + slow_dQ / floor + mean.change +
-                                  (alpha_error + beta_error * reach) / floor +
-                                  8 * eps * (reach + (a.abs().maxCoeff() + correction.abs().maxCoeff()) / floor);
-        const double fast_error = (dQ + alpha_error + beta_error * (largest_b + psi.maxCoeff())) / floor + beta_error +
-                                  8 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
-        pair.s = {slow, fast};
-        pair.error = {slow_error, fast_error};
-        if (slow < fast) {
-          std::swap(pair.s[0], pair.s[1]);
-          std::swap(pair.error[0], pair.error[1]);
-        }
-      }
-    }
+    const PhaseFunction phase{sigma, left, L, alpha, beta, 2 * N};
+    const ExponentPair pair = phase.exponents(alpha_error, beta_error);
     if (std::isfinite(pair.error[0]) && pair.error[0] <= tolerance && std::isfinite(pair.error[1])) return pair;
-    if (!(defect > 2 * left)) return std::nullopt;  // a finer grid helps only against lost harmonics
+    if (!(phase.defect > 2 * left)) return std::nullopt;  // a finer grid helps only against lost harmonics
   }
   return std::nullopt;
 }

@@ -88,16 +88,20 @@ std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double a, doubl
   return std::nullopt;
 }
 
-}  // namespace
+// The top at x lies between a and b.
+struct Bracket {
+  double a, x, b, fa, fx, fb;
+  std::optional<ResponsePeak> pole;  // found instead
 
-std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseAt& value, double low, double inside,
-                                        double high, double tolerance) {
-  std::optional<double> f_low = rough(low), f_inside = rough(inside), f_high = rough(high);
-  if (!f_low || !f_inside || !f_high) return std::nullopt;
-  // Golden sections with parabolas until the parabola describes what is between: a width to interpolate over.
+  bool narrow(const ResponseAt& rough, double tolerance);
+};
+
+// Golden sections with parabolas until the parabola describes what is between: a width to interpolate over. False where
+// there is no response.
+bool Bracket::narrow(const ResponseAt& rough, double tolerance) {
+  const double f_low = fa, f_high = fb, width = b - a;
   constexpr double golden = 0.3819660112501051;
   constexpr int max_steps = 60;
-  double a = low, b = high, x = inside, fa = *f_low, fb = *f_high, fx = *f_inside;
   double last_width = HUGE_VAL;
   double next_pole = 10;  // growth at which a pole is suspected
   for (int step = 0; step < max_steps; ++step) {
@@ -110,7 +114,7 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseA
     const bool parabola = std::isfinite(y) && y > a + margin && y < b - margin && shrinks;
     if (!parabola || std::abs(y - x) <= margin) y = b - x > x - a ? x + golden * (b - x) : x - golden * (x - a);
     const std::optional<double> fy = rough(y);
-    if (!fy) return std::nullopt;
+    if (!fy) return false;
     if (*fy > fx) {
       (y > x ? a : b) = x;
       (y > x ? fa : fb) = fx;
@@ -120,16 +124,21 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseA
       (y > x ? b : a) = y;
       (y > x ? fb : fa) = *fy;
     }
-    if (fx >= next_pole * std::max(*f_low, *f_high)) {
+    if (fx >= next_pole * std::max(f_low, f_high)) {
       next_pole *= 10;
-      if (const std::optional<ResponsePeak> pole = locate_pole(rough, a, x, b)) return pole;
+      if ((pole = locate_pole(rough, a, x, b))) return true;
     }
     // Ends that have come near the top: the function is about parabolic between.
-    if (fx - std::min(fa, fb) <= 0.1 * std::abs(fx) && b - a <= 0.25 * (high - low)) break;
+    if (fx - std::min(fa, fb) <= 0.1 * std::abs(fx) && b - a <= 0.25 * width) break;
   }
+  return true;
+}
 
-  double c = x, r = std::min({0.5 * (b - a), c - low, high - c});
-  ResponsePeak peak{x, fx, 0.5 * (b - a), false};
+// Chebyshev interpolation over ever narrower intervals round the top.
+std::optional<ResponsePeak> interpolate_top(const ResponseAt& value, const Bracket& top, double low, double high,
+                                            double tolerance) {
+  double c = top.x, r = std::min({0.5 * (top.b - top.a), c - low, high - c});
+  ResponsePeak peak{top.x, top.fx, 0.5 * (top.b - top.a), false};
   constexpr int max_rounds = 12;
   for (int round = 0; round < max_rounds; ++round) {
     r = std::min({r, c - low, high - c});
@@ -171,6 +180,17 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseA
     }
   }
   return peak;
+}
+
+}  // namespace
+
+std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseAt& value, double low, double inside,
+                                        double high, double tolerance) {
+  const std::optional<double> f_low = rough(low), f_inside = rough(inside), f_high = rough(high);
+  if (!f_low || !f_inside || !f_high) return std::nullopt;
+  Bracket top{low, inside, high, *f_low, *f_inside, *f_high, std::nullopt};
+  if (!top.narrow(rough, tolerance)) return std::nullopt;
+  return top.pole ? top.pole : interpolate_top(value, top, low, high, tolerance);
 }
 
 }  // namespace hb

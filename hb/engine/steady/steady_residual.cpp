@@ -67,6 +67,95 @@ void combine(const std::array<FourierSeries, 3>& powers, Index component, Real O
   }
 }
 
+// q over `unit`, split, and the sum of its coefficients' moduli.
+struct Response {
+  std::vector<Split> parts;
+  std::vector<double> sizes;
+};
+
+Response split_response(const FourierSeries& q, Real unit, int bits) {
+  const Index H = q.num_harmonics();
+  Response response;
+  std::vector<Real> re(static_cast<std::size_t>(H + 1)), im(re.size());
+  for (Index j = 0; j < q.c.rows(); ++j) {
+    Real sum = 0;
+    for (Index k = 0; k <= H; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      re[at] = static_cast<Real>(q.c(j, k).real()) / unit;
+      im[at] = k == 0 ? 0 : static_cast<Real>(q.c(j, k).imag()) / unit;
+      sum += 2 * (std::abs(re[at]) + std::abs(im[at]));
+    }
+    response.sizes.push_back(static_cast<double>(sum));
+    response.parts.push_back(split(re, im, bits));
+  }
+  return response;
+}
+
+// The products of one entry of C with one component of q: `exact` sums and the rest of them, harmonics 0..reach.
+struct Products {
+  explicit Products(Index reach) : exact_re(reach + 1), exact_im(reach + 1), rest_re(reach + 1), rest_im(reach + 1) {}
+  Eigen::ArrayXd exact_re, exact_im, rest_re, rest_im;
+
+  // C has harmonics up to `top` of the P that it is split for, q up to H.
+  void multiply(const Split& c, Index top, Index P, const Split& x, Index H) {
+    for (Eigen::ArrayXd* part : {&exact_re, &exact_im, &rest_re, &rest_im}) part->setZero();
+    const Index reach = exact_re.size() - 1;
+    for (Index m = -top; m <= top; ++m) {
+      // rows k with |k - m| <= H
+      const Index first = std::max<Index>(0, m - H), count = std::min(reach, m + H) - first + 1;
+      if (count <= 0) continue;
+      const Index from = H + first - m;
+      const double A = c.high_re(P + m), B = c.high_im(P + m), a = c.low_re(P + m), b = c.low_im(P + m);
+      const auto X = x.high_re.array().segment(from, count), Y = x.high_im.array().segment(from, count);
+      const auto u = x.low_re.array().segment(from, count), v = x.low_im.array().segment(from, count);
+      exact_re.segment(first, count) += A * X - B * Y;
+      exact_im.segment(first, count) += A * Y + B * X;
+      rest_re.segment(first, count) += (A * u - B * v) + (a * (X + u) - b * (Y + v));
+      rest_im.segment(first, count) += (A * v + B * u) + (a * (Y + v) + b * (X + u));
+    }
+  }
+};
+
+// Sums over one row of the system, harmonics 0.., and of the moduli of what was added.
+struct RowSums {
+  explicit RowSums(Index rows) : re(static_cast<std::size_t>(rows + 1)), im(re.size()), size(re.size()) {}
+  std::vector<Real> re, im, size;
+
+  void start(const std::vector<Real>& h_re, const std::vector<Real>& h_im, Real unit) {
+    for (std::size_t k = 0; k < re.size(); ++k) {
+      re[k] = k < h_re.size() ? h_re[k] / unit : 0;
+      im[k] = k < h_im.size() && k > 0 ? h_im[k] / unit : 0;
+      size[k] = std::abs(re[k]) + std::abs(im[k]);
+    }
+  }
+  // -M q'' - B q' of one component x = q/unit.
+  void add_motion(const FourierSeries& q, Index j, Real unit, Real Omega, double mass, double damping) {
+    for (Index k = 0; k < q.c.cols(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const Real n = static_cast<Real>(k) * Omega, m = n * n * mass, b = n * damping;
+      const Real x = static_cast<Real>(q.c(j, k).real()) / unit, y = static_cast<Real>(q.c(j, k).imag()) / unit;
+      re[at] += m * x + b * y;
+      im[at] += m * y - b * x;
+      size[at] += (std::abs(m) + std::abs(b)) * (std::abs(x) + std::abs(y));
+    }
+  }
+  void subtract(const Products& products) {
+    for (Index k = 0; k < products.exact_re.size(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      size[at] += std::abs(products.exact_re(k)) + std::abs(products.exact_im(k));
+      re[at] -= static_cast<Real>(products.exact_re(k)) + products.rest_re(k);
+      if (k > 0) im[at] -= static_cast<Real>(products.exact_im(k)) + products.rest_im(k);
+    }
+  }
+};
+
+// Harmonics up to the last that is not zero.
+Index last_harmonic(const std::vector<Real>& re, const std::vector<Real>& im) {
+  std::size_t top = re.size() - 1;
+  while (top > 0 && re[top] == 0 && im[top] == 0) --top;
+  return static_cast<Index>(top);
+}
+
 }  // namespace
 
 // sum_m C_m q_{k-m} with C = C^ + c, q = q^ + p split at grids so coarse that sums of products C^ q^ have no
@@ -74,92 +163,43 @@ void combine(const std::array<FourierSeries, 3>& powers, Index component, Real O
 AccurateResidual accurate_residual(const HillSystem& system, double speed, const FourierSeries& q, double scale) {
   const Index I = system.num_modes(), H = q.num_harmonics();
   const Index P = longest(system.stiffness), F = longest(system.load);
-  const Index rows = std::max(H + P, F), reach = H + P;
+  const Index rows = std::max(H + P, F);
   // A power of two, so that q / unit is exact; the rest of the scale is applied to the residual.
   const Real Omega = speed, unit = std::ldexp(Real(1), std::ilogb(scale)), remaining = unit / static_cast<Real>(scale);
   // A sum holds 2 (2P+1) products at most: 2 bits + log2 of that must fit into 53.
   const int bits = (52 - static_cast<int>(std::ceil(std::log2(4.0 * static_cast<double>(P) + 2)))) / 2;
-
-  std::vector<Split> q_split(static_cast<std::size_t>(I));
-  std::vector<Real> re(static_cast<std::size_t>(H + 1)), im(re.size());
-  Eigen::MatrixXd q_size(I, 1);
-  for (Index j = 0; j < I; ++j) {
-    Real sum = 0;
-    for (Index k = 0; k <= H; ++k) {
-      re[static_cast<std::size_t>(k)] = static_cast<Real>(q.c(j, k).real()) / unit;
-      im[static_cast<std::size_t>(k)] = k == 0 ? 0 : static_cast<Real>(q.c(j, k).imag()) / unit;
-      sum += 2 * (std::abs(re[static_cast<std::size_t>(k)]) + std::abs(im[static_cast<std::size_t>(k)]));
-    }
-    q_size(j) = static_cast<double>(sum);
-    q_split[static_cast<std::size_t>(j)] = split(re, im, bits);
-  }
+  const Response response = split_response(q, unit, bits);
 
   AccurateResidual result{Eigen::MatrixXcd(rows + 1, I), Eigen::MatrixXd(rows + 1, I)};
   std::vector<Real> c_re(static_cast<std::size_t>(P + 1)), c_im(c_re.size());
-  std::vector<Real> sum_re(static_cast<std::size_t>(rows + 1)), sum_im(sum_re.size()), size(sum_re.size());
   std::vector<Real> h_re(static_cast<std::size_t>(F + 1)), h_im(h_re.size());
-  Eigen::ArrayXd exact_re(reach + 1), exact_im(reach + 1), rest_re(reach + 1), rest_im(reach + 1);
+  RowSums sums(rows);
+  Products products(H + P);
   for (Index i = 0; i < I; ++i) {
     combine(system.load, i, Omega, h_re, h_im);
-    for (Index k = 0; k <= rows; ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      sum_re[at] = k <= F ? h_re[at] / unit : 0;
-      sum_im[at] = k <= F && k > 0 ? h_im[at] / unit : 0;
-      size[at] = std::abs(sum_re[at]) + std::abs(sum_im[at]);
-    }
+    sums.start(h_re, h_im, unit);
     // Sum over all harmonics of the rounding of C and of the low parts: charged to harmonic 0, where |D| is least.
     Real total = 0;
     for (Index j = 0; j < I; ++j) {
       end_if_wished();
-      // -M q'' - B q'
-      for (Index k = 0; k <= H; ++k) {
-        const auto at = static_cast<std::size_t>(k);
-        const Real n = static_cast<Real>(k) * Omega, m = n * n * system.mass(i, j), b = n * system.damping(i, j);
-        const Real x = static_cast<Real>(q.c(j, k).real()) / unit, y = static_cast<Real>(q.c(j, k).imag()) / unit;
-        sum_re[at] += m * x + b * y;
-        sum_im[at] += m * y - b * x;
-        size[at] += (std::abs(m) + std::abs(b)) * (std::abs(x) + std::abs(y));
-      }
+      sums.add_motion(q, j, unit, Omega, system.mass(i, j), system.damping(i, j));
       combine(system.stiffness, i + I * j, Omega, c_re, c_im);
       c_im[0] = 0;
+      const Index top = last_harmonic(c_re, c_im);
       Real c_size = 0;
-      Index top = P;
-      while (top > 0 && c_re[static_cast<std::size_t>(top)] == 0 && c_im[static_cast<std::size_t>(top)] == 0) --top;
-      for (Index m = 0; m <= top; ++m)
-        c_size += 2 * (std::abs(c_re[static_cast<std::size_t>(m)]) + std::abs(c_im[static_cast<std::size_t>(m)]));
+      for (std::size_t m = 0; m <= static_cast<std::size_t>(top); ++m)
+        c_size += 2 * (std::abs(c_re[m]) + std::abs(c_im[m]));
       if (!(c_size > 0)) continue;
-      const Split c = split(c_re, c_im, bits);
-      const Split& x = q_split[static_cast<std::size_t>(j)];
-      exact_re.setZero();
-      exact_im.setZero();
-      rest_re.setZero();
-      rest_im.setZero();
-      for (Index m = -top; m <= top; ++m) {
-        // rows k with |k - m| <= H
-        const Index first = std::max<Index>(0, m - H), count = std::min(reach, m + H) - first + 1;
-        if (count <= 0) continue;
-        const Index from = H + first - m;
-        const double A = c.high_re(P + m), B = c.high_im(P + m), a = c.low_re(P + m), b = c.low_im(P + m);
-        const auto X = x.high_re.array().segment(from, count), Y = x.high_im.array().segment(from, count);
-        const auto u = x.low_re.array().segment(from, count), v = x.low_im.array().segment(from, count);
-        exact_re.segment(first, count) += A * X - B * Y;
-        exact_im.segment(first, count) += A * Y + B * X;
-        rest_re.segment(first, count) += (A * u - B * v) + (a * (X + u) - b * (Y + v));
-        rest_im.segment(first, count) += (A * v + B * u) + (a * (Y + v) + b * (X + u));
-      }
-      for (Index k = 0; k <= reach; ++k) {
-        const auto at = static_cast<std::size_t>(k);
-        size[at] += std::abs(exact_re(k)) + std::abs(exact_im(k));
-        sum_re[at] -= static_cast<Real>(exact_re(k)) + rest_re(k);
-        if (k > 0) sum_im[at] -= static_cast<Real>(exact_im(k)) + rest_im(k);
-      }
-      total += c_size * static_cast<Real>(q_size(j)) *
+      const auto component = static_cast<std::size_t>(j);
+      products.multiply(split(c_re, c_im, bits), top, P, response.parts[component], H);
+      sums.subtract(products);
+      total += c_size * static_cast<Real>(response.sizes[component]) *
                (static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits) + 2 * real_eps);
     }
     for (Index k = 0; k <= rows; ++k) {
       const auto at = static_cast<std::size_t>(k);
-      result.r(k, i) = {static_cast<double>(sum_re[at] * remaining), static_cast<double>(sum_im[at] * remaining)};
-      result.rounding(k, i) = static_cast<double>((4 * real_eps * size[at] + (k == 0 ? total : 0)) * remaining);
+      result.r(k, i) = {static_cast<double>(sums.re[at] * remaining), static_cast<double>(sums.im[at] * remaining)};
+      result.rounding(k, i) = static_cast<double>((4 * real_eps * sums.size[at] + (k == 0 ? total : 0)) * remaining);
     }
   }
   return result;

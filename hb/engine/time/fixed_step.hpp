@@ -1,7 +1,7 @@
 // Fixed-step integrators as engineers use them, marching from rest until the state repeats; for comparison only.
 #pragma once
 
-#include "hb/engine/time/shooting.hpp"
+#include "hb/engine/time/marching.hpp"
 #include "lib/time_domain.hpp"
 
 namespace hb {

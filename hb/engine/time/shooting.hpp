@@ -1,5 +1,5 @@
-// Periodic solution and Floquet exponents by time integration: multiple shooting on a time-domain system, and plain
-// marching from rest. Validation of harmonic balance; independent of Fourier series and Hill systems.
+// Periodic solution and Floquet exponents by time integration: multiple shooting on a time-domain system. Validation of
+// harmonic balance; independent of Fourier series and Hill systems.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hb/engine/exponents/stability.hpp"
+#include "hb/engine/time/periodic_orbit.hpp"
 #include "hb/engine/time/time_integration.hpp"
 #include "lib/time_domain.hpp"
 
@@ -31,11 +32,6 @@ enum class ShootingStatus {
   time_limit,  // stopped by the limit
   singular,  // no unique periodic solution (a multiplier 1 to working accuracy)
   failed,  // the integrator gave up
-};
-
-// The state over one turn at tau_j = 2 pi j/N; ' = d/dtau.
-struct PeriodicOrbit {
-  Eigen::MatrixXd q, q1, q2;  // I x N
 };
 
 // Error of the finer of two runs from their difference and the cycle's sensitivity. Both together are no bound: where
@@ -67,31 +63,5 @@ struct ShootingResult {
 [[nodiscard]] ShootingResult solve_by_shooting(const TimeDomainSystem& system, const ShootingOptions& options = {});
 
 [[nodiscard]] const char* to_string(ShootingStatus status);
-
-struct MarchingOptions {
-  double tolerance =
-      1e-9;  // march until the state repeats after a turn within this, relative to its largest over the turn
-  double integrator_tolerance = 0;  // CVODE's; 0: tolerance/1000
-  Integrator integrator = Integrator::automatic;  // adams or bdf
-  double time_limit = 60;  // seconds
-  double growth_rate = 0;  // if known, 1/time: predicts the turns that the transient needs; 0: not known
-};
-
-struct MarchingResult {
-  // converged: settled, to the tolerance or as far as the integrator's own errors let it; q_error says how far
-  ShootingStatus status = ShootingStatus::failed;
-  std::string message;
-  PeriodicOrbit orbit;  // of the last turn
-  double change = 0;  // of the state over the last turn, relative
-  double q_error = 0;  // changes summed to the end of the transient, plus CVODE's errors summed over it
-  double decay_per_turn = 0;  // factor by which the transient shrinks in a turn, from growth_rate or measured
-  int turns = 0;
-  Integrator integrator = Integrator::automatic;
-  long steps = 0, evaluations = 0;
-  double seconds = 0;
-};
-
-// From rest, as an experimenter would.
-[[nodiscard]] MarchingResult march_from_rest(const TimeDomainSystem& system, const MarchingOptions& options = {});
 
 }  // namespace hb

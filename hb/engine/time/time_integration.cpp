@@ -309,4 +309,12 @@ Trajectory integrate_collocation(ScaledMotion& motion, int cells_between, double
   return trajectory;
 }
 
+Deadline deadline_after(Deadline start, double seconds) {
+  return start + std::chrono::duration_cast<Deadline::duration>(std::chrono::duration<double>(std::min(seconds, 1e8)));
+}
+
+double error_per_step(Integrator integrator, double tolerance) {
+  return (integrator == Integrator::bdf ? 5 : 1) * tolerance;
+}
+
 }  // namespace hb

@@ -1,0 +1,110 @@
+// The invariance equations of slaving (hb/engine/README.md (E5)-(E7)) on samples of the turn, solved by iteration.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "hb/engine/exponents/slaving.hpp"
+
+namespace hb::slaving {
+
+// Of the bound on the rounding errors of K, that they do not all have at once (a choice).
+constexpr double given_rounding = 0.5;
+
+// Root of D(z) = z^2 + b z + w2 with the larger imaginary part, or the slower one of two real roots.
+std::complex<double> root(double b, double w2);
+
+// Kept modes and all others.
+struct Partition {
+  std::vector<Eigen::Index> S, F;
+};
+Partition partition(Eigen::Index I, std::span<const Eigen::Index> slow);
+
+// Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
+void drop_tail(FourierSeries& series, Eigen::MatrixXd& error);
+
+// |z| without the care that hypot takes of overflow: |z|^2 of scaled systems stays far from it.
+inline double modulus(std::complex<double> z) { return std::sqrt(std::norm(z)); }
+
+// One attempt with N samples of the turn.
+class Iteration {
+ public:
+  Iteration(SampledStiffness& stiffness, const Partition& p, Eigen::Index num_samples)
+      : Iteration(stiffness.system(), stiffness.at(num_samples), p, num_samples) {}
+
+  // Starts from what fewer samples gave.
+  void start_from(const Iteration& coarse);
+
+  // Whether the start solves the equations with these samples, twice as many as it was found with: then nothing was
+  // folded back or cut off that matters.
+  bool solved_by_start(double tolerance);
+
+  // Solves for A, C with these samples; false if it diverges, or would take too long. change_ is then what remains of
+  // alpha's error but for that of too few samples.
+  bool run(double tolerance, int& iterations);
+
+  ReducedSystem result(bool bounds_others) const;
+
+ private:
+  Iteration(const ScaledSystem& system, const SampledStiffness::Samples& samples, const Partition& p,
+            Eigen::Index num_samples);
+
+  // Samples of k_ij over the turn.
+  auto K(Eigen::Index i, Eigen::Index j) const { return samples_.K.col(i + I_ * j).array(); }
+  double largest_K(Eigen::Index i, Eigen::Index j) const { return samples_.largest(i + I_ * j); }
+  double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
+
+  void weigh_residuals();
+  // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
+  double alpha_change() const { return effect_.cwiseProduct(residual_).sum(); }
+  double others_below() const;
+  Eigen::MatrixXd start() const;
+
+  std::size_t slot(Eigen::Index j, Eigen::Index l, Eigen::Index k) const {
+    return std::size_t((j + n_ * l) * (H_ + 1) + k);
+  }
+
+  // The vector x holds A_k then weight * C_k for every (j, l): real and imaginary parts.
+  Eigen::Map<const Eigen::VectorXcd> A_of(const Eigen::VectorXd& x, Eigen::Index q) const {
+    return {reinterpret_cast<const std::complex<double>*>(x.data()) + q * 2 * (H_ + 1), H_ + 1};
+  }
+  Eigen::Map<const Eigen::VectorXcd> C_of(const Eigen::VectorXd& x, Eigen::Index q) const {
+    return {reinterpret_cast<const std::complex<double>*>(x.data()) + (q * 2 + 1) * (H_ + 1), H_ + 1};
+  }
+
+  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k.
+  double norm(const Eigen::VectorXd& x) const;
+
+  // Residual of the two invariance equations, pushed through the inverse of their constant part:
+  //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
+  //   x_F'  = P x_S + R x_S',             P = A' - C alpha,   R = A + C' - C beta
+  //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
+  void correction(const Eigen::VectorXd& x, Eigen::VectorXd& f);
+  // A, A', C, C' over the turn.
+  void sample(const Eigen::VectorXd& x);
+  // alpha, beta, P and R over the turn; false if they are not found.
+  bool reduce();
+  // The residuals over the turn.
+  void sample_residual();
+  void push_through(Eigen::VectorXd& f);
+
+  std::vector<Eigen::Index> S_, F_;
+  Eigen::Index m_, n_, N_, H_;
+  const Eigen::MatrixXd &G_, &rounding_;
+  bool diagonal_damping_;
+  Eigen::Index I_;
+  const SampledStiffness::Samples& samples_;
+  Eigen::MatrixXd alpha_, beta_;  // N x m*m
+  fourier::RealTransform back_, forward_;
+  Eigen::Map<Eigen::MatrixXd> A_, A1_, C_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
+  Eigen::VectorXd x_;  // see A_of, C_of
+  std::vector<double> weight_;
+  std::vector<Eigen::Matrix2cd> inverse_;
+  Eigen::MatrixXd residual_, effect_;  // 2 x n*m: sum_k |r_k| of both invariance equations, and what each does to alpha
+  double kappa_ = 0, change_ = 0, amplification_ = 1;
+};
+
+}  // namespace hb::slaving
