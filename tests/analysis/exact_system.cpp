@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
-#include <numbers>
 
 #include "hb/engine/nonlinear/periodic_motion.hpp"
+#include "lib/constants.hpp"
 #include "tests/support/six_link.hpp"
 #include "tests/support/slider_crank.hpp"
 
@@ -13,8 +13,6 @@ namespace hb {
 namespace {
 
 using Eigen::Index;
-constexpr double pi = std::numbers::pi;
-
 NonlinearSystem system_of(const Linkage& linkage, Index num_modes) {
   std::vector<ExactModel::Rod> rods;
   for (const int link : elastic_links(linkage)) rods.push_back({link, num_modes});

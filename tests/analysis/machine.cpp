@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "hb/analysis/bearing_load.hpp"
 #include "hb/analysis/drive.hpp"
@@ -11,20 +10,20 @@
 #include "hb/analysis/static_deflection.hpp"
 #include "hb/analysis/steady.hpp"
 #include "hb/analysis/stress_cycle.hpp"
+#include "lib/constants.hpp"
 #include "lib/linkage/kinematics.hpp"
 
 namespace {
 
 using namespace hb;
 using Complex = std::complex<double>;
-using std::numbers::pi;
-const std::string scenes = HB_SOURCE_DIR "/tests/scenes/";
+const std::string machine_scenes = HB_SOURCE_DIR "/tests/scenes/";
 
 SteadyResult steady_of(const char* name, double rpm) {
   Request request;
   request.rpm = rpm;
   request.modes = 3;
-  return steady(read_scene(scenes + name), request);
+  return steady(read_scene(machine_scenes + name), request);
 }
 
 FrameForces frame_of(const Linkage& linkage, const SteadyResult& found) {
@@ -41,7 +40,7 @@ const FourierSeries& force_at(const SteadyResult& found, const std::string& name
 
 // Two ways that share no sum: body loads, and the forces at pivots, guide and motor that the dyads' balances gave.
 TEST(FrameForces, AreTheSumOverPivotsGuidesMotorAndAppliedForces) {
-  const Scene scene = read_scene(scenes + "slider_crank.toml");
+  const Scene scene = read_scene(machine_scenes + "slider_crank.toml");
   const auto& linkage = std::get<Linkage>(scene.model);
   const SteadyResult found = steady_of("slider_crank.toml", 2500);
   const FrameForces frame = frame_of(linkage, found);
@@ -67,7 +66,7 @@ TEST(FrameForces, AreTheSumOverPivotsGuidesMotorAndAppliedForces) {
 }
 
 TEST(FrameForces, OfTheSixLinkMechanismAreThoseAtItsThreePivots) {
-  const Scene scene = read_scene(scenes + "six_link.toml");
+  const Scene scene = read_scene(machine_scenes + "six_link.toml");
   const auto& linkage = std::get<Linkage>(scene.model);
   const SteadyResult found = steady_of("six_link.toml", 900);
   const FrameForces frame = frame_of(linkage, found);
@@ -118,7 +117,7 @@ TEST(Drive, OfOneHarmonicIsItsClosedForm) {
 
 // s = r cos tau + sqrt(l^2 - (r sin tau - h)^2) for a guide at height h.
 TEST(SliderMotion, OfASliderCrankIsItsClosedForm) {
-  const Scene scene = read_scene(scenes + "slider_crank.toml");
+  const Scene scene = read_scene(machine_scenes + "slider_crank.toml");
   const double r = 40, l = 150, h = 5, speed = 100;
   const std::vector<SliderMotion> sliders = slider_motions(std::get<Linkage>(scene.model), speed);
   ASSERT_EQ(sliders.size(), 1u);
@@ -230,7 +229,7 @@ TEST(FatigueSafety, IsTheTextbooksLine) {
 
 // At every place and fibre of a fine grid the rod is at least as safe, and somewhere no safer.
 TEST(FatigueSafety, IsThatOfTheWorstPlaceWhichNeedNotHaveTheWidestCycle) {
-  Scene scene = read_scene(scenes + "slider_crank_units.toml");
+  Scene scene = read_scene(machine_scenes + "slider_crank_units.toml");
   Body& rod = std::get<Linkage>(scene.model).dyads[0].coupler;
   rod.elastic->strength = {250e6, 0, 200e9};  // the mean alone counts
   Request request;

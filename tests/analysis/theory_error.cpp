@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
 #include "hb/engine/nonlinear/periodic_motion.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "tests/support/random_linkage.hpp"
 #include "tests/support/six_link.hpp"
@@ -17,8 +17,6 @@ namespace hb {
 namespace {
 
 using Eigen::Index;
-constexpr double pi = std::numbers::pi;
-
 // The linear answer of a linkage at one speed.
 struct Linear {
   ExactModel model;

@@ -63,7 +63,9 @@ TEST_F(Sweep, WhatWasNotAskedForIsNeitherComputedNorClaimed) {
   for (const Json* found : {&points, &growth, &verdict}) {
     EXPECT_TRUE(skipped(*found, "narrow bands and peaks"));
     EXPECT_FALSE(found->contains("unstable_bands"));
-    if (found == &points) EXPECT_FALSE(found->contains("critical_rpm"));
+    if (found == &points) {
+      EXPECT_FALSE(found->contains("critical_rpm"));
+    }
     EXPECT_FALSE(found->contains("refined"));
     EXPECT_EQ((*found)["verdict"], full["verdict"]);
   }

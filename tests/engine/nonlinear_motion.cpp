@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "hb/engine/nonlinear/harmonic_balance.hpp"
 #include "hb/engine/nonlinear/motion_search.hpp"
 #include "hb/engine/nonlinear/periodic_motion.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/constants.hpp"
 #include "tests/support/nonlinear_systems.hpp"
 #include "tests/support/random_hill_system.hpp"
 
@@ -16,8 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double pi = std::numbers::pi;
-
 VectorXd some_unknowns(Index size) {
   VectorXd u(size);
   for (Index i = 0; i < size; ++i) u(i) = 0.3 * std::sin(double(1 + 3 * i)) / double(1 + i / 4);

@@ -2,10 +2,10 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 #include "hb/engine/nonlinear/motion_shooting.hpp"
 #include "hb/engine/nonlinear/motion_stability.hpp"
+#include "lib/constants.hpp"
 #include "tests/support/nonlinear_systems.hpp"
 #include "tests/support/random_hill_system.hpp"
 
@@ -15,8 +15,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-constexpr double pi = std::numbers::pi;
-
 double distance(std::complex<double> a, std::complex<double> b, double omega) {
   return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), omega));
 }

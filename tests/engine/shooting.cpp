@@ -6,18 +6,16 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "hb/engine/time/floquet_product.hpp"
 #include "hb/engine/time/marching.hpp"
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/time_domain_rod.hpp"
 #include "tests/support/six_link.hpp"
 
 namespace hb {
 namespace {
-
-constexpr double pi = std::numbers::pi;
 
 FourierSeries series(std::initializer_list<std::complex<double>> coefficients) {
   FourierSeries result(1, static_cast<Eigen::Index>(coefficients.size()) - 1);

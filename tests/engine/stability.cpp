@@ -5,9 +5,9 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <random>
 
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "tests/support/six_link.hpp"
 
@@ -15,9 +15,6 @@ using namespace hb;
 using cplx = std::complex<double>;
 
 namespace {
-
-constexpr double pi = std::numbers::pi;
-constexpr double eps = 2.220446049250313e-16;
 
 // x'' + b x' + (a + c cos Omega t) x = 0.
 HillSystem mathieu(double b, double a, double c) {

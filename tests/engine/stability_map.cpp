@@ -12,11 +12,11 @@
 #include <sstream>
 #include <thread>
 
+#include "lib/constants.hpp"
+
 namespace {
 
 using namespace hb;
-
-constexpr double eps = 2.220446049250313e-16;
 
 FourierSeries harmonics(std::initializer_list<Eigen::MatrixXd> cosines) {
   const Eigen::Index n = cosines.begin()->size();

@@ -4,8 +4,8 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/rod/time_domain_rod.hpp"
 #include "tests/support/bent_positions.hpp"
 #include "tests/support/random_linkage.hpp"
@@ -17,8 +17,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-constexpr double pi = std::numbers::pi, eps = std::numeric_limits<double>::epsilon();
-
 // All elastic links of a linkage with random bending of one to three modes: slopes of about 0.1.
 struct Bent {
   ExactModel model;

@@ -6,12 +6,11 @@
 #include <numbers>
 #include <set>
 
+#include "lib/constants.hpp"
+
 using namespace hb;
-using std::numbers::pi;
 
 namespace {
-
-constexpr double eps = 2.220446049250313e-16;
 
 FourierSeries sampled(double (*f)(double), Eigen::Index N) {
   Eigen::MatrixXd samples(1, N);

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "tests/support/random_linkage.hpp"
 #include "tests/support/six_link.hpp"
 
@@ -12,8 +12,6 @@ namespace {
 
 using namespace hb;
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi, eps = std::numeric_limits<double>::epsilon();
-
 Body body(const std::string& name, double length) {
   Body b;
   b.name = name;

@@ -8,8 +8,8 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/fourier/fourier.hpp"
 #include "lib/hill_system.hpp"
 #include "lib/linkage/joint_forces.hpp"
@@ -21,7 +21,6 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
 constexpr double tolerance = 1e-10;  // relative, of everything compared
 
 // Of every kind, and a few that pass close to dead centres.

@@ -3,14 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 using namespace hb;
-using std::numbers::pi;
 
 namespace {
-
-constexpr double eps = 2.220446049250313e-16;
 
 double wave(double t) { return 1 + std::cos(t) - 0.5 * std::sin(2 * t) + 0.1 * std::cos(3 * t - 1); }
 

@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "lib/constants.hpp"
 #include "lib/scene/path_quantity.hpp"
 
 using namespace hb;
-using std::numbers::pi;
 
 namespace {
 

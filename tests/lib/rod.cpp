@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "tests/support/dense_steady_state.hpp"
 #include "tests/support/six_link.hpp"
 
@@ -12,8 +12,6 @@ namespace {
 
 using namespace hb;
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi, eps = std::numeric_limits<double>::epsilon();
-
 // A rod on a constant load: f0 = load, nothing else.
 RodCoefficients constant_load(double f0, double f1) {
   RodCoefficients rod;

@@ -7,14 +7,13 @@
 #include <fstream>
 #include <iomanip>
 #include <map>
-#include <numbers>
+
+#include "lib/constants.hpp"
 
 using namespace hb;
-using std::numbers::pi;
 
 namespace {
 
-constexpr double eps = 2.220446049250313e-16;
 const std::filesystem::path scenes = std::filesystem::path(HB_SOURCE_DIR) / "tests/scenes";
 
 Linkage linkage_of(const Scene& scene) { return std::get<Linkage>(scene.model); }

@@ -11,7 +11,7 @@ using namespace hb;
 
 namespace {
 
-const std::filesystem::path scenes = std::filesystem::path(HB_SOURCE_DIR) / "tests/scenes";
+const std::filesystem::path scene_folder = std::filesystem::path(HB_SOURCE_DIR) / "tests/scenes";
 
 const std::string linkage_text = R"(title = "Six-link"
 gravity = 9810
@@ -49,7 +49,7 @@ omega = 1.5
 
 std::string message_of(const std::string& text, const std::vector<Override>& overrides = {}) {
   try {
-    (void)parse_scene(text, "file.toml", overrides, scenes);
+    (void)parse_scene(text, "file.toml", overrides, scene_folder);
   } catch (const SceneError& error) {
     return error.what();
   }
@@ -373,7 +373,7 @@ TEST(SceneErrors, WhatIsNotAReadableFileIsRefused) {
     return "";
   };
   EXPECT_EQ(message("/no/such/scene.toml"), "/no/such/scene.toml: found no such file, allowed a readable text file");
-  EXPECT_NE(message(scenes).find("found a folder"), std::string::npos);
+  EXPECT_NE(message(scene_folder).find("found a folder"), std::string::npos);
   EXPECT_NE(message("/dev/zero").find("allowed"), std::string::npos);
   EXPECT_NE(message(std::string(5000, 'x')).find("found"), std::string::npos);
   const std::filesystem::path binary = std::filesystem::path(testing::TempDir()) / "hb_scene_errors_binary.toml";
@@ -450,7 +450,7 @@ TEST(SceneErrors, OverridesAreNamedInPlaceOfTheLine) {
   expect("analysis.modes", "2.5", "analysis.modes=2.5: analysis.modes: found 2.5");
   expect("units.length", "furlong", "units.length=furlong: units.length: found \"furlong\"");
 
-  const SceneSource source(linkage_text, "file.toml", scenes);
+  const SceneSource source(linkage_text, "file.toml", scene_folder);
   EXPECT_THROW((void)source.value("AB.damping_x"), SceneError);  // not given
   EXPECT_THROW((void)source.value("AB.name"), SceneError);
   EXPECT_THROW((void)source.value("nothing"), SceneError);

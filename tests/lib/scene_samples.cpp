@@ -7,13 +7,12 @@
 #include <fstream>
 #include <functional>
 #include <iomanip>
-#include <numbers>
 #include <sstream>
 
+#include "lib/constants.hpp"
 #include "lib/scene/scene.hpp"
 
 using namespace hb;
-using std::numbers::pi;
 
 namespace {
 
@@ -55,8 +54,6 @@ class SampleFiles : public testing::Test {
   const std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) / ("hb_sample_files_" + std::to_string(getpid()));
 };
-
-constexpr double eps = 2.220446049250313e-16;
 
 double k11(double t) { return 3 + std::cos(t); }
 double k12(double t) { return 0.25 * std::sin(2 * t); }

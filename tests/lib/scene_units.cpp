@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
 
 using namespace hb;
-using std::numbers::pi;
 
 namespace {
 

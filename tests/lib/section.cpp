@@ -6,13 +6,12 @@
 #include <numbers>
 #include <string>
 
+#include "lib/constants.hpp"
 #include "lib/scene/scene.hpp"
 
 namespace {
 
 using namespace hb;
-
-constexpr double eps = 2.220446049250313e-16;
 
 // A slider-crank whose rod has this in its `elastic` table.
 Scene scene_with(const std::string& elastic, const std::vector<Override>& overrides = {}) {

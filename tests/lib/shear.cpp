@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/time_domain_rod.hpp"
@@ -19,8 +19,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double pi = std::numbers::pi;
 
 Body with_shear(Body body, double coefficient, double per_E = 1 / 2.65) {
   body.elastic->shear = Shear{per_E * body.elastic->youngs_modulus, coefficient};

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <utility>
 
+#include "lib/constants.hpp"
 #include "lib/fourier/fourier.hpp"
 #include "lib/linkage/linkage.hpp"
 #include "tests/support/newton_euler.hpp"
@@ -17,8 +17,6 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
-
 Body rod(const std::string& name, double length, double mass, double area, double J) {
   Body body;
   body.name = name;

@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "tests/support/newton_euler.hpp"
 
 namespace hb::bent_positions {
@@ -11,7 +11,6 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
-constexpr double pi = std::numbers::pi;
 constexpr Index num_times = 256;
 constexpr Index panels = 8;  // along a rod, with five Gauss points each
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "lib/constants.hpp"
 #include "lib/linkage/kinematics.hpp"
 #include "tests/support/newton_euler.hpp"
 
@@ -12,8 +12,6 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double pi = std::numbers::pi;
-
 enum class Ending { rocker, elastic_rocker, slider };
 enum class Hang { end, point };  // at the body's joint 1 (slider: its joint), or at a further point
 
