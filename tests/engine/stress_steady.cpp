@@ -15,7 +15,7 @@ using Eigen::Index;
 
 constexpr Index most_unknowns = 420;
 
-struct Tally {
+struct SteadyTally {
   int solved = 0, reached = 0, singular = 0, uncovered = 0, unsettled = 0, proved = 0;
   double closest = 0;  // largest true error / bound
 };
@@ -48,7 +48,7 @@ void bring_to_resonance(stress::Trial& trial, stress::Random& random) {
 }
 
 void compare(const SteadyState& state, const HillSystem& system, double speed, const SteadyOptions& options,
-             const std::string& what, bool may_be_singular, Tally& tally) {
+             const std::string& what, bool may_be_singular, SteadyTally& tally) {
   if (state.status == SteadyStatus::singular) {
     ++tally.singular;
     EXPECT_TRUE(may_be_singular) << what;
@@ -83,7 +83,7 @@ void compare(const SteadyState& state, const HillSystem& system, double speed, c
 }
 
 void run(stress::Family family, int trials, bool resonant) {
-  Tally tally;
+  SteadyTally tally;
   for (int trial = 0; trial < stress::multiplied(trials); ++trial) {
     stress::Random random(stress::seed() * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family) +
                           (resonant ? 50 : 0));

@@ -34,6 +34,35 @@ inline void cos_sin(const std::array<FourierSeries, 3>& powers, long double spee
   }
 }
 
+// Of A x = b: a factorisation in double, refined with residuals in long double. last_change: of x, relative.
+inline Vector refined_solution(Matrix A, Vector b, long double& last_change) {
+  const Eigen::Index n = A.rows();
+  // Rows and columns scaled by powers of two before the factorisation.
+  Vector row(n), column(n);
+  for (Eigen::Index i = 0; i < n; ++i) row(i) = std::exp2(-std::round(std::log2(A.row(i).cwiseAbs().maxCoeff())));
+  A = row.asDiagonal() * A;
+  b = row.asDiagonal() * b;
+  const long double load = b.cwiseAbs().maxCoeff();
+  b /= load;
+  for (Eigen::Index i = 0; i < n; ++i) column(i) = std::exp2(-std::round(std::log2(A.col(i).cwiseAbs().maxCoeff())));
+  A = A * column.asDiagonal();
+  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A.cast<double>());
+  Vector x = Vector::Zero(n), r = b;
+  long double last = HUGE_VALL;
+  for (int refinement = 0; refinement < 12; ++refinement) {
+    const long double size = r.cwiseAbs().maxCoeff();
+    if (size == 0) break;
+    const Vector change = lu.solve((r / size).cast<double>()).cast<long double>() * size;
+    const long double now = change.cwiseAbs().maxCoeff();
+    if (refinement > 2 && !(now < last / 2)) break;
+    last = now;
+    x += change;
+    last_change = now / x.cwiseAbs().maxCoeff();
+    r = b - A * x;
+  }
+  return column.asDiagonal() * x * load;
+}
+
 inline Response dense_harmonic_balance(const HillSystem& system, double speed, Eigen::Index H) {
   const Eigen::Index I = system.num_modes(), n = I * (2 * H + 1);
   Eigen::Index P = 0;
@@ -89,31 +118,8 @@ inline Response dense_harmonic_balance(const HillSystem& system, double speed, E
         }
       }
 
-  // Rows and columns scaled by powers of two before the factorisation.
-  Vector row(n), column(n);
-  for (Eigen::Index i = 0; i < n; ++i) row(i) = std::exp2(-std::round(std::log2(A.row(i).cwiseAbs().maxCoeff())));
-  A = row.asDiagonal() * A;
-  b = row.asDiagonal() * b;
-  const long double load = b.cwiseAbs().maxCoeff();
-  b /= load;
-  for (Eigen::Index i = 0; i < n; ++i) column(i) = std::exp2(-std::round(std::log2(A.col(i).cwiseAbs().maxCoeff())));
-  A = A * column.asDiagonal();
-  const Eigen::PartialPivLU<Eigen::MatrixXd> lu(A.cast<double>());
-  Vector x = Vector::Zero(n), r = b;
   Response response;
-  long double last = HUGE_VALL;
-  for (int refinement = 0; refinement < 12; ++refinement) {
-    const long double size = r.cwiseAbs().maxCoeff();
-    if (size == 0) break;
-    const Vector change = lu.solve((r / size).cast<double>()).cast<long double>() * size;
-    const long double now = change.cwiseAbs().maxCoeff();
-    if (refinement > 2 && !(now < last / 2)) break;
-    last = now;
-    x += change;
-    response.change = now / x.cwiseAbs().maxCoeff();
-    r = b - A * x;
-  }
-  x = column.asDiagonal() * x * load;
+  const Vector x = refined_solution(std::move(A), std::move(b), response.change);
   response.cosine = Matrix::Zero(I, H + 1);
   response.sine = Matrix::Zero(I, H + 1);
   for (Eigen::Index k = 0; k <= H; ++k)

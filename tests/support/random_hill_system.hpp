@@ -68,6 +68,58 @@ inline void add(HillSystem& s, Eigen::Index i, Eigen::Index j, Eigen::Index k, s
   s.stiffness[0].c(i + s.num_modes() * j, k) += value;
 }
 
+// Mass and damping of the families with full matrices.
+inline void couple(Family family, Random& random, HillSystem& s) {
+  using Index = Eigen::Index;
+  const Index I = s.num_modes();
+  if (family == Family::full_matrices)
+    for (Index i = 0; i < I; ++i)
+      for (Index j = 0; j < i; ++j) {
+        s.mass(i, j) = s.mass(j, i) = random(-0.6, 0.6) / double(I);
+        const double size = 0.5 * std::sqrt(s.damping(i, i) * s.damping(j, j)) / double(I);
+        s.damping(i, j) = size * random(-1, 1);
+        s.damping(j, i) = random.chance(0.7) ? s.damping(i, j) : size * random(-1, 1);
+      }
+  if (family == Family::unsymmetric)
+    for (Index i = 0; i < I; ++i)
+      for (Index j = 0; j < i; ++j) {
+        s.damping(i, j) = random.power(-3, 0) * random(-1, 1);
+        s.damping(j, i) = -s.damping(i, j);
+      }
+}
+
+// The speed, at a resonance of the frequencies w (the lowest about w1) or anywhere.
+inline double speed_near(Family family, Random& random, const Eigen::VectorXd& w, double w1) {
+  using Index = Eigen::Index;
+  const Index I = w.size();
+  double speed = random.power(-0.3, 0.5);
+  const double aside = (random.chance(0.5) ? 1 : -1) * random.power(-8, -1);
+  const Index i = random.integer(0, I - 1), j = random.integer(0, I - 1);
+  if (family == Family::tongue) speed = 2 * w(i) / double(random.integer(1, 4)) * (1 + aside);
+  if (family == Family::combination) {
+    const double sum = random.chance(0.6) ? w(i) + w(j) : std::abs(w(i) - w(j));
+    if (sum > 0.05 * w1) speed = sum / double(random.integer(1, 2)) * (1 + aside);
+  }
+  return speed;
+}
+
+// Units of the unknowns as far apart as a thousand to one, and back.
+inline void spread(Random& random, HillSystem& s) {
+  using Index = Eigen::Index;
+  const Index I = s.num_modes();
+  for (Index r = 0; r < I; ++r) {
+    const double scale = random.power(-3, 3);
+    s.mass.row(r) *= scale;
+    s.mass.col(r) *= scale;
+    s.damping.row(r) *= scale;
+    s.damping.col(r) *= scale;
+    for (Index c = 0; c < I; ++c) {
+      s.stiffness[0].c.row(r + I * c) *= scale;
+      s.stiffness[0].c.row(c + I * r) *= scale;
+    }
+  }
+}
+
 }  // namespace detail
 
 // One degree of freedom per frequency w_i; time unit such that Omega is about 1, then scaled.
@@ -127,40 +179,9 @@ inline Trial random_trial(Family family, Random& random, Eigen::Index most_modes
         detail::add(s, i, j, k, value);
         if (i != j) detail::add(s, j, i, k, family == Family::unsymmetric ? value * random(-2, 2) : value);
       }
-  if (family == Family::full_matrices)
-    for (Index i = 0; i < I; ++i)
-      for (Index j = 0; j < i; ++j) {
-        s.mass(i, j) = s.mass(j, i) = random(-0.6, 0.6) / double(I);
-        const double size = 0.5 * std::sqrt(s.damping(i, i) * s.damping(j, j)) / double(I);
-        s.damping(i, j) = size * random(-1, 1);
-        s.damping(j, i) = random.chance(0.7) ? s.damping(i, j) : size * random(-1, 1);
-      }
-  if (family == Family::unsymmetric)
-    for (Index i = 0; i < I; ++i)
-      for (Index j = 0; j < i; ++j) {
-        s.damping(i, j) = random.power(-3, 0) * random(-1, 1);
-        s.damping(j, i) = -s.damping(i, j);
-      }
-  trial.speed = random.power(-0.3, 0.5);
-  const double aside = (random.chance(0.5) ? 1 : -1) * random.power(-8, -1);
-  const Index i = random.integer(0, I - 1), j = random.integer(0, I - 1);
-  if (family == Family::tongue) trial.speed = 2 * w(i) / double(random.integer(1, 4)) * (1 + aside);
-  if (family == Family::combination) {
-    const double sum = random.chance(0.6) ? w(i) + w(j) : std::abs(w(i) - w(j));
-    if (sum > 0.05 * w1) trial.speed = sum / double(random.integer(1, 2)) * (1 + aside);
-  }
-  if (family == Family::spread_masses)
-    for (Index r = 0; r < I; ++r) {
-      const double scale = random.power(-3, 3);
-      s.mass.row(r) *= scale;
-      s.mass.col(r) *= scale;
-      s.damping.row(r) *= scale;
-      s.damping.col(r) *= scale;
-      for (Index c = 0; c < I; ++c) {
-        s.stiffness[0].c.row(r + I * c) *= scale;
-        s.stiffness[0].c.row(c + I * r) *= scale;
-      }
-    }
+  detail::couple(family, random, s);
+  trial.speed = detail::speed_near(family, random, w, w1);
+  if (family == Family::spread_masses) detail::spread(random, s);
   // Time unit: 1 to 100 000 rpm.
   const double unit = random.power(-1, 4) / trial.speed;
   trial.speed *= unit;

@@ -74,22 +74,14 @@ std::vector<Override> overrides(const CommonFlags& flags) {
   return result;
 }
 
-Settings settings(const CommonFlags& flags, const Scene& scene) {
-  Settings result;
-  result.modes = flags.modes.empty() ? scene.analysis.modes : modes_flag(flags.modes);
-  const auto* hill = std::get_if<HillSystem>(&scene.model);
-  if (hill) {
-    const int size = static_cast<int>(hill->num_modes());
-    const int* asked = std::get_if<int>(&result.modes);
-    if (asked && *asked != size) refuse_flag("--modes", flags.modes, fmt::format("{}, the size of [hill] mass", size));
-    result.modes = size;
-  }
-  result.tolerance = flags.tolerance.empty()
-                         ? scene.analysis.tolerance
-                         : number_flag("--tol", flags.tolerance, 1e-14, 0.1, "a number from 1e-14 to 0.1");
+Request asked_request(const CommonFlags& flags, const Scene& scene) {
+  Request result;
+  if (!flags.modes.empty()) result.modes = modes_flag(flags.modes);
+  if (!flags.tolerance.empty())
+    result.tolerance = number_flag("--tol", flags.tolerance, 1e-14, 0.1, "a number from 1e-14 to 0.1");
   if (!flags.rods.empty()) result.rods = list_flag("--rods", flags.rods);
   if (!flags.only.empty()) result.only = only_flag(flags.only, flags.growth_alone);
-  if (hill && !result.only.steady && !result.only.stability) {
+  if (std::holds_alternative<HillSystem>(scene.model) && !result.only.steady && !result.only.stability) {
     refuse_flag("--only", flags.only, "steady, stability: a [hill] scene has no joints and no shape");
   }
   if (!flags.steady_method.empty()) {
@@ -114,17 +106,8 @@ Settings settings(const CommonFlags& flags, const Scene& scene) {
   return result;
 }
 
-Request asked_request(const CommonFlags& flags, const Scene& scene) {
-  const Settings all = settings(flags, scene);
-  Request result;
-  result.modes = all.modes;
-  result.tolerance = all.tolerance;
-  result.rods = all.rods;
-  result.only = all.only;
-  result.steady_method = all.steady_method;
-  result.bound = all.bound;
-  result.stability_method = all.stability_method;
-  return result;
+Settings settings(const CommonFlags& flags, const Scene& scene) {
+  return settings_of(asked_request(flags, scene), scene);
 }
 
 void set_speed(Request& request, const SpeedRange& speed) {

@@ -16,10 +16,10 @@ namespace hb::tools {
 // --set as overrides; throws UsageError unless each is PATH=VALUE.
 [[nodiscard]] std::vector<Override> overrides(const CommonFlags& flags);
 
-// Flags over [analysis]; throws UsageError naming the flag, the value found and what is allowed.
-[[nodiscard]] Settings settings(const CommonFlags& flags, const Scene& scene);
-// The same as a request, which settings_of turns back into them; without a speed.
+// What the flags ask for, without a speed; throws UsageError naming the flag, the value found and what is allowed.
 [[nodiscard]] Request asked_request(const CommonFlags& flags, const Scene& scene);
+// With what they leave open taken from the scene; throws RequestError too.
+[[nodiscard]] Settings settings(const CommonFlags& flags, const Scene& scene);
 struct SpeedRange;
 void set_speed(Request& request, const SpeedRange& speed);  // the first of the range
 
