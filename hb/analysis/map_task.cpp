@@ -75,7 +75,8 @@ MapTask::MapTask(const SceneFamily& family, const MapRequest& request, const Wor
 Map MapTask::compute(Work& work) const {
   const std::vector<double>&x = request_.x.values, &y = request_.y.values;
   MapOptions search = map_options(settings_);
-  search.parts = work.of("stability map, this step");
+  int steps = 0;  // how many there will be shows as the cells are halved
+  search.parts = [&](const Parts& parts) { work.step(fmt::format("stability map, step {}", ++steps), parts); };
   Map map{compute_map(*plane_, x_axis_, x, y_axis_, y, search),
           plane_->scene(),
           settings_,

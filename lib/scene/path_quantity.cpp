@@ -19,6 +19,10 @@ Quantity measured(std::string_view text, const std::optional<Measure>& measure, 
 
 }  // namespace
 
+Quantity length_quantity(std::string_view text, const Units& units) {
+  return measured(text, Measure{dimension::length}, units);
+}
+
 Quantity speed_quantity(std::string_view text, bool in_rpm, const Units& units) {
   return measured(text, Measure{dimension::speed, in_rpm ? Measure::Base::rpm : Measure::Base::radian}, units);
 }

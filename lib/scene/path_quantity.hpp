@@ -13,7 +13,8 @@ namespace hb {
 // is allowed. Throws SceneError for a path that the scene does not have.
 [[nodiscard]] Quantity quantity_at(const SceneSource& source, const std::string& path, std::string_view text);
 
-// The same for a speed in turns per minute, or in radians per unit of time.
+// The same for a length, and for a speed in turns per minute or in radians per unit of time.
+[[nodiscard]] Quantity length_quantity(std::string_view text, const Units& units);
 [[nodiscard]] Quantity speed_quantity(std::string_view text, bool in_rpm, const Units& units);
 
 }  // namespace hb

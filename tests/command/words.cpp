@@ -4,8 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <regex>
 
 #include "tests/support/run_command.hpp"
+#include "tools/work/progress.hpp"
 
 namespace {
 
@@ -35,6 +37,49 @@ TEST_F(Words, PeriodDoublingNamesThePeriodAndTheStrongestLines) {
          {"repeating after two turns of the crank (period doubling), strongest at 25, 75, 125 Hz = 1/2, 3/2, 5/2 of "
           "the speed"},
          {"at half the crank's speed"});
+}
+
+// --speeds of tune was in no page of the manual, --rpm of tune denied there.
+TEST_F(Words, EveryFlagOfTheHelpIsInTheManual) {
+  const std::string manual = read(HB_SOURCE_DIR "/tools/README.md");
+  const std::size_t begin = manual.find("\n## Flags"), end = manual.find("\n## ", begin + 1);
+  ASSERT_NE(end, std::string::npos);
+  const std::string table = manual.substr(begin, end - begin);
+  const std::regex flag("\n +(?:-h,)?(--[a-z-]+)");
+  for (const char* command :
+       {"new", "scene", "steady", "sweep", "map", "check", "bench", "compare", "fit", "tune", "report"}) {
+    const std::string help = said(std::string(command) + " --help");
+    int flags = 0;
+    for (std::sregex_iterator found(help.begin(), help.end(), flag), none; found != none; ++found, ++flags) {
+      const std::string name = (*found)[1];
+      EXPECT_NE(table.find("`" + name), std::string::npos) << command << " " << name;
+    }
+    EXPECT_GT(flags, 0) << help;
+  }
+}
+
+// Marks stood in a column that nothing explained.
+TEST_F(Words, MarksInTheTableOfASweepAreExplainedWhereTheyStand) {
+  const std::string sweep = "sweep " + scene("six_link") + " --modes 1 --no-search --rpm ";
+  expect(said(sweep + "300:1500:600"), {" !", "!: beyond the linear theory or beyond small deflections"});
+  expect(said(sweep + "300:600:100"), {}, {"!"});
+}
+
+// A mean torque of 1e-6 N m was printed beside an error of 8e-6 N m: without damping there is none.
+TEST_F(Words, AMeanThatItsErrorHidesIsZero) {
+  std::ofstream(folder_ / "undamped.toml")
+      << "[crank]\npivot = [0, 0]\nlength = 0.04\n[[dyad]]\non = \"crank\"\nbranch = 1\n"
+      << "coupler = { name = \"rod\", length = 0.16, elastic = { material = \"steel\", section = { shape = "
+      << "\"rectangle\", width = 0.016, height = 0.02 } } }\n"
+      << "slider = { name = \"piston\", mass = 0.6, guide = [0, 0] }\n";
+  expect(said("steady undamped.toml --rpm 6000"), {"driving torque: mean 0 N m", "power: mean 0 W"});
+}
+
+// What is left was said of each of many steps as if it were of the whole, which seemed to begin anew.
+TEST(Progress, WhatIsLeftOfALaterStepIsNotCalledWhatIsLeft) {
+  EXPECT_EQ(hb::tools::progress_line("sweep", 30, 120, 2, 0), "sweep: 30 of 120 (25 %), 6 s left");
+  EXPECT_EQ(hb::tools::progress_line("stability map, step 3", 448, 14096, 10, 60),
+            "stability map, step 3: 448 of 14096 (3 %), 5 min left of this step; 70 s so far");
 }
 
 // Imaginary parts were folded to half the speed without a word; a mode of 88 Hz was shown as 0.3 rad/s.

@@ -1,5 +1,7 @@
 """Wrong arguments: RequestError names the argument, what was found and what is allowed."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -88,6 +90,26 @@ def test_numbers_of_a_range_may_have_units(six_link):
     assert six_link.map(x="rpm=5Hz:10Hz:3", **grid).to_dict() == six_link.map(x="rpm=300:600:3", **grid).to_dict()
     with pytest.raises(hb.RequestError, match="a mass"):
         lengths("AB.length=250kg:260kg:x3")
+
+
+def test_speeds_may_have_units(six_link):
+    flags = {"modes": 1, "only": "stability"}
+    plain = six_link.steady(rpm=300, **flags).to_dict()
+    for speed in ({"rpm": "5 Hz"}, {"omega": "300 rpm"}, {"omega": 10 * math.pi}):
+        found = six_link.steady(**speed, **flags)
+        assert found.rpm == pytest.approx(300, rel=1e-15) and found.to_dict()["rods"].keys() == plain["rods"].keys()
+    assert six_link.steady(rpm="5 Hz", **flags).to_dict() == plain
+    values = six_link.sweep(rpm=(300, 600, 150), search=False, **flags).to_dict()
+    for speeds in ("5Hz:10Hz:2.5Hz", ("5 Hz", "10 Hz", "2.5 Hz"), ("5 Hz", "10 Hz", "x3"), ["5 Hz", 450, "10 Hz"]):
+        assert six_link.sweep(rpm=speeds, search=False, **flags).to_dict() == values
+    assert six_link.check(rpm="5 Hz", modes=1).rpm == 300
+    for wrong in ("5 kg", "5", ("5 Hz", 600, 150)):
+        with pytest.raises(hb.RequestError) as raised:
+            six_link.sweep(rpm=wrong, search=False, **flags)
+        assert "rpm" in str(raised.value)
+    system = hb.HillSystem(mass=1, damping=0.1, stiffness={0: 1.2, 1: 0.4}, load={1: 1.0})
+    assert system.stability(omega="1 rad/s").growth_rate == system.stability(omega=1.0).growth_rate
+    assert (system.steady(omega="1 rad/s").q == system.steady(omega=1.0).q).all()
 
 
 @pytest.mark.parametrize("field", ["only", "rods"])

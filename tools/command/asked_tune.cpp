@@ -136,7 +136,6 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
                 .heights = {},
                 .settings = {},
                 .options = design_options(flags, flags.vary.size())};
-  task.heights = heights_flag(flags.height);
   Remarks remarks;
   task.variables = tune_variables(flags, task.source, remarks);
   close_start(task, remarks);
@@ -144,6 +143,7 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
   for (const std::string& text : flags.keep) task.keeps.push_back(keep_flag(text, scene));
   require_algorithm(task);
   task.settings = settings(flags, scene);
+  task.heights = heights_flag(flags.height, scene.units);
   require_heights(task, scene);
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
   task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;

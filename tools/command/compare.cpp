@@ -126,7 +126,8 @@ void add_compare_command(CLI::App& app, int& status) {
   const auto flags = std::make_shared<CompareFlags>();
   add_scene_flags(*command, *flags);
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
-  command->add_option("B", flags->other, "the other scene, or folder of results")->required();
+  command->get_option("SCENE")->description("a scene file (TOML), or a folder that hb steady --out wrote");
+  command->add_option("B", flags->other, "the other scene, or folder")->required();
   command->add_option("--set-b", flags->set_b, "a number of the second scene alone, as in AB.J=60; repeatable")
       ->type_name("PATH=VALUE")
       ->expected(1)

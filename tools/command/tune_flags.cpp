@@ -11,6 +11,7 @@ void add_tune_flags(CLI::App& command, TuneFlags& flags) {
   add_scene_flags(command, flags);
   add_linear_theory_flag(command, flags.theory);
   add_analysis_flags(command, flags);
+  command.get_option("--only")->group("");  // refused: goal and conditions say what is computed
   add_html_flag(command, flags);
   const auto repeatable = [&](const char* name, std::vector<std::string>& values, const char* help, const char* type) {
     command.add_option(name, values, help)

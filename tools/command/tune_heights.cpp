@@ -9,15 +9,17 @@
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/parameter_range.hpp"
+#include "tools/command/range_units.hpp"
 
 namespace hb::tools {
 
-std::map<std::string, double> heights_flag(const std::vector<std::string>& texts) {
+std::map<std::string, double> heights_flag(const std::vector<std::string>& texts, const Units& units) {
   std::map<std::string, double> heights;
+  const auto read = [&](std::string_view part) { return length_quantity(part, units); };
   for (const std::string& text : texts) {
     const NamedRange height = named_range("--height", text, "ROD=H, as in AB=12");
-    heights[height.path] =
-        number_flag("--height", height.range, std::numeric_limits<double>::min(), largest_number, "ROD=H with H > 0");
+    heights[height.path] = number_flag("--height", plain_range("--height", height.range, ThirdNumber::step, read),
+                                       std::numeric_limits<double>::min(), largest_number, "ROD=H with H > 0");
   }
   return heights;
 }

@@ -153,7 +153,7 @@ std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuat
   const double moment = output_units(scene).moment, W = watt(scene.units);
   const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / speed;
   const double error = size * std::max(1e-13, torque_error);
-  const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what is rounding counts as 0
+  const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what its error hides
   std::string text = fmt::format(
       "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
       mean * moment, drive.rms * moment, speed * mean * W, drive.rms_power * W, drive.smallest_power * W,
@@ -179,7 +179,8 @@ std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
       range_of(frame.elastic, 0, units.force, 6), range_of(frame.elastic, 1, units.force, 6),
       shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
       range_of(frame.elastic, 2, units.moment, 6), range_of(frame.rigid, 2, units.moment, 6));
-  text += drive_rows(loads->drive, loads->speed_fluctuation, result.force_errors ? result.force_errors->torque : 0.0,
+  const std::optional<ForceErrors>& errors = result.force_errors;
+  text += drive_rows(loads->drive, loads->speed_fluctuation, errors ? errors->torque + errors->torque_cut : 0.0,
                      result.speed, model.scene);
   for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed)) {
     const Range position = fourier::range(slider.position, 0);

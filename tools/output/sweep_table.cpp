@@ -55,6 +55,8 @@ std::vector<std::size_t> shown_rows(std::size_t count) {
   return rows;
 }
 
+bool is_doubtful(const RodPoint& point) { return beyond_theory(point.theory_error) || beyond_limits(point); }
+
 void add_point(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r, const SweepPoint& point,
                bool distances) {
   const OutputUnits units = output_units(scene.scene());
@@ -71,7 +73,7 @@ void add_point(Text& text, const SweepScene& scene, const SweepResult& result, s
   if (has_theory(scene, result))
     add(text, "  {:>12}",
         (here.theory_error ? fmt::format("{:.1e}", *here.theory_error) : "no value") +
-            (beyond_theory(here.theory_error) || beyond_limits(here) ? " !" : "  "));
+            (is_doubtful(here) ? " !" : "  "));
   if (result.computed.stability) {
     const Stability& stability = here.stability->stability;
     add(text, "  {:>16}", growth_digits(stability));
@@ -176,6 +178,11 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     }
     add(text, "\n");
     for (const std::size_t k : rows) add_point(text, scene, result, r, result.points[k], distances);
+    if (has_theory(scene, result) && std::ranges::any_of(rows, [&](std::size_t k) {
+          const SweepPoint& point = result.points[k];
+          return point.problem.empty() && is_doubtful(point.rods[r]);
+        }))
+      add(text, "  !: beyond the linear theory or beyond small deflections, as the warnings below say\n");
     if (rows.size() < values.size())
       add(text, "  ({} of {} points; --json and --out have all)\n", rows.size(), values.size());
     if (result.computed.shape) add(text, "{}", stress_rows(scene, result, r));

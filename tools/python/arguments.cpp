@@ -7,6 +7,7 @@
 #include <cmath>
 #include <thread>
 
+#include "tools/command/flag_values.hpp"
 #include "tools/command/parameter_range.hpp"
 
 namespace hb::python {
@@ -53,6 +54,36 @@ std::string shape_text(const py::array& array) {
 void require_finite(const std::string& field, const Eigen::Ref<const Eigen::MatrixXd>& entries) {
   for (const double entry : entries.reshaped())
     if (!std::isfinite(entry)) throw RequestError(field, fmt::format("{}", entry), "finite numbers");
+}
+
+bool holds_text(py::handle object) {
+  if (is_text(object)) return true;
+  if (!py::isinstance<py::tuple>(object) && !py::isinstance<py::list>(object)) return false;
+  const auto parts = py::reinterpret_borrow<py::sequence>(object);
+  return std::any_of(parts.begin(), parts.end(), is_text);
+}
+
+// A number, a range as a text or as a tuple, or a list of numbers, whose texts have units; texts without units stay.
+py::object without_units(const std::string& field, const py::object& object, const tools::UnitReader& read) {
+  if (py::isinstance<py::list>(object)) {
+    py::list parts;
+    for (const py::handle part : object)
+      parts.append(is_text(part) ? without_units(field, py::reinterpret_borrow<py::object>(part), read)
+                                 : py::reinterpret_borrow<py::object>(part));
+    return std::move(parts);
+  }
+  std::string written;
+  if (is_text(object)) {
+    written = text(field, object);
+  } else {
+    for (const py::handle part : object)
+      written +=
+          (written.empty() ? "" : ":") + (is_text(part) ? text(field, part) : fmt::format("{}", number(field, part)));
+  }
+  const std::string plain = tools::plain_range(field, written, Third::step, read);
+  if (plain == written) return is_text(object) ? object : py::object(py::str(plain));
+  const std::optional<double> value = tools::whole_number(plain);
+  return value ? py::object(py::float_(*value)) : py::object(py::str(plain));
 }
 
 }  // namespace
@@ -151,6 +182,19 @@ std::optional<py::object> given(const py::dict& arguments, const char* field) {
   PyObject* value = PyDict_GetItemString(arguments.ptr(), field);
   if (value == nullptr || value == Py_None) return std::nullopt;
   return py::reinterpret_borrow<py::object>(value);
+}
+
+py::dict plain_speeds(const py::dict& arguments, const Units& units) {
+  py::dict plain = arguments;
+  for (const char* field : {"rpm", "omega"}) {
+    const auto value = given(arguments, field);
+    if (!value || !holds_text(*value)) continue;
+    if (plain.is(arguments)) plain = arguments.attr("copy")();
+    plain[field] = without_units(field, *value, [&](std::string_view part) {
+      return speed_quantity(part, std::string_view(field) == "rpm", units);
+    });
+  }
+  return plain;
 }
 
 Request read_request(const py::dict& arguments) {

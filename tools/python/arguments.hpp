@@ -28,6 +28,10 @@ namespace hb::python {
 // The entry of a dict, or nothing where it is missing or None.
 [[nodiscard]] std::optional<py::object> given(const py::dict& arguments, const char* field);
 
+// The arguments with the units of rpm and omega taken off: of "50 Hz", "5 Hz:50 Hz:x10", ("5 Hz", "50 Hz", "x10") and
+// ["5 Hz", "50 Hz"].
+[[nodiscard]] py::dict plain_speeds(const py::dict& arguments, const Units& units);
+
 // rpm, omega, modes, tol, rods, only, steady_method, stability_method and bound of a call.
 [[nodiscard]] Request read_request(const py::dict& arguments);
 [[nodiscard]] StabilityMethod stability_method(py::handle object);

@@ -18,7 +18,8 @@ struct BenchCore {
   std::string json;
 };
 
-std::shared_ptr<BenchCore> benched(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+std::shared_ptr<BenchCore> benched(const SceneCore& core, const py::dict& written, const py::object& progress) {
+  const py::dict arguments = plain_speeds(written, core.scene.units);
   BenchRequest request;
   static_cast<Request&>(request) = read_request(arguments);
   if (const auto limit = given(arguments, "case_limit")) request.case_limit = number("case_limit", *limit);

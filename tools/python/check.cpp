@@ -42,7 +42,8 @@ std::vector<double> several(const char* field, const std::optional<py::object>& 
   return range_values(field, py::make_tuple(scene->from, scene->to, scene->step), Third::step);
 }
 
-std::shared_ptr<CheckCore> checked(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+std::shared_ptr<CheckCore> checked(const SceneCore& core, const py::dict& written, const py::object& progress) {
+  const py::dict arguments = plain_speeds(written, core.scene.units);
   py::dict rest = arguments.attr("copy")();
   const auto rpm = given(arguments, "rpm"), omega = given(arguments, "omega");
   if (rpm && omega) throw RequestError("omega", shown(*omega) + " beside rpm = " + shown(*rpm), "one of the two");

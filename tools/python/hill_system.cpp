@@ -123,7 +123,7 @@ std::shared_ptr<HillCore> hill_core(const py::object& mass, const py::object& da
 }
 
 std::shared_ptr<Answer> solved(const HillCore& core, const py::dict& arguments) {
-  Request request = read_request(arguments);
+  Request request = read_request(plain_speeds(arguments, core.scene.units));
   request.only = {.steady = true, .stability = false, .reactions = false, .shape = false};
   return linear_answer(core.scene, request, arguments);
 }
@@ -138,6 +138,10 @@ std::optional<double> plain_speed(const py::object& omega, const py::object& rpm
 
 double asked_speed(const HillCore& core, const py::object& omega, const py::object& rpm) {
   if (const std::optional<double> plain = plain_speed(omega, rpm)) return *plain;
+  if (py::isinstance<py::str>(omega) || py::isinstance<py::str>(rpm)) {
+    const py::dict written = py::dict(py::arg("omega") = omega, py::arg("rpm") = rpm);
+    return speed_of(read_request(plain_speeds(written, core.scene.units)), core.scene).omega;
+  }
   Request request;
   if (!omega.is_none()) request.omega = number("omega", omega);
   if (!rpm.is_none()) request.rpm = number("rpm", rpm);

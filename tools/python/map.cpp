@@ -13,7 +13,8 @@
 namespace hb::python {
 namespace {
 
-std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& written, const py::object& progress) {
+  const py::dict arguments = plain_speeds(written, core.scene.units);
   constexpr double max_points = 4e6;
   MapRequest request;
   static_cast<Request&>(request) = read_request(arguments);

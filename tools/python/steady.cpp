@@ -157,7 +157,8 @@ std::vector<BandRequest> bands_of(const py::dict& arguments) {
   return bands;
 }
 
-std::shared_ptr<Answer> answer_of(const SceneCore& core, const py::dict& arguments) {
+std::shared_ptr<Answer> answer_of(const SceneCore& core, const py::dict& written) {
+  const py::dict arguments = plain_speeds(written, core.scene.units);
   const std::vector<BandRequest> bands = bands_of(arguments);
   if (const std::optional<int> turns = read_turns(arguments)) {
     if (!bands.empty()) throw RequestError("band", "beside theory = \"nonlinear\"", "band with the linear theory");

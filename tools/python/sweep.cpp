@@ -35,7 +35,8 @@ Along axis_of(const SceneCore& core, const py::dict& arguments, Request& request
   return {name, range_values(name, py::make_tuple(speeds->from, speeds->to, speeds->step), Third::step)};
 }
 
-std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& arguments, const py::object& progress) {
+std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& written, const py::object& progress) {
+  const py::dict arguments = plain_speeds(written, core.scene.units);
   py::dict rest = arguments.attr("copy")();
   rest["rpm"] = py::none();
   rest["omega"] = py::none();

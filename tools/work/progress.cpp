@@ -21,8 +21,21 @@ constexpr double looks[] = {0.3, 5}, worth_saying = 10;
 
 }  // namespace
 
-Progress::Progress(std::string what, std::size_t total)
-    : what_(std::move(what)), total_(total), shown_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
+std::string progress_line(const std::string& what, std::size_t done, std::size_t total, double seconds, double before) {
+  constexpr double at_once = 1;
+  const double left = seconds * static_cast<double>(total - done) / static_cast<double>(done);
+  return fmt::format("{}: {} of {} ({:.0f} %), {} left{}", what, done, total,
+                     100.0 * static_cast<double>(done) / static_cast<double>(total), duration(left),
+                     before < at_once ? "" : " of this step; " + duration(before + seconds) + " so far");
+}
+
+Progress::Progress(std::string what, std::size_t total, Clock::time_point begun)
+    : what_(std::move(what)),
+      total_(total),
+      shown_(isatty(STDERR_FILENO) != 0),
+      begun_(begun),
+      start_(Clock::now()),
+      last_(start_) {}
 
 Progress::~Progress() {
   if (dirty_) fmt::print(stderr, "\r\033[K");
@@ -37,9 +50,8 @@ void Progress::advance(std::size_t steps) {
   last_ = now;
   dirty_ = true;
   const double spent = std::chrono::duration<double>(now - start_).count();
-  const double left = spent * static_cast<double>(total_ - done_) / static_cast<double>(done_);
-  fmt::print(stderr, "\r\033[K{}: {} of {} ({:.0f} %), {} left", what_, done_, total_,
-             100.0 * static_cast<double>(done_) / static_cast<double>(total_), duration(left));
+  const double before = std::chrono::duration<double>(start_ - begun_).count();
+  fmt::print(stderr, "\r\033[K{}", progress_line(what_, done_, total_, spent, before));
 }
 
 Forecast::Forecast(std::string what, std::size_t total, int num_threads, bool at_most)

@@ -8,9 +8,16 @@
 
 namespace hb::tools {
 
+// "sweep: 30 of 120 (25 %), 6 s left"; `before` the step others took so many seconds, then what is left is the step's.
+[[nodiscard]] std::string progress_line(const std::string& what, std::size_t done, std::size_t total, double seconds,
+                                        double before);
+
 class Progress {
  public:
-  Progress(std::string what, std::size_t total);
+  using Clock = std::chrono::steady_clock;
+
+  // `begun`: the work that this is a step of.
+  Progress(std::string what, std::size_t total, Clock::time_point begun = Clock::now());
   ~Progress();  // clears its line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -18,11 +25,10 @@ class Progress {
   void advance(std::size_t steps = 1);  // from any thread
 
  private:
-  using Clock = std::chrono::steady_clock;
   std::string what_;
   std::size_t total_, done_ = 0;
   bool shown_, dirty_ = false;
-  Clock::time_point start_, last_;
+  Clock::time_point begun_, start_, last_;
   std::mutex mutex_;
 };
 

@@ -76,7 +76,7 @@ class SharedWork::Chunks {
         size_(parts_per_chunk(parts.count)),
         count_((parts.count + size_ - 1) / size_),
         what_(what),
-        progress_(what, parts.count) {}
+        progress_(what, parts.count, work.begun_) {}
 
   void run_alone() {
     Forecast forecast(what_, parts_.count, work_.num_threads_);

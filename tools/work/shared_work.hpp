@@ -2,6 +2,7 @@
 // The answer has the same bits whatever the number of threads and of interruptions.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -39,6 +40,7 @@ class SharedWork : public Work {
   Checkpoint* kept_;
   std::function<bool()> stop_, early_;
   std::uint64_t step_ = 0;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };
 
 // A subcommand's long work, with what it finishes kept in a file beside the folder `out` until the answer is delivered.

@@ -74,8 +74,8 @@ class HillSystem:
     def steady(
         self,
         *,
-        omega: Optional[float] = None,
-        rpm: Optional[float] = None,
+        omega: Optional[Union[float, str]] = None,
+        rpm: Optional[Union[float, str]] = None,
         tol: Optional[float] = None,
         steady_method: Optional[str] = None,
         bound: Optional[str] = None,
@@ -89,8 +89,8 @@ class HillSystem:
     def stability(
         self,
         *,
-        omega: Optional[float] = None,
-        rpm: Optional[float] = None,
+        omega: Optional[Union[float, str]] = None,
+        rpm: Optional[Union[float, str]] = None,
         tol: Optional[float] = None,
         stability_method: Optional[str] = None,
     ) -> Stability:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .sweep import Sweep
     from .tune import Tune
 
-Speed = Optional[float]
+Speed = Optional[Union[float, str]]
 Names = Union[str, Sequence[str], None]
 Modes = Union[int, str, None]
 
@@ -29,8 +29,8 @@ Modes = Union[int, str, None]
 class Scene:
     """A scene as read: immutable; `with_` gives a changed copy. In a notebook it shows its drawing.
 
-    Speeds are `rpm` (revolutions per minute) or `omega` (rad per the scene's unit of time); what is left out is taken
-    from the scene's [analysis]. All arguments are by name; what cannot be asked is an hb.RequestError.
+    Speeds are `rpm` (revolutions per minute) or `omega` (rad per the scene's unit of time), plain or as texts with a unit
+    ("50 Hz"); what is left out is taken from the scene's [analysis]. All arguments are by name; what cannot be asked is an hb.RequestError.
     """
 
     def __init__(self, text: str, *, name: str = "text", folder: Union[str, "os.PathLike[str]"] = ".") -> None:
@@ -186,8 +186,8 @@ class Scene:
     ) -> "Sweep":
         """Along the speed or any other number, with resonance peaks and unstable bands located: hb.Sweep.
 
-        rpm (or omega): a range (from, to, step), "FROM:TO:STEP", "FROM:TO:xN" (N points), or an array of values. x: a
-        number of the scene instead, "AB.J=30:60:1" or ("AB.J", range), at one rpm or omega. theory: "nonlinear" adds the
+        rpm (or omega): a range (from, to, step), "FROM:TO:STEP", "FROM:TO:xN" (N points; "5 Hz:50 Hz:x10"), or an array
+        of values. x: a number of the scene instead, "AB.J=30:60:1" or ("AB.J", range), at one rpm or omega. theory: "nonlinear" adds the
         branches of the motion without linearisation, of up to `period` turns. search: False leaves out what lies
         between the points (bands, resonance peaks), as only="growth" or "verdict" does for bands. threads: 1 or more, or
         "all"; the answer has the same bits. time_limit: seconds; the answer is then what is there, and `shortfalls` says
