@@ -140,6 +140,30 @@ class ReportPages(unittest.TestCase):
                 rigid = whole.endswith("_rigid") and whole.startswith("torque")
                 expected = at(steady, f"torque.rigid.{end}" if rigid else path)
                 self.assertEqual(float(value), expected, path)
+            paths = {path for path, _ in shown}
+            for path in ("rods.AB.stress.axial", "rods.CD.axial_force.buckling_share", "bearings.AB.0.max", "frame.max", "power.rms",
+                         "torque.mean", "flywheel.energy_fluctuation"):
+                self.assertIn(path, paths)
+        self.assert_quiet()
+
+    def test_page_of_one_speed_shows_bands_and_what_the_machine_feels_with_units(self):
+        arguments = ("steady", scenes.FOLDER / "slider_crank_units.toml", "--rpm", 3000, "--band", "damping=0.5:2", "--band", "E=0.9:1.1")
+        done = run(*arguments, "--out", self.folder / "band", "--html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        steady = answer(*arguments)
+        self.browser.open(self.folder / "band" / "report.html", "#play=0")
+        self.browser.settled()
+        bands = self.browser.run("return document.getElementById('bands').textContent")
+        for band in steady["bands"]:
+            self.assertIn(f"{band['parameter']} of the elastic links times", bands)
+            for quantity in band["quantities"]:
+                self.assertIn(f"{quantity['of']}: {quantity['name']}", bands)
+        self.browser.run("document.querySelectorAll('#numbers details').forEach((d) => { d.open = true })")
+        numbers = self.browser.run("return document.getElementById('numbers').textContent")
+        stress = steady["rods"]["rod"]["stress"]["axial"] * 1e-6
+        self.assertIn(f"largest axial stress{stress:.4g}"[:22], numbers)
+        for words in ("MPa", "largest shaking force on the frame", "driving torque, root mean square", "velocity", "J a turn"):
+            self.assertIn(words, numbers)
         self.assert_quiet()
 
     def test_every_view_moves_with_the_slider(self):

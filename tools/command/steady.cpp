@@ -104,6 +104,7 @@ int run_steady(const SteadyFlags& flags) {
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
       ReportData data(model.scene);
       data.add_speed({result.model, result, "", {}}, result.settings);
+      if (document.contains("bands")) data.add_bands(document["bands"]);
       return data.page(page_text(origin, std::move(pictures)));
     };
   const int status =

@@ -184,11 +184,19 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
   // Cell by cell, cut off at the frame; of large grids one image, whose half cells stand beyond it.
   constexpr std::size_t most_cells = 8000;
   const char* pixels = r.x().size() * r.y().size() <= most_cells ? " pixels" : "";
-  std::vector<std::string> layers = {
-      fmt::format("'{}' using 1:2:(asinh({}/{})) with image{} notitle", files.grid, c.value, c.scale, pixels)};
+  std::vector<std::string> layers;
+  // A layer of cells. In PNG the seams between them would show: there one image lies below, which SVG hides.
+  const auto add_cells = [&](const std::string& columns, const std::string& value, const char* none,
+                             const char* style) {
+    if (*pixels != '\0')
+      layers.push_back(fmt::format("'{}' using {}:(kind eq 'svg' ? {} : {}) with {} notitle", files.grid, columns, none,
+                                   value, style));
+    layers.push_back(fmt::format("'{}' using {}:({}) with {}{} notitle", files.grid, columns, value, style, pixels));
+  };
+  add_cells("1:2", fmt::format("asinh({}/{})", c.value, c.scale), "NaN", "image");
   if (some(Verdict::bounded)) {
-    layers.push_back(fmt::format("'{}' using 1:2:(190):(174):(212):($6 == {} ? 255 : 0) with rgbalpha{} notitle",
-                                 files.grid, verdict_number(Verdict::bounded), pixels));
+    add_cells("1:2:(190):(174):(212)", fmt::format("($6 == {} ? 255 : 0)", verdict_number(Verdict::bounded)), "0",
+              "rgbalpha");
     layers.push_back("keyentry with points pointtype 5 pointsize 1.6 linecolor '#beaed4' title 'bounded: no damping'");
   }
   if (some(Verdict::undecided)) {

@@ -82,8 +82,8 @@ Figure curves_figure(const TuneTask& task, const TuneResult& result, const Scene
   }
   for (const bool after : {false, true}) {
     below += fmt::format("{}'{}' using 1:{} with lines lw 2 lc {} {} title '{}'", after ? ", \\\n  " : "plot ",
-                         after ? "curves_after.csv" : "curves_before.csv", rods.size() + 2, after ? 4 : 7,
-                         after ? "dt 1" : "dt 2", after ? "after" : "before");
+                         after ? "curves_after.csv" : "curves_before.csv", rods.size() + 2, 7, after ? "dt 1" : "dt 2",
+                         after ? "after" : "before");
   }
   figure.commands += above + "\n";
   figure.commands += fmt::format(

@@ -1,6 +1,8 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/command/result_files.hpp"
+#include "tools/output/band_output.hpp"
+#include "tools/output/json_output.hpp"
 #include "tools/output/map_output.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/tune_output.hpp"
@@ -35,6 +37,8 @@ void steady_report(const SceneCore& core, const Answer& answer, const std::strin
       data.add_speed(nonlinear_place(answer.model, *answer.nonlinear, answer.settings), answer.settings);
     else
       data.add_speed({answer.model, answer.result, "", {}}, answer.settings);
+    if (!answer.bands.empty())
+      data.add_bands(bands_json(steady_json(*answer.model, answer.result, answer.settings, false), answer.bands));
     return data.page(page_text(core.provenance(call), {}));
   });
 }

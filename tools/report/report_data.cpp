@@ -111,6 +111,8 @@ void ReportData::add_speed(const ReportPlace& place, const Settings& settings) {
   add_places({place}, settings, false);
 }
 
+void ReportData::add_bands(Json bands) { data_["bands"] = std::move(bands); }
+
 void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places,
                            const NonlinearSweep* branches) {
   const Settings& settings = scene.settings();

@@ -23,6 +23,8 @@ class ReportData {
   // Points along an axis: places at kept_points(), in that order; with `branches` of the motion without linearisation.
   void add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places,
                  const NonlinearSweep* branches = nullptr);
+  // How the answer of one speed moves, as bands_json has it.
+  void add_bands(nlohmann::ordered_json bands);
   // `map` as map_json has it; values of the scene's own numbers where they are known.
   void add_map(nlohmann::ordered_json map, const SceneSource& source);
 

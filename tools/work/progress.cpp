@@ -72,7 +72,7 @@ void Forecast::advance(std::size_t steps) {
   const bool news = said_ == 0 ? all >= worth_saying : all > 2 * said_ || all < said_ / 2;
   if (!news) return;
   fmt::print(stderr, "hb: {} takes {} {}{} ({} parts, {} {}); --threads and --time-limit change that\n", what_,
-             at_most_ ? "at most" : "about", duration(all), said_ > 0 ? ", as later parts show," : "", total_,
+             at_most_ ? "at most" : "about", duration(all), said_ > 0 ? ", as later parts show" : "", total_,
              num_threads_, num_threads_ == 1 ? "thread" : "threads");
   said_ = all;
 }

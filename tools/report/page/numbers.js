@@ -56,10 +56,7 @@ const rodRows = (rod, numbers) => {
     add(name, cell(peak.max_abs, {factor, unit, digits: 6, path: path(`${key}.max_abs`), relative: key === "deflection" && own.modes_error !== undefined && own.modes_error !== null ? own.modes_error + (own.error_bound || 0) : undefined}));
     rows.push(element("tr", {}, element("td", {colspan: 2, class: "words error"}, `at x = ${short(peak.x)} ${units.length}, crank angle ${short(peak.crank_angle * units.degrees, 5)}°`)));
   }
-  for (const [key, peak] of Object.entries(own)) {
-    if (named[key] || !peak || typeof peak !== "object" || Array.isArray(peak) || !("max_abs" in peak) || Array.isArray(peak.max_abs)) continue;
-    add(key.replace(/_/g, " "), cell(peak.max_abs, {path: path(`${key}.max_abs`)}));
-  }
+  for (const [name, cells] of strengthRows(own, path)) add(name, cells);
   if (own.error_bound !== undefined) add("error of q, relative", cell(own.error_bound, {digits: 2, path: path("error_bound")}));
   if (own.modes_error !== undefined) add("error of the modes left out", cell(own.modes_error, {digits: 2, path: path("modes_error")}));
   if (own.theory_error !== undefined) {
@@ -116,6 +113,8 @@ const showNumbers = () => {
   if (!numbers) { host.append(element("p", {class: "caption"}, whyEmpty("numbers"))); return; }
   const joints = jointTable(numbers);
   if (joints) host.append(joints);
+  const machine = machineTable(numbers);
+  if (machine) host.append(machine);
   const warned = [...(here.lacking ? [here.lacking] : []), ...(numbers.notes || []), ...(numbers.warnings || [])];
   if (warned.length) host.append(element("div", {class: "note warning"}, warned.map((w) => element("p", {}, w))));
 };

@@ -103,6 +103,6 @@ const boundaryTable = () => {
 const setUpTables = () => {
   const host = document.getElementById("tables-views");
   host.className = "tables";
-  const all = [verdictTable(), bandTable(), criticalTable(), branchTable(), foldTable(), jumpTable(), boundaryTable(), points.count > 0 ? speedTable() : null].filter(Boolean);
+  const all = [verdictTable(), bandTable(), criticalTable(), branchTable(), foldTable(), jumpTable(), boundaryTable(), bandTables(), points.count > 0 ? speedTable() : null].filter(Boolean);
   host.append(...(all.length ? all : [element("p", {class: "missing"}, "No tables: nothing was computed along the speed.")]));
 };
