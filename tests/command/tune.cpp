@@ -147,6 +147,22 @@ TEST_F(Tune, IsHeldByTheRoomKeptForAnError) {
   EXPECT_GT(condition["gain_of_1_percent"], 0);
 }
 
+// The stress met its bound without a word of the axial force, which is not in it.
+TEST_F(Tune, SaysThatItsStressIsOfBendingAlone) {
+  const std::string question = " --vary rod.section.height=0.006:0.02 --over rpm=1000:2000 --modes 1 --analyses 4";
+  EXPECT_NE(hb("tune engine.toml --minimise stress" + question).out.find("bending alone"), std::string::npos);
+  EXPECT_EQ(hb("tune engine.toml --minimise deflection" + question).out.find("bending alone"), std::string::npos);
+}
+
+TEST_F(Tune, TakesHeightsWithAUnit) {
+  const std::string question = "tune " + scene("six_link") +
+                               " --minimise stress --vary AB.J=40:60 --over rpm=300:400 --modes 1 --analyses 3 --json "
+                               "--height ";
+  const CommandResult plain = hb(question + "'*=8'"), measured = hb(question + "'*=8 mm'");
+  EXPECT_FALSE(plain.out.empty()) << plain.err;
+  EXPECT_EQ(plain.out, measured.out);
+}
+
 TEST_F(Tune, TakesMoreModesWhereTheTunedDesignNeedsThem) {
   // The high section of the start needs three modes, the low one that is lightest six.
   const std::string question =

@@ -217,6 +217,8 @@ std::string worst_cases_text(const TuneTask& task, const TuneResult& result, con
                         std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
   if (!confirmed)
     text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
+  if (std::ranges::any_of(result.rows, [](const TuneRow& row) { return row.metric.kind == MetricKind::stress; }))
+    text += "  bending alone: the axial force adds |N|/area to it (hb steady has both together)\n";
   for (const bool after : {false, true})
     if (after ? unstable_after : unstable_before)
       text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
