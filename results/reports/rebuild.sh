@@ -12,10 +12,10 @@ report ../six_link/scene.toml --rpm 1300:1560:10 --modes 1 --theory nonlinear --
 
 # Debian's Python, for which python3-selenium is installed.
 /usr/bin/python3 -B pictures.py \
-  first_steps.html '#speed=27&angle=60&play=0' controls first_steps.png \
+  first_steps.html '#speed=27&angle=60&play=0' - first_steps.png \
   first_steps.html '#speed=27&angle=60&play=0' map-section first_steps_map.png \
-  six_link.html '#speed=9&angle=120&play=0' controls six_link.png \
+  six_link.html '#speed=9&angle=120&play=0' - six_link.png \
   six_link.html '#speed=9&angle=120&play=0' speeds six_link_speeds.png \
-  slider_crank.html '#speed=20&angle=300&play=0' controls slider_crank.png \
-  four_bar.html '#speed=10&angle=90&play=0' controls four_bar.png \
-  nonlinear.html '#speed=19&angle=45&play=0' controls nonlinear.png
+  slider_crank.html '#speed=20&angle=300&play=0' - slider_crank.png \
+  four_bar.html '#speed=10&angle=90&play=0' - four_bar.png \
+  nonlinear.html '#speed=19&angle=45&play=0' - nonlinear.png

@@ -166,7 +166,7 @@ void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, c
 
   // What the page reads of the sweep's own document; its columns are elsewhere.
   Json& own = data_["sweep"] = Json::object();
-  for (const char* key : {"critical", "band_details", "problems"})
+  for (const char* key : {"critical", "band_details", "not_excluded", "problems"})
     if (sweep.contains(key)) own[key] = std::move(sweep[key]);
   if (branches != nullptr) own["nonlinear"] = branch_data(sweep, *branches, block_);
   const auto columns = [&](Json& range) {

@@ -6,7 +6,7 @@ const degreesAt = (angle) => `${short(angle * units.degrees, 5)}°`;
 const strengthRows = (own, path) => {
   const rows = [], stress = own.stress, axial = own.axial_force, at = (key) => path(`stress.${key}`);
   const mpa = (key, more = {}) => cell(stress[key], {factor: megapascal, unit: "MPa", digits: 4, path: at(key), ...more});
-  if (own.static_deflection) rows.push(["deflection at rest", cell(own.static_deflection.max_abs, {unit: units.length, error: own.static_deflection.error, path: path("static_deflection.max_abs")})]);
+  if (own.static_deflection) rows.push(["deflection at rest", cell(own.static_deflection.max_abs, {unit: units.length, error: own.static_deflection.error || undefined, path: path("static_deflection.max_abs")})]);
   if (axial) {
     rows.push(["largest pull along it", cell(axial.tension, {factor: units.force.factor, unit: "N", digits: 5, path: path("axial_force.tension")})]);
     rows.push(["largest push along it", cell(axial.compression, {factor: units.force.factor, unit: "N", digits: 5, path: path("axial_force.compression")})]);

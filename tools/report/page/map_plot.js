@@ -239,7 +239,7 @@ const setUpMap = () => {
   canvas.parentNode.append(
     element("p", {class: "caption"}, isNonlinear ? "By the linear theory. " : "", kinds.map((kind) => `${kind === "-1" ? "Solid" : kind === "+1" ? "Long dashes" : "Dots"}: ${kindWords[kind] || kind}. `).join("") +
       "Blue: disturbances die out, red: they grow; every cell is one computed point. Light grey: undecided, green: bounded, dark grey: no system. " +
-      (map.words ? map.words + " " : ""), element("span", {class: "hint"}, "A click moves the cross-hair and takes the speed along; drag to zoom, double click for the whole.")));
+      (map.words ? map.words + " " : ""), element("span", {class: "hint"}, "A click moves the cross-hair and takes the speed along; drag to zoom, double click to see all.")));
   canvas.setAttribute("role", "img");
   canvas.setAttribute("aria-label", `Stability map over ${map.x.label} and ${map.y.label}: ${map.counts ? Object.entries(map.counts).filter(([, n]) => n > 0).map(([name, n]) => `${n} ${name}`).join(", ") : ""}; arrow keys move the cross-hair`);
 };

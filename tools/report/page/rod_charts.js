@@ -112,7 +112,7 @@ const campbellChart = (host, rod, along, x) => {
   const still = swings.filter((swing) => !swing).length, left = frequencies.length - shown.length - still;
   const grows = columns.some((c) => c.colour === "unstable");
   host.after(legend([...items, ...(grows ? [{text: "growing", colour: "unstable"}] : []), {text: "nΩ", colour: "order"}, {text: "nΩ/2", colour: "ghost", dashed: true}, ...(bandsOf(rod.name).length ? [{text: "unstable band, ends computed", colour: "unstable-band", box: true}] : [])]),
-    element("p", {class: "caption"}, criticalOf(rod.name).length ? "Dots: resonance peaks. " : "", element("span", {class: "hint"}, "Drag to zoom, double click for the whole, click for that speed."), `${left > 0 ? ` ${left} ${left === 1 ? "mode lies" : "modes lie"} above the picture.` : ""}${still > 0 ? ` ${still} ${still === 1 ? "mode is" : "modes are"} so strongly damped that ${still === 1 ? "it does" : "they do"} not swing.` : ""}`));
+    element("p", {class: "caption"}, criticalOf(rod.name).length ? "Dots: resonance peaks. " : "", element("span", {class: "hint"}, "Drag to zoom, double click to see all, click to go to that speed."), `${left > 0 ? ` ${left} ${left === 1 ? "mode lies" : "modes lie"} above the picture.` : ""}${still > 0 ? ` ${still} ${still === 1 ? "mode is" : "modes are"} so strongly damped that ${still === 1 ? "it does" : "they do"} not swing.` : ""}`));
 };
 
 const growthChart = (host, rod, along, x) => {

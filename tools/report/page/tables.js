@@ -28,8 +28,15 @@ const bandTable = () => {
     band.from_kind === null ? element("td", {"data-value": band.from}, "before ", short(band.from, 8)) : cell(band.from, {error: band.from_error}),
     band.to_kind === null ? element("td", {"data-value": band.to}, "beyond ", short(band.to, 8)) : cell(band.to, {error: band.to_error}),
     cell(band.fastest_growth, {digits: 5}), cell(band.fastest_at, {digits: 7}), textCell(kindText(band.from_kind)), textCell(kindText(band.to_kind)))));
-  if (rows.length === 0) return element("p", {class: "caption"}, `No unstable band among the computed speeds and between them${byLinear}.`);
+  if (rows.length === 0) return element("p", {class: "caption"}, `No unstable band was found at the computed speeds or between them${byLinear}.`);
   return tableOf(`Unstable bands${byLinear}, ${axisName()}`, ["link", "from", "to", `fastest growth of its points [${units.rate}]`, "at", "begins", "ends"], rows);
+};
+
+// Places between computed speeds that the search could not settle.
+const notExcludedTable = () => {
+  const places = Object.entries((report.sweep && report.sweep.not_excluded) || {}).flatMap(([rod, pairs]) => pairs.map(([from, to]) =>
+    element("tr", {}, element("td", {}, rod), cell(from, {digits: 10}), cell(to, {digits: 10}))));
+  return places.length ? tableOf(`Not excluded: a narrow unstable band, or a stable gap in one, may lie here${byLinear}, ${axisName()}`, ["link", "from", "to"], places) : null;
 };
 
 const criticalTable = () => {
@@ -103,6 +110,6 @@ const boundaryTable = () => {
 const setUpTables = () => {
   const host = document.getElementById("tables-views");
   host.className = "tables";
-  const all = [verdictTable(), bandTable(), criticalTable(), branchTable(), foldTable(), jumpTable(), boundaryTable(), bandTables(), points.count > 0 ? speedTable() : null].filter(Boolean);
+  const all = [verdictTable(), bandTable(), notExcludedTable(), criticalTable(), branchTable(), foldTable(), jumpTable(), boundaryTable(), bandTables(), points.count > 0 ? speedTable() : null].filter(Boolean);
   host.append(...(all.length ? all : [element("p", {class: "missing"}, "No tables: nothing was computed along the speed.")]));
 };
