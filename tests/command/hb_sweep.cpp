@@ -282,6 +282,20 @@ TEST_F(Sweep, WritesTablesAndPictures) {
   EXPECT_EQ(num_entries(folder_), 1u);
 }
 
+// Beside the end of a band the linear response was 1e14 mm, and the axis began at 100 mm: nothing else was in the picture.
+TEST_F(Sweep, PicturesShowResponsesThatCanBe) {
+  const CommandResult result = hb("sweep " + scene("six_link") + " --rpm 900:1920:60 --modes 1 --rods AB --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string script = read(folder_ / "out" / "sweep.gp");
+  const std::size_t picture = script.find("'peaks_AB.'"), range = script.find("set yrange [", picture);
+  ASSERT_NE(range, std::string::npos);
+  double low = 0, high = 0;
+  ASSERT_EQ(std::sscanf(script.c_str() + range, "set yrange [%lf:%lf]", &low, &high), 2);
+  constexpr double at_900_rpm = 1.36, length = 259;  // mm
+  EXPECT_LT(low, at_900_rpm);
+  EXPECT_LT(high, 10 * length);
+}
+
 TEST_F(Sweep, GoesOnWhereItWasStoppedAndRefusesAChangedScene) {
   const std::string arguments =
       "sweep " + scene("six_link") + " --rpm 200:6000:2 --only stability --no-plots --out out ";

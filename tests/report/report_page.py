@@ -290,6 +290,10 @@ class ReportPages(unittest.TestCase):
     def test_page_without_linearisation_has_branches_folds_and_jumps(self):
         sweep = answer("sweep", scenes.FOLDER / "six_link.toml", *self.NONLINEAR)
         self.browser.open(self.nonlinear(), "#play=0")
+        # Warnings of the linear answers stand beside the motion as what they are.
+        notes = self.browser.text("notes")
+        self.assertIn("Of the linear theory, which is drawn in grey here:", notes)
+        self.assertNotIn("Tolerance not reached", notes)
         shown = self.browser.run("return peakBranches('AB', 0).map((b) => [b.verdicts, [...b.x]])")
         self.assertEqual([verdicts for verdicts, _ in shown], [b["verdict"] for b in sweep["branches"]])
         self.assertEqual([x for _, x in shown], [b["x"] for b in sweep["branches"]])

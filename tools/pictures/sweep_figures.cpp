@@ -14,6 +14,7 @@
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 #include "tools/pictures/figure_text.hpp"
+#include "tools/pictures/sweep_range.hpp"
 
 namespace hb::tools {
 namespace {
@@ -116,52 +117,6 @@ std::string beyond_note(const CsvFile& csv, const SweepColumns& columns) {
   if (columns.beyond == 0) return "";
   const bool some = (csv.rows.col(columns.beyond - 1).array() > 0).any();
   return some ? "'.\"\\n\".'grey, dashed: beyond the linear theory or small deflections" : "";
-}
-
-// Finite values of a column.
-std::vector<double> finite(const CsvFile& csv, int column) {
-  std::vector<double> values;
-  for (Eigen::Index k = 0; k < csv.rows.rows(); ++k)
-    if (std::isfinite(csv.rows(k, column - 1))) values.push_back(csv.rows(k, column - 1));
-  return values;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-// Values of a column at points of the sweep where every rod is stable; of all points if that is nowhere or not known.
-std::vector<double> where_stable(const SweepResult& result, const CsvFile& csv, int column) {
-  const std::vector<const SweepPoint*> points = all_points(result);
-  std::vector<double> values;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const bool stable = std::all_of(points[k]->rods.begin(), points[k]->rods.end(), [](const RodPoint& rod) {
-      return !rod.stability || rod.stability->stability.verdict <= Verdict::bounded;
-    });
-    const double value = csv.rows(static_cast<Eigen::Index>(k), column - 1);
-    if (stable && std::isfinite(value)) values.push_back(value);
-  }
-  return values.empty() ? finite(csv, column) : values;
-}
-
-// Without what is many times larger than nine tenths of all: sharp peaks would flatten the rest.
-std::vector<double> without_spikes(std::vector<double> values) {
-  if (values.empty()) return values;
-  constexpr double many = 4;
-  std::vector<double> sizes;
-  for (const double value : values) sizes.push_back(std::abs(value));
-  const auto ninth = sizes.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), ninth, sizes.end());
-  const double limit = many * *ninth;
-  std::erase_if(values, [&](double value) { return std::abs(value) > limit; });
-  return values;
-}
-
-double largest(const std::vector<double>& values) {
-  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
 // Of the order lines drawn: those at which a peak was found, and a few in any case.
@@ -302,7 +257,7 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
   frame.top = 2 * frame.crank(frame.to);
   for (int mode = 0; mode < std::min(rod.num_modes, 2); ++mode)
     frame.top = std::max(frame.top, 1.15 * largest(finite(csv, columns.first_frequency + 2 * mode)));
-  const double scale = std::max(4 * std::abs(median(where_stable(result, csv, columns.growth))), 1e-300);
+  const double scale = std::max(4 * std::abs(median(where_stable(scene, result, csv, columns.growth))), 1e-300);
 
   Figure figure;
   figure.name = figure_name("campbell", rod.name);
@@ -337,7 +292,7 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
           axis(scene) + shaded(result, r);
   double top = 0, bottom = HUGE_VAL;
   for (int i = 0; i < shown; ++i) {
-    for (const double value : where_stable(result, csv, columns.first_peak + i)) {
+    for (const double value : where_stable(scene, result, csv, columns.first_peak + i)) {
       if (!(value > 0)) continue;
       top = std::max(top, value);
       bottom = std::min(bottom, value);
@@ -375,7 +330,7 @@ Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::si
       1.5 + 1.5 * count_lines(heading));
   text += axis(scene) + shaded(result, r);
   const auto range = [&](int column) {
-    const std::vector<double> values = where_stable(result, csv, column);
+    const std::vector<double> values = where_stable(scene, result, csv, column);
     double low = HUGE_VAL;
     for (const double value : values)
       if (value > 0) low = std::min(low, value);
@@ -455,7 +410,7 @@ std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResu
       const int column = 2 + 4 * static_cast<int>(c);
       double low = 0, high = 0;
       for (int k = 0; k < 4; ++k) {
-        const std::vector<double> all = where_stable(result, csv, column + k), values = without_spikes(all);
+        const std::vector<double> all = where_stable(scene, result, csv, column + k), values = without_spikes(all);
         cut = cut || values.size() < all.size();
         if (values.empty()) continue;
         low = std::min(low, *std::min_element(values.begin(), values.end()));

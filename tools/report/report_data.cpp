@@ -106,7 +106,8 @@ void ReportData::add_speed(const ReportPlace& place, const Settings& settings) {
   for (const auto& [name, rod] : steady["rods"].items())
     if (rod.contains("verdict")) data_["verdicts"][name] = std::string(1, letter(rod["verdict"]));
   if (steady.contains("verdict")) data_["verdicts"][""] = std::string(1, letter(steady["verdict"]));
-  if (steady.contains("notes")) data_["notes"] = steady["notes"];
+  for (const char* key : {"status", "notes"})
+    if (steady.contains(key)) data_[key] = steady[key];
   if (steady.contains("warnings")) data_["warnings"] = steady["warnings"];
   add_places({place}, settings, false);
 }
@@ -157,7 +158,8 @@ void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, c
                              {"error", block_.doubles(numbers(sweep["system"]["growth_error"]))}};
   }
   add_along(scene, result);
-  if (sweep.contains("notes")) data_["notes"] = sweep["notes"];
+  for (const char* key : {"status", "notes"})
+    if (sweep.contains(key)) data_[key] = sweep[key];
   if (sweep.contains("warnings"))
     for (const Json& warning : sweep["warnings"])
       if (std::find(data_["warnings"].begin(), data_["warnings"].end(), warning) == data_["warnings"].end())

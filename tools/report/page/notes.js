@@ -9,9 +9,12 @@ const setUpNotes = () => {
     return [...lines.slice(0, most), element("details", {}, element("summary", {}, `and ${lines.length - most} more`), lines.slice(most))];
   };
   const problems = (report.sweep && report.sweep.problems) || [];
-  if ((report.notes || []).length) note(["Tolerance not reached:", ...limit(report.notes)], true);
-  const warnings = [...new Set(report.warnings || [])];
-  if (warnings.length) note(limit(warnings), true);
+  const missed = report.status !== "reached";
+  if ((report.notes || []).length) note([missed ? "Tolerance not reached:" : "Known less well than usual:", ...limit(report.notes)], missed);
+  const warnings = [...new Set(report.warnings || [])], ofLinear = isNonlinear ? warnings.filter((w) => /beyond (the linear theory|small deflections)/.test(w)) : [];
+  const rest = warnings.filter((w) => !ofLinear.includes(w));
+  if (rest.length) note(limit(rest), true);
+  if (ofLinear.length) note(["Of the linear theory, which is drawn in grey here:", ...limit(ofLinear)]);
   if (problems.length) note(`${problems.length} of ${points.count} points have no answer; the first: ${problems[0].reason}`, true);
   if (report.thinned) note(report.thinned);
   if (isNonlinear && nonlinear) {
