@@ -282,7 +282,8 @@ TEST_F(Sweep, WritesTablesAndPictures) {
   EXPECT_EQ(num_entries(folder_), 1u);
 }
 
-// Beside the end of a band the linear response was 1e14 mm, and the axis began at 100 mm: nothing else was in the picture.
+// Beside the end of a band the linear response was 1e14 mm, and the axis began at 100 mm: nothing else was in the
+// picture.
 TEST_F(Sweep, PicturesShowResponsesThatCanBe) {
   const CommandResult result = hb("sweep " + scene("six_link") + " --rpm 900:1920:60 --modes 1 --rods AB --out out");
   ASSERT_EQ(result.status, 0) << result.err;
