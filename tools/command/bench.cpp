@@ -68,7 +68,7 @@ int run_bench(const BenchFlags& flags) {
     place.write("bench.csv", bench_csv(found));
     return bench_figures(found);
   };
-  return deliver(folder ? &*folder : nullptr, out.plots, found.complete() ? exit_ok : exit_not_reached, delivery);
+  return deliver(folder ? &*folder : nullptr, out.pictures, found.complete() ? exit_ok : exit_not_reached, delivery);
 }
 
 }  // namespace

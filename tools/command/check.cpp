@@ -93,7 +93,7 @@ int run_nonlinear_check(const CheckFlags& flags) {
     place.write("check.json", json_file_text(document));
     return std::vector<Figure>();
   };
-  return deliver(folder ? &*folder : nullptr, out.plots, check_status(found.agrees(), found.reached()), delivery);
+  return deliver(folder ? &*folder : nullptr, out.pictures, check_status(found.agrees(), found.reached()), delivery);
 }
 
 int run_check(const CheckFlags& flags) {
@@ -124,7 +124,7 @@ int run_check(const CheckFlags& flags) {
     place.write("check.json", json_file_text(document));
     return write_check_tables(*found.model, found.speeds, place);
   };
-  return deliver(folder ? &*folder : nullptr, out.plots, check_status(found.agrees(), found.reached()), delivery);
+  return deliver(folder ? &*folder : nullptr, out.pictures, check_status(found.agrees(), found.reached()), delivery);
 }
 
 }  // namespace

@@ -39,9 +39,13 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
       ->type_name("PATH=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  app.add_option("--out", flags.out, "write CSV and pictures (SVG, PNG) into this folder")->type_name("DIR");
+  app.add_option("--out", flags.out, "write CSV and pictures into this folder")->type_name("DIR");
   app.add_flag("--json", flags.json, "one JSON document on standard output, nothing else there");
   app.add_flag("--no-plots", flags.no_plots, "no pictures in the folder of --out");
+  add_value(app, "--format", flags.format,
+            "kinds of pictures: svg, png, pdf, several joined by commas; default svg,png", "LIST");
+  add_value(app, "--size", flags.size, "width and height of every picture in points, as in 640x400", "WxH");
+  app.add_flag("--no-titles", flags.no_titles, "pictures without titles, for texts that have their own captions");
   app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
   add_value(app, "--time-limit", flags.time_limit,
             "end after S seconds with what is there, and with exit status 3 where that is not all", "S");

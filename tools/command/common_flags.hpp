@@ -16,14 +16,15 @@ struct CommonFlags {
   std::string scene_file;
   std::string line;  // the whole command, see command_line
   std::string time_limit;
+  std::string format, size;  // of pictures
   std::string modes, tolerance, rods, only, rpm, omega, threads, steady_method, stability_method, bound;
   std::optional<std::string> out;
   std::vector<std::string> set;
-  bool json = false, no_plots = false, stats = false, html = false;
+  bool json = false, no_plots = false, no_titles = false, stats = false, html = false;
   bool growth_alone = false;  // the command takes --only growth and --only verdict
 };
 
-// SCENE, --set, --out, --json, --no-plots, --stats: for every subcommand.
+// SCENE, --set, --out, --json, --no-plots, --format, --size, --no-titles, --stats, --time-limit: for every subcommand.
 void add_scene_flags(CLI::App& app, CommonFlags& flags);
 // --modes, --tol, --rods, --only, --rpm, --omega, --threads, --steady-method, --stability-method.
 enum class SpeedsTaken { one, range };

@@ -114,7 +114,7 @@ int run_compare(const CompareFlags& flags) {
     return figures;
   };
   const auto reached = [](const ComparedSide& one) { return one.document.value("status", "reached") == "reached"; };
-  return deliver(folder ? &*folder : nullptr, out.plots, reached(a) && reached(b) ? exit_ok : exit_not_reached,
+  return deliver(folder ? &*folder : nullptr, out.pictures, reached(a) && reached(b) ? exit_ok : exit_not_reached,
                  delivery);
 }
 

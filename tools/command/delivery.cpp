@@ -18,24 +18,24 @@ void warn(const OutputFolder& folder, const std::exception& error) {
 }
 
 // One stage: data, their script, the pictures.
-std::vector<Figure> write_stage(OutputFolder& folder, bool pictures, std::vector<Figure> figures,
+std::vector<Figure> write_stage(OutputFolder& folder, const PictureStyle& style, std::vector<Figure> figures,
                                 const std::function<std::vector<Figure>(OutputFolder&)>& write) {
   for (Figure& figure : write(folder)) figures.push_back(std::move(figure));
-  if (!pictures) figures.clear();
-  if (!figures.empty()) folder.write(script_name(folder.command()), plot_script(figures));
+  if (!style.drawn) figures.clear();
+  if (!figures.empty()) folder.write(script_name(folder.command()), plot_script(figures, style));
   folder.commit();
   return figures;
 }
 
 }  // namespace
 
-int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& delivery) {
+int deliver(OutputFolder* folder, const PictureStyle& style, int status, const Delivery& delivery) {
   std::vector<Figure> figures;
   bool written = false;
   begin_delivery();
   if (folder != nullptr) {
     try {
-      figures = write_stage(*folder, pictures, {}, delivery.write_data);
+      figures = write_stage(*folder, style, {}, delivery.write_data);
       written = true;
       if (delivery.committed) delivery.committed();
     } catch (const std::exception& error) {
@@ -52,9 +52,9 @@ int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& del
   begin_pictures(status == exit_ok ? int{exit_no_pictures} : status);
   bool drawn = true;
   try {
-    if (pictures && delivery.write_more)
-      figures = write_stage(*folder, pictures, std::move(figures), delivery.write_more);
-    if (!figures.empty()) drawn = draw_figures(figures, *folder);
+    if (style.drawn && delivery.write_more)
+      figures = write_stage(*folder, style, std::move(figures), delivery.write_more);
+    if (!figures.empty()) drawn = draw_figures(figures, *folder, style);
     if (delivery.page) {
       const std::string page =
           delivery.page(drawn ? page_pictures(figures, *folder) : std::vector<PageText::Picture>());

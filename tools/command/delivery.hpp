@@ -27,6 +27,6 @@ struct Delivery {
 
 // Data are committed first; then `printed` is printed, whatever became of the files; pictures are drawn last. Gives
 // `status`, or exit_wrong_input where the data could not be written, or, instead of 0, exit_no_pictures.
-[[nodiscard]] int deliver(OutputFolder* folder, bool pictures, int status, const Delivery& delivery);
+[[nodiscard]] int deliver(OutputFolder* folder, const PictureStyle& style, int status, const Delivery& delivery);
 
 }  // namespace hb::tools

@@ -129,7 +129,7 @@ int run_fit(const FitFlags& flags) {
     place.write(csv.name, csv_text(csv));
     return {fit_figure(measured, fitted, csv)};
   };
-  return deliver(folder ? &*folder : nullptr, out.plots, exit_ok, delivery);
+  return deliver(folder ? &*folder : nullptr, out.pictures, exit_ok, delivery);
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ int run_map(const MapCommandFlags& flags) {
     };
   // No tolerance of boundaries was asked for without the flag.
   const bool reached = flags.map.boundary_tolerance.empty() || boundary_points_not_reached(*map) == 0;
-  const int status = deliver(folder ? &*folder : nullptr, out.plots,
+  const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              ended_status(document.complete && reached ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json)
     fmt::print(stderr, "\n  {}{}\n", map->evidence,

@@ -10,6 +10,36 @@
 #include "tools/report/report_page.hpp"
 
 namespace hb::tools {
+namespace {
+
+// Points of a picture's side: room for its labels, and what gnuplot draws in reasonable time.
+constexpr int smallest_side = 200, largest_side = 4000;
+
+PictureStyle picture_style(const CommonFlags& flags) {
+  PictureStyle style;
+  style.drawn = !flags.no_plots;
+  style.titles = !flags.no_titles;
+  if (!flags.format.empty()) {
+    style.kinds.clear();
+    for (const std::string& kind : list_flag("--format", flags.format)) {
+      const std::vector<std::string> allowed = {"svg", "png", "pdf"};
+      if (std::ranges::find(allowed, kind) == allowed.end())
+        refuse_flag("--format", kind, "svg, png, pdf, several joined by commas" + meant(kind, allowed));
+      if (std::ranges::find(style.kinds, kind) == style.kinds.end()) style.kinds.push_back(kind);
+    }
+  }
+  if (!flags.size.empty()) {
+    const std::string allowed =
+        fmt::format("WIDTHxHEIGHT in points, each {} to {}, as in 640x400", smallest_side, largest_side);
+    const std::size_t x = flags.size.find('x');
+    if (x == std::string::npos) refuse_flag("--size", flags.size, allowed);
+    style.size = {integer_flag("--size", flags.size.substr(0, x), smallest_side, largest_side, allowed),
+                  integer_flag("--size", flags.size.substr(x + 1), smallest_side, largest_side, allowed)};
+  }
+  return style;
+}
+
+}  // namespace
 
 Output output(const CommonFlags& flags) {
   constexpr int max_threads = 1024;
@@ -31,7 +61,7 @@ Output output(const CommonFlags& flags) {
   }
   result.html = flags.html;
   result.json = flags.json;
-  result.plots = !flags.no_plots;
+  result.pictures = picture_style(flags);
   result.stats = flags.stats;
   return result;
 }

@@ -5,13 +5,15 @@
 #include <optional>
 
 #include "tools/command/common_flags.hpp"
+#include "tools/pictures/gnuplot.hpp"
 
 namespace hb::tools {
 
 // Where the answer goes, and with how many threads it is computed.
 struct Output {
   std::optional<std::filesystem::path> folder;  // for CSV and pictures
-  bool json = false, plots = true, stats = false, html = false;
+  PictureStyle pictures;
+  bool json = false, stats = false, html = false;
   int threads = 1;
 };
 

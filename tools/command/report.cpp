@@ -90,7 +90,7 @@ int run_report(const ReportFlags& flags) {
   guard.reset();
   begin_delivery();
   std::vector<PageText::Picture> still;
-  if (out.plots) {
+  if (out.pictures.drawn) {
     const std::optional<MapDocument> document = map ? std::optional(document_of(*map)) : std::nullopt;
     still = report_pictures(*along, result, branches, document ? &*document : nullptr);
   }
@@ -112,6 +112,7 @@ void add_report_command(CLI::App& app, int& status) {
   command->remove_option(command->get_option("--json"));
   command->remove_option(command->get_option("--stats"));
   add_theory_flags(*command, flags->theory);
+  for (const char* name : {"--format", "--size", "--no-titles"}) command->remove_option(command->get_option(name));
   command->get_option("--no-plots")->description("no pictures for readers without JavaScript");
   command->add_option("--x", flags->x, "a map too: its first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

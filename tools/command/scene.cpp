@@ -36,7 +36,7 @@ int run_scene(const CommonFlags& flags, bool paths) {
   if (paths) {
     Delivery numbers;
     numbers.printed = printable(numbers_text(SceneFamily(input.source, overrides(flags))));
-    return deliver(nullptr, false, exit_ok, numbers);
+    return deliver(nullptr, {}, exit_ok, numbers);
   }
   const Scene scene = input.source.with(overrides(flags));
   (void)settings(flags, scene);
@@ -56,7 +56,7 @@ int run_scene(const CommonFlags& flags, bool paths) {
     figure.name = "scene_mechanism";
     return {figure};
   };
-  return deliver(folder ? &*folder : nullptr, out.plots, exit_ok, delivery);
+  return deliver(folder ? &*folder : nullptr, out.pictures, exit_ok, delivery);
 }
 
 }  // namespace

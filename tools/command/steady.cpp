@@ -68,7 +68,7 @@ int run_nonlinear(const SteadyFlags& flags) {
       data.add_speed(nonlinear_place(result.model, result, result.settings), result.settings);
       return data.page(page_text(origin, std::move(pictures)));
     };
-  const int status = deliver(folder ? &*folder : nullptr, out.plots,
+  const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
   return status;
@@ -107,8 +107,8 @@ int run_steady(const SteadyFlags& flags) {
       if (document.contains("bands")) data.add_bands(document["bands"]);
       return data.page(page_text(origin, std::move(pictures)));
     };
-  const int status =
-      deliver(folder ? &*folder : nullptr, out.plots, result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
+  const int status = deliver(folder ? &*folder : nullptr, out.pictures,
+                             result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
   return status;
 }

@@ -95,7 +95,7 @@ int run_tune(const TuneFlags& flags) {
       SharedWork work(out.threads);
       return design_page(task, result, scene, document, work, page_text(origin, std::move(pictures)));
     };
-  const int status = deliver(folder ? &*folder : nullptr, out.plots,
+  const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              ended_status(shortfall(result).empty() ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
   return status;

@@ -21,8 +21,8 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
   double top = 0;
   for (const NonlinearBranch& branch : sweep.branches)
     for (const NonlinearPoint& point : branch.points) top = std::max(top, point.max_abs[r].front());
-  text += "set title '{/:Bold " + literal(scene_name(scene.scene()) + ", " + sweep.rods[r]) +
-          "}'.\"\\n\".'solid stable, dashed unstable; dots folds, circles bifurcations; grey linear'\n";
+  text += "set title heading('{/:Bold " + literal(scene_name(scene.scene()) + ", " + sweep.rods[r]) +
+          "}'.\"\\n\".'solid stable, dashed unstable; dots folds, circles bifurcations; grey linear')\n";
   text += fmt::format(
       "set xrange [{}:{}]\nset xlabel {}\nset ylabel 'largest |q_1| [{}]'\nset yrange [0:{}]\n"
       "set key outside right top Left reverse samplen 2\nplot ",

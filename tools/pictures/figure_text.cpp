@@ -34,11 +34,11 @@ std::string short_name(const Scene& scene) {
 
 // gnuplot reads \n only in double quotes.
 std::string two_lines(const std::string& bold, const std::string& shown) {
-  const std::string first = "'{/:Bold " + literal(bold) + "}'";
-  if (shown.empty()) return first;
+  const std::string first = "heading('{/:Bold " + literal(bold) + "}'";
+  if (shown.empty()) return first + ")";
   std::string title = first + ".\"\\n\".'";
   for (const char c : shown) title += c == '\n' ? "'.\"\\n\".'" : std::string(1, c);
-  return title + "'";
+  return title + "')";
 }
 
 std::string rod_title(const SceneModel& model, const SpeedResult& result, const RodResult& rod,

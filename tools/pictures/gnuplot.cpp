@@ -33,6 +33,7 @@ set datafile separator ','
 set datafile columnheaders
 svg(w, h) = sprintf("set terminal svg size %d,%d font 'DejaVu Sans,13' background 'white' linewidth 1.2", w, h)
 png(w, h) = sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,13' fontscale 2 linewidth 2.4 pointscale 2", 2*w, 2*h)
+pdf(w, h) = sprintf("set terminal pdfcairo size %g,%g font 'DejaVu Sans,13' linewidth 1.2", w/72.0, h/72.0)
 small(w, h) = sprintf("set terminal pngcairo size %d,%d font 'DejaVu Sans,11' linewidth 1.2", w, h)
 set border 3 linecolor '#444444'
 set tics nomirror textcolor '#222222'
@@ -63,6 +64,14 @@ bool complete(const fs::path& path, const std::string& end) {
   const std::string text = contents(path);
   const std::size_t window = 64;
   return text.size() > window && text.find(end, text.size() - window) != std::string::npos;
+}
+
+// The moment of drawing is no part of the result; as long a date keeps the places of what follows.
+std::string without_date(std::string pdf) {
+  const std::string key = "/CreationDate (D:", fixed = "19700101000000";
+  if (const std::size_t at = pdf.find(key); at != std::string::npos && at + key.size() + fixed.size() <= pdf.size())
+    pdf.replace(at + key.size(), fixed.size(), fixed);
+  return pdf;
 }
 
 // gnuplot writes > as it is, but ]]> may not stand in the text of XML.
@@ -213,17 +222,20 @@ std::string literal(const std::string& text) {
 
 std::string quoted(const std::string& text) { return fmt::format("'{}'", literal(text)); }
 
-std::string plot_script(const std::vector<Figure>& figures, const PictureKinds& kinds) {
+std::string plot_script(const std::vector<Figure>& figures, const PictureStyle& style) {
   std::string script = preamble;
+  script += style.titles ? "heading(text) = text\n" : "heading(text) = ''\n";
   for (const Figure& figure : figures) {
     script += fmt::format(
         "\ndo for [kind in '{4}'] {{\n"
-        "eval (kind eq 'svg') ? svg({0}, {1}) : (kind eq 'png') ? png({0}, {1}) : small({0}, {1})\n"
+        "eval (kind eq 'svg') ? svg({0}, {1}) : (kind eq 'png') ? png({0}, {1}) : (kind eq 'pdf') ? pdf({0}, {1}) : "
+        "small({0}, {1})\n"
         "set output '{2}.'.kind\n"
         "{3}"
         "set output\n"
         "}}\n",
-        figure.width, figure.height, figure.name, figure.commands, fmt::join(kinds, " "));
+        style.size ? style.size->width : figure.width, style.size ? style.size->height : figure.height, figure.name,
+        figure.commands, fmt::join(style.kinds, " "));
   }
   return script;
 }
@@ -246,27 +258,27 @@ PlotOutcome run_gnuplot(const fs::path& folder, const std::string& script, const
   }
   for (const Figure& figure : figures) {
     const bool whole = std::all_of(kinds.begin(), kinds.end(), [&](const std::string& kind) {
-      return complete(folder / (figure.name + "." + kind), kind == "svg" ? "</svg>" : "IEND");
+      return complete(folder / (figure.name + "." + kind), kind == "svg" ? "</svg>" : kind == "pdf" ? "%%EOF" : "IEND");
     });
     if (!whole) outcome.missing.push_back(figure.name);
   }
   return outcome;
 }
 
-bool draw_figures(const std::vector<Figure>& figures, OutputFolder& folder) {
+bool draw_figures(const std::vector<Figure>& figures, OutputFolder& folder, const PictureStyle& style) {
   const std::string script = script_name(folder.command());
   const fs::path place = folder.scratch_with_links();
-  const PlotOutcome outcome = run_gnuplot(place, script, figures);
+  const PlotOutcome outcome = run_gnuplot(place, script, figures, std::chrono::seconds(30), style.kinds);
   for (const Figure& figure : figures) {
     const bool missing =
         std::find(outcome.missing.begin(), outcome.missing.end(), figure.name) != outcome.missing.end();
-    for (const std::string kind : {".svg", ".png"}) {
-      const std::string file = figure.name + kind;
+    for (const std::string& kind : style.kinds) {
+      const std::string file = figure.name + "." + kind;
       if (missing) {
         folder.drop(file);
       } else {
         const std::string picture = contents(place / file);
-        folder.write(file, kind == ".svg" ? well_formed(picture) : picture);
+        folder.write(file, kind == "svg" ? well_formed(picture) : kind == "pdf" ? without_date(picture) : picture);
       }
     }
   }

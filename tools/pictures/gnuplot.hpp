@@ -1,8 +1,9 @@
-// Pictures through gnuplot: a script that draws named figures from CSV files beside it, as SVG and as PNG.
+// Pictures through gnuplot: a script that draws named figures from CSV files beside it, as SVG, PNG or PDF.
 #pragma once
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,22 @@ struct Figure {
 
 // Kinds of pictures, by the extension of their files.
 using PictureKinds = std::vector<std::string>;
-inline const PictureKinds folder_kinds = {"svg", "png"};
 // PNG with one pixel for one of the figure, for pages.
 inline const PictureKinds page_kinds = {"small"};
 
+// How the pictures of a folder are wanted.
+struct PictureStyle {
+  bool drawn = true;
+  PictureKinds kinds = {"svg", "png"};
+  struct Size {
+    int width, height;
+  };
+  std::optional<Size> size = std::nullopt;  // of every figure, instead of its own
+  bool titles = true;
+};
+
 // The script that draws all figures when run in the folder of their CSV files.
-[[nodiscard]] std::string plot_script(const std::vector<Figure>& figures, const PictureKinds& kinds = folder_kinds);
+[[nodiscard]] std::string plot_script(const std::vector<Figure>& figures, const PictureStyle& style = {});
 
 struct PlotOutcome {
   bool no_gnuplot = false;
@@ -41,13 +52,14 @@ struct PlotOutcome {
 [[nodiscard]] PlotOutcome run_gnuplot(const std::filesystem::path& folder, const std::string& script,
                                       const std::vector<Figure>& figures,
                                       std::chrono::milliseconds patience = std::chrono::seconds(30),
-                                      const PictureKinds& kinds = folder_kinds);
+                                      const PictureKinds& kinds = PictureStyle().kinds);
 
 // Name of the script among the files of a command.
 [[nodiscard]] std::string script_name(const std::string& command);
 
 // Draws the figures of a folder whose script and CSV files are committed, and commits those pictures that are whole.
 // False, with the reason on standard error, if some are missing.
-[[nodiscard]] bool draw_figures(const std::vector<Figure>& figures, OutputFolder& folder);
+[[nodiscard]] bool draw_figures(const std::vector<Figure>& figures, OutputFolder& folder,
+                                const PictureStyle& style = {});
 
 }  // namespace hb::tools

@@ -167,7 +167,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                        [&](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == verdict; });
   };
   figure.commands = fmt::format(
-      "set title '{{/:Bold {}}}'.\"\\n\".{}\n"
+      "set title heading('{{/:Bold {}}}'.\"\\n\".{})\n"
       "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {} offset 1.5,0\n"
       "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
       "set bmargin at screen 0.2\nset key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "

@@ -64,9 +64,9 @@ std::string title(const SweepScene& scene, const SweepResult& result, std::size_
   std::string at;
   if (scene.axis().kind == Axis::Kind::parameter) at = " at " + speed_text(result.points.front().speed, scene.scene());
   const std::string verdict = sweep_title_verdict(result);
-  return "set title '{/:Bold " +
+  return "set title heading('{/:Bold " +
          literal(short_name(scene.scene()) + subject + at + (verdict.empty() ? "" : ", " + verdict)) + "}" + new_line +
-         wrapped(shown) + "'\n";
+         wrapped(shown) + "')\n";
 }
 
 std::string axis(const SweepScene& scene) {

@@ -84,7 +84,7 @@ std::string drawing(const Scene& scene) {
     const CsvFile mechanism = mechanism_csv(scene);
     folder.write(mechanism.name, csv_text(mechanism));
     const std::vector<Figure> figures = {mechanism_figure(scene, mechanism)};
-    folder.write(script, plot_script(figures, kinds));
+    folder.write(script, plot_script(figures, {.kinds = kinds}));
     const fs::path place = folder.scratch_with_links();
     if (!run_gnuplot(place, script, figures, std::chrono::seconds(30), kinds).complete()) return "";
     std::ostringstream text;

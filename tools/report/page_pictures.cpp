@@ -50,7 +50,7 @@ std::vector<PageText::Picture> page_pictures(const std::vector<Figure>& figures,
       if (place_of(figure) == k) chosen.push_back(figure);
   if (chosen.empty()) return {};
   const std::string script = "page.gp";
-  folder.write(script, plot_script(chosen, page_kinds));
+  folder.write(script, plot_script(chosen, {.kinds = page_kinds}));
   const fs::path place = folder.scratch_with_links();
   const PlotOutcome outcome = run_gnuplot(place, script, chosen, std::chrono::seconds(30), page_kinds);
   std::vector<PageText::Picture> pictures;
