@@ -30,12 +30,12 @@ double true_error(const char* scene, std::size_t rod, double speed, const RodRes
   return (field(cut) - w).cwiseAbs().maxCoeff() / w.cwiseAbs().maxCoeff();
 }
 
-struct Case {
+struct CutCase {
   const char* scene;
   double speed;  // rad per unit time
 };
 
-class ModesError : public testing::TestWithParam<Case> {};
+class ModesError : public testing::TestWithParam<CutCase> {};
 
 TEST_P(ModesError, CoversTheTrueErrorOfTheCut) {
   const auto [scene, speed] = GetParam();
@@ -86,8 +86,8 @@ TEST_P(ModesError, AutomaticModesAreEnoughForDeflectionAndGrowth) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ModesError,
-                         testing::Values(Case{"six_link.toml", 31.4}, Case{"six_link.toml", 157.0},
-                                         Case{"six_link.toml", 314.0}, Case{"six_link_4500.toml", 31.4},
-                                         Case{"slider_crank.toml", 100.0}, Case{"four_bar.toml", 50.0}));
+                         testing::Values(CutCase{"six_link.toml", 31.4}, CutCase{"six_link.toml", 157.0},
+                                         CutCase{"six_link.toml", 314.0}, CutCase{"six_link_4500.toml", 31.4},
+                                         CutCase{"slider_crank.toml", 100.0}, CutCase{"four_bar.toml", 50.0}));
 
 }  // namespace

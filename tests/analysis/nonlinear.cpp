@@ -9,7 +9,7 @@ namespace {
 
 using namespace hb;
 
-const std::string scenes = HB_SOURCE_DIR "/tests/scenes/";
+const std::string nonlinear_scenes = HB_SOURCE_DIR "/tests/scenes/";
 constexpr Only motion_alone{.steady = true, .stability = false, .reactions = false, .shape = false};
 constexpr Only with_stability{.steady = true, .stability = true, .reactions = false, .shape = false};
 
@@ -22,7 +22,8 @@ Request at(double rpm, int modes, const Only& only) {
 }
 
 TEST(NonlinearFromCpp, SteadyIsTheReferencesMotion) {
-  const NonlinearSteady found = nonlinear_steady(read_scene(scenes + "six_link.toml"), at(900, 2, motion_alone));
+  const NonlinearSteady found =
+      nonlinear_steady(read_scene(nonlinear_scenes + "six_link.toml"), at(900, 2, motion_alone));
   ASSERT_EQ(found.search, MotionSearch::found);
   EXPECT_EQ(found.given.rpm, 900);
   EXPECT_NEAR(found.rods[0].max_abs[0].value, 1.3632967558, 3e-7 * 1.3632967558);
@@ -30,7 +31,7 @@ TEST(NonlinearFromCpp, SteadyIsTheReferencesMotion) {
 }
 
 TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
-  const Linkage linkage = std::get<Linkage>(read_scene(scenes + "six_link.toml").model);
+  const Linkage linkage = std::get<Linkage>(read_scene(nonlinear_scenes + "six_link.toml").model);
   const SceneFamily by_function(
       {{"J", 45}},
       [linkage](const std::vector<double>& values) {
@@ -40,13 +41,13 @@ TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
         rod.inertia = rod.mass * rod.length * rod.length / 12 + rod.elastic->density * values[0] * rod.length;
         return changed;
       },
-      read_scene(scenes + "six_link.toml").units);
+      read_scene(nonlinear_scenes + "six_link.toml").units);
   SweepRequest request;
   request.rpm = 700;
   request.modes = 1;
   request.only = motion_alone;
   request.x = along("AB.J", 40, 50, 3);
-  const NonlinearAlong text = nonlinear_sweep(SceneSource(scenes + "six_link.toml"), request);
+  const NonlinearAlong text = nonlinear_sweep(SceneSource(nonlinear_scenes + "six_link.toml"), request);
   request.x.path = "J";
   const NonlinearAlong function = nonlinear_sweep(by_function, request);
   ASSERT_EQ(text.branches.branches.size(), 1u);
@@ -62,7 +63,7 @@ TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
 
 // The range lies between the folds: nothing leads from the lower sheet to the upper one.
 TEST(NonlinearFromCpp, ABranchIsFollowedFromAMotionThatIsGiven) {
-  const Scene scene = read_scene(scenes + "six_link.toml");
+  const Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
   SweepRequest request;
   request.modes = 1;
   request.only = motion_alone;
@@ -84,7 +85,7 @@ TEST(NonlinearFromCpp, ABranchIsFollowedFromAMotionThatIsGiven) {
 
 // modes = "auto" was refused with the nonlinear theory.
 TEST(NonlinearFromCpp, AutomaticModesAreAsManyAsTheErrorOfTheCutTakes) {
-  const Scene scene = read_scene(scenes + "six_link.toml");
+  const Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
   Request request = at(600, 1, motion_alone);
   request.modes = AutoModes{};
   request.tolerance = 1e-6;
@@ -104,7 +105,7 @@ TEST(NonlinearFromCpp, AutomaticModesAreAsManyAsTheErrorOfTheCutTakes) {
 }
 
 TEST(NonlinearFromCpp, EverythingIsKnownOfThePointsOfASweepThatWereAskedFor) {
-  const Scene scene = read_scene(scenes + "six_link.toml");
+  const Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
   SweepRequest request;
   request.modes = 1;
   request.only = motion_alone;
@@ -125,7 +126,7 @@ TEST(NonlinearFromCpp, EverythingIsKnownOfThePointsOfASweepThatWereAskedFor) {
 
 // At low speed the axial force is that of the rigid mechanism.
 TEST(NonlinearFromCpp, StressIsThatOfTheLinearTheoryAtLowSpeed) {
-  const Scene scene = read_scene(scenes + "six_link.toml");
+  const Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
   Request request = at(300, 2, {});
   const NonlinearSteady nonlinear = nonlinear_steady(scene, request);
   const SteadyResult linear = steady(scene, request);
@@ -146,7 +147,7 @@ TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {
   request.modes = 2;
   request.only = with_stability;
   request.x = along("rpm", 300, 1500, 13);
-  const NonlinearAlong found = nonlinear_sweep(read_scene(scenes + "six_link.toml"), request, options);
+  const NonlinearAlong found = nonlinear_sweep(read_scene(nonlinear_scenes + "six_link.toml"), request, options);
   EXPECT_TRUE(found.branches.stopped);
   EXPECT_FALSE(found.branches.shortfalls.empty());
   ASSERT_EQ(found.branches.branches.size(), 1u);
@@ -158,7 +159,7 @@ TEST(NonlinearFromCpp, CheckAgreesOverSeveralSpeeds) {
   CheckRequest request;
   request.rpms = {600, 1200};
   request.modes = 1;
-  const NonlinearChecks found = nonlinear_check(read_scene(scenes + "six_link.toml"), request);
+  const NonlinearChecks found = nonlinear_check(read_scene(nonlinear_scenes + "six_link.toml"), request);
   ASSERT_EQ(found.speeds.size(), 2u);
   EXPECT_TRUE(found.agrees());
   for (const NonlinearCheck& check : found.speeds) {
@@ -170,7 +171,7 @@ TEST(NonlinearFromCpp, CheckAgreesOverSeveralSpeeds) {
 
 // A rod of 1 mm^4 folds far below 1500 rpm.
 TEST(NonlinearFromCpp, WhereNoMotionIsFoundItSaysHowFarItCame) {
-  Scene scene = read_scene(scenes + "six_link.toml");
+  Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
   std::get<Linkage>(scene.model).dyads[0].coupler.elastic->second_moment = 1;
   const NonlinearSteady found = nonlinear_steady(scene, at(3000, 1, motion_alone));
   ASSERT_EQ(found.search, MotionSearch::none);
@@ -183,8 +184,9 @@ TEST(NonlinearFromCpp, WhereNoMotionIsFoundItSaysHowFarItCame) {
 }
 
 TEST(NonlinearFromCpp, RequestsThatCannotBeMetAreRefused) {
-  const Scene scene = read_scene(scenes + "six_link.toml");
-  EXPECT_THROW((void)nonlinear_steady(read_scene(scenes + "mathieu.toml"), Request{.omega = 1}), RequestError);
+  const Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
+  EXPECT_THROW((void)nonlinear_steady(read_scene(nonlinear_scenes + "mathieu.toml"), Request{.omega = 1}),
+               RequestError);
   EXPECT_THROW((void)nonlinear_steady(scene, at(300, 1, motion_alone), {.turns = 3}), RequestError);
   CheckRequest march;
   march.rpm = 300;

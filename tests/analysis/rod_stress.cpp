@@ -13,7 +13,7 @@
 namespace {
 
 using namespace hb;
-const std::string scenes = HB_SOURCE_DIR "/tests/scenes/";
+const std::string stressed_scenes = HB_SOURCE_DIR "/tests/scenes/";
 
 // A four-bar whose coupler has a section.
 Scene with_section() {
@@ -44,7 +44,7 @@ TEST(RodStress, TheAxialForceIsThatOfTheRigidBalanceAtBothEnds) {
   Request request;
   request.rpm = 600;
   request.modes = 2;
-  const SteadyResult found = steady(read_scene(scenes + "six_link.toml"), request);
+  const SteadyResult found = steady(read_scene(stressed_scenes + "six_link.toml"), request);
   for (const RodResult& rod : found.rods) {
     double push = 0, pull = 0;
     for (const JointForce& joint : found.forces->joints) {

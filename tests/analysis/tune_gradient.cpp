@@ -99,11 +99,11 @@ Settings settings_of(int modes) {
   return settings;
 }
 
-const std::string scenes = HB_SOURCE_DIR "/tests/scenes/";
+const std::string tuned_scenes = HB_SOURCE_DIR "/tests/scenes/";
 
 TEST(TuneGradient, AgreesWithDifferencesOfTheSixLinkMechanism) {
   // The worst force of a joint turns with the design; the longest lever is at the upper end of the speeds.
-  const Question question{SceneSource(scenes + "six_link.toml"),
+  const Question question{SceneSource(tuned_scenes + "six_link.toml"),
                           {"AB.J", "crank.length", "CD.damping_internal"},
                           settings_of(3),
                           500,
@@ -115,21 +115,24 @@ TEST(TuneGradient, AgreesWithDifferencesOfTheSixLinkMechanism) {
 
 TEST(TuneGradient, AgreesWithDifferencesOfTheSliderCrank) {
   const Question question{
-      SceneSource(scenes + "slider_crank.toml"), {"rod.length", "rod.mass"}, settings_of(3), 1000, 3000};
+      SceneSource(tuned_scenes + "slider_crank.toml"), {"rod.length", "rod.mass"}, settings_of(3), 1000, 3000};
   const Scene scene = question.source.with();
   const Body& rod = *body_at(std::get<Linkage>(scene.model), 1);
   expect_gradients(question, {rod.length, rod.mass}, {"deflection", "stress", "force:rod.0", "mass"}, {"stable"});
 }
 
 TEST(TuneGradient, AgreesWithDifferencesOfARodWithShear) {
-  const Question question{
-      SceneSource(scenes + "thick_rod.toml"), {"rod.shear.G", "rod.shear.k", "rod.length"}, settings_of(2), 3000, 9000};
+  const Question question{SceneSource(tuned_scenes + "thick_rod.toml"),
+                          {"rod.shear.G", "rod.shear.k", "rod.length"},
+                          settings_of(2),
+                          3000,
+                          9000};
   expect_gradients(question, {79.3e9, 0.85, 0.11}, {"deflection", "stress", "force:rod.0"}, {"stable", "frequency>=1"});
 }
 
 TEST(TuneGradient, AgreesWithDifferencesOfAHillSystem) {
   const Question question{
-      SceneSource(scenes + "mathieu.toml"), {"hill.damping.0.0", "hill.mass.0.0"}, settings_of(1), 25, 40};
+      SceneSource(tuned_scenes + "mathieu.toml"), {"hill.damping.0.0", "hill.mass.0.0"}, settings_of(1), 25, 40};
   expect_gradients(question, {question.source.value("hill.damping.0.0"), question.source.value("hill.mass.0.0")},
                    {"deflection"}, {"stable"});
 }

@@ -57,7 +57,7 @@ HillSystem random_system(std::mt19937& generator, Eigen::Index most_modes) {
 }
 
 // Distance of two exponents, imaginary parts modulo Omega.
-double distance(cplx a, cplx b, double Omega) {
+double strip_distance(cplx a, cplx b, double Omega) {
   double turn = std::fmod(std::abs(a.imag() - b.imag()), Omega);
   turn = std::min(turn, Omega - turn);
   return std::hypot(a.real() - b.real(), turn);
@@ -119,7 +119,7 @@ TEST(Stability, ConstantCoefficientsGiveTheRootsOfTheCharacteristicEquation) {
   for (const cplx w : wanted) {
     double nearest = HUGE_VAL;
     for (const Exponent& e : result.exponents)
-      nearest = std::min(nearest, std::max(0.0, distance(e.value, w, Omega) - e.error));
+      nearest = std::min(nearest, std::max(0.0, strip_distance(e.value, w, Omega) - e.error));
     EXPECT_LE(nearest, 1e-13 * std::max(1.0, std::abs(w))) << w;
   }
 }
@@ -172,7 +172,7 @@ TEST(Stability, SixLinkExponentsMatchTheIndependentReferenceWithinTheirBars) {
         leading = std::max(leading, value.real());
         double nearest = HUGE_VAL;
         for (const Exponent& e : result.exponents)
-          nearest = std::min(nearest, distance(e.value, value, Omega) - e.error);
+          nearest = std::min(nearest, strip_distance(e.value, value, Omega) - e.error);
         // The reference's own error: 1e-9 relative for what it propagates.
         EXPECT_LE(nearest, 1e-9 * std::max(1.0, std::abs(value)))
             << link.name << " J " << entry["J"] << " rpm " << entry["rpm"] << " exponent " << value;
@@ -296,7 +296,8 @@ TEST(Stability, FullDampingMatricesAreCoupledRight) {
     ASSERT_EQ(periodic.exponents.size(), 4u);
     for (const Exponent& e : constant.exponents) {
       double nearest = HUGE_VAL;
-      for (const Exponent& other : periodic.exponents) nearest = std::min(nearest, distance(e.value, other.value, 0.9));
+      for (const Exponent& other : periodic.exponents)
+        nearest = std::min(nearest, strip_distance(e.value, other.value, 0.9));
       EXPECT_LE(nearest, 1e-8);
     }
   }
