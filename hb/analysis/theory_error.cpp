@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
+#include "hb/analysis/nonlinear/exact_system.hpp"
+#include "hb/engine/nonlinear/periodic_motion.hpp"
 #include "hb/engine/steady/rough_state.hpp"
 #include "hb/engine/steady/steady_state.hpp"
 #include "lib/dense.hpp"
@@ -16,15 +19,20 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Harmonics of q smaller than this part of the largest do not change a theory error.
-constexpr double negligible = 1e-6;
-// Asked of the correction.
-constexpr double rough = 1e-5;
-// Below the first, of the correction times the amplification of the left-out load, one correction shows the change to
-// within a tenth (by random linkages); so it does where the second one has the same size to within the other.
-constexpr double harmless = 0.01, most_second = 0.07;
+// Harmonics of q smaller than `negligible` of the largest are left out; `tolerance` is asked of the correction.
+struct Accuracy {
+  double negligible, tolerance;
+};
+constexpr Accuracy of_theory_error{3e-6, 3e-5};
+// Enough to see whether the second correction matters.
+constexpr Accuracy of_second_look{1e-3, 1e-2};
+// Below the first, of the correction times the amplification next to the nearest resonance, one correction shows the
+// change to within a tenth (by random linkages); so it does where the second one has the same size to within the other.
+constexpr double harmless = 0.03, most_second = 0.07;
+// Beyond the theory the change may lie below all the same where the resonance is sharper than that.
+constexpr double sharp = 10;
 
-std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods) {
+std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods, double negligible) {
   std::vector<FourierSeries> q;
   for (const LinearRod& rod : rods) {
     const FourierSeries all(MatrixXd(rod.q->c.cwiseAbs().colwise().maxCoeff()).cast<std::complex<double>>());
@@ -76,19 +84,14 @@ MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd&
 }
 
 // What the system's q answer to the load on them given by samples; empty at resonance.
-std::optional<FourierSeries> response(const HillSystem& system, double speed, const MatrixXd& load,
-                                      double& amplification) {
+std::optional<FourierSeries> response(const HillSystem& system, double speed, const MatrixXd& load, double tolerance) {
   const HillSystem loaded{system.mass,
                           system.damping,
-                          {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * rough), {}, {}},
+                          {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * tolerance), {}, {}},
                           {on_unknowns(fourier::analyse(load), system.num_modes()), {}, {}}};
   if (!loaded.load[0].c.allFinite()) return std::nullopt;
-  if (const auto state = rough_steady_state(loaded, speed, rough)) {
-    amplification = std::max(amplification, state->amplification);
-    return ritz_coordinates(state->q, load.rows());
-  }
-  amplification = HUGE_VAL;
-  const SteadyState state = solve_steady_state(loaded, speed, {.tolerance = rough});
+  if (const auto q = rough_steady_state(loaded, speed, tolerance)) return ritz_coordinates(*q, load.rows());
+  const SteadyState state = solve_steady_state(loaded, speed, {.tolerance = tolerance});
   if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
   return ritz_coordinates(state.q, load.rows());
 }
@@ -140,13 +143,12 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
 // The exact model at q, and what the linear rods answer to what their model leaves out there (T1).
 struct Corrections {
   std::vector<FourierSeries> dq;
-  double amplification = 0;  // largest
   std::optional<ExactBreakdown> breakdown;
   std::optional<std::size_t> singular;  // this rod has no periodic solution
 };
 
 Corrections corrections(const ExactModel& model, double speed, std::span<const LinearRod> rods,
-                        const CrankAngles& angles, const std::vector<FourierSeries>& q) {
+                        const CrankAngles& angles, const std::vector<FourierSeries>& q, double tolerance) {
   Corrections found;
   const RitzSamples motion = ritz_samples(q, speed, angles.size());
   const ExactResidual exact = model.residual(speed, angles, motion);
@@ -160,44 +162,121 @@ Corrections corrections(const ExactModel& model, double speed, std::span<const L
     const MatrixXd linear = link.elastic->shear
                                 ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1, own2)
                                 : linear_residual(system, speed, own, own1, own2);
-    std::optional<FourierSeries> dq =
-        response(system, speed, linear - exact.r.middleRows(first, I), found.amplification);
+    std::optional<FourierSeries> dq = response(system, speed, linear - exact.r.middleRows(first, I), tolerance);
     if (!dq) found.singular = r;
     if (dq) found.dq.push_back(std::move(*dq));
   }
   return found;
 }
 
-// Next to a resonance the correction itself moves the resonance: (T1) at q + dq until dq settles, which is the change
-// itself. The first correction stays where the second one is small, or where dq does not settle.
-void repeat(const ExactModel& model, double speed, std::span<const LinearRod> rods, const CrankAngles& angles,
-            const std::vector<FourierSeries>& q, std::vector<FourierSeries>& dq) {
-  constexpr int most = 8;
-  constexpr double settled = 0.02;
-  const Index highest = (angles.size() - 1) / 2;
-  std::vector<FourierSeries> now = dq;
-  for (int step = 0; step < most; ++step) {
-    std::vector<FourierSeries> moved;
-    for (std::size_t r = 0; r < q.size(); ++r) {
-      const Index H = std::min(highest, std::max(q[r].num_harmonics(), now[r].num_harmonics()));
-      moved.emplace_back(fourier::resized(q[r], H).c + fourier::resized(now[r], H).c);
-    }
-    Corrections next = corrections(model, speed, rods, angles, moved);
-    if (next.breakdown || next.singular) return;
-    double change = 0, growth = 0;
-    for (std::size_t r = 0; r < q.size(); ++r) {
-      const Index H = std::max(now[r].num_harmonics(), next.dq[r].num_harmonics());
-      const FourierSeries difference(fourier::resized(next.dq[r], H).c - fourier::resized(now[r], H).c);
-      const double size = largest_value(next.dq[r]);
-      change = std::max(change, ratio(largest_value(difference), size));
-      growth = std::max(growth, ratio(std::abs(size - largest_value(now[r])), size));
-    }
-    if (step == 0 && growth <= most_second) return;
-    now = std::move(next.dq);
-    if (!(change <= settled)) continue;
-    dq = std::move(now);
-    return;
+// q + dq with the harmonics that N angles hold.
+std::vector<FourierSeries> moved_by(const std::vector<FourierSeries>& q, const std::vector<FourierSeries>& dq,
+                                    Index N) {
+  std::vector<FourierSeries> moved;
+  for (std::size_t r = 0; r < q.size(); ++r) {
+    const Index H = std::min((N - 1) / 2, std::max(q[r].num_harmonics(), dq[r].num_harmonics()));
+    moved.emplace_back(fourier::resized(q[r], H).c + fourier::resized(dq[r], H).c);
   }
+  return moved;
+}
+
+// Largest change of a rod's largest |dq_i|, relative to it.
+double growth(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to) {
+  double largest = 0;
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    const double size = largest_value(to[r]);
+    largest = std::max(largest, ratio(std::abs(size - largest_value(from[r])), size));
+  }
+  return largest;
+}
+
+// Largest change itself, relative to the rod's largest.
+double difference(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to) {
+  double largest = 0;
+  for (std::size_t r = 0; r < from.size(); ++r) {
+    const Index H = std::max(from[r].num_harmonics(), to[r].num_harmonics());
+    const FourierSeries change(fourier::resized(to[r], H).c - fourier::resized(from[r], H).c);
+    largest = std::max(largest, ratio(largest_value(change), largest_value(to[r])));
+  }
+  return largest;
+}
+
+// (T1) at q + dq, roughly, changes the size of dq.
+bool second_matters(const ExactModel& model, double speed, std::span<const LinearRod> rods,
+                    const std::vector<FourierSeries>& dq) {
+  const std::vector<FourierSeries> q = cut_responses(rods, of_second_look.negligible);
+  const CrankAngles angles(model.linkage(), num_samples(q));
+  const Corrections second =
+      corrections(model, speed, rods, angles, moved_by(q, dq, angles.size()), of_second_look.tolerance);
+  return !second.breakdown && !second.singular && growth(dq, second.dq) > most_second;
+}
+
+// (T1) at q + dq until dq settles; empty where it does not.
+std::optional<std::vector<FourierSeries>> repeated_corrections(const ExactModel& model, double speed,
+                                                               std::span<const LinearRod> rods,
+                                                               const CrankAngles& angles,
+                                                               const std::vector<FourierSeries>& q,
+                                                               std::vector<FourierSeries> dq) {
+  constexpr int most = 8;
+  constexpr double settled = 0.02, slow = 0.7;
+  double last = HUGE_VAL;
+  for (int step = 0; step < most; ++step) {
+    Corrections next =
+        corrections(model, speed, rods, angles, moved_by(q, dq, angles.size()), of_theory_error.tolerance);
+    if (next.breakdown || next.singular) return std::nullopt;
+    const double change = difference(dq, next.dq);
+    dq = std::move(next.dq);
+    if (change <= settled) return dq;
+    if (change > slow * last) return std::nullopt;
+    last = change;
+  }
+  return std::nullopt;
+}
+
+// The change to the motion of the exact model that Newton's method finds from q; empty where it finds none soon.
+std::optional<std::vector<FourierSeries>> change_by_newton(const ExactModel& model, double speed,
+                                                           const std::vector<FourierSeries>& q, double expected) {
+  for (const ExactModel::Rod& rod : model.rods())
+    if (body_at(model.linkage(), rod.link)->elastic->shear) return std::nullopt;
+  Index H = 0;
+  for (const FourierSeries& own : q) H = std::max(H, own.num_harmonics());
+  FourierSeries start(model.num_modes(), H);
+  for (std::size_t r = 0; r < q.size(); ++r)
+    start.c.middleRows(model.first_mode(r), q[r].num_components()) = fourier::resized(q[r], H).c;
+  constexpr double part = 0.01;  // of the change
+  const MotionOptions options{.tolerance = part * expected, .max_factorisations = 20};
+  const std::shared_ptr<const ExactModel> shared(std::shared_ptr<const void>(), &model);
+  const PeriodicMotion motion = solve_periodic_motion(exact_system(shared), speed, start, options);
+  if (motion.status != MotionStatus::converged) return std::nullopt;
+  std::vector<FourierSeries> dq;
+  for (std::size_t r = 0; r < q.size(); ++r) {
+    const FourierSeries found(motion.q.c.middleRows(model.first_mode(r), q[r].num_components()));
+    const Index longest = std::max(H, found.num_harmonics());
+    dq.emplace_back(fourier::resized(found, longest).c - fourier::resized(q[r], longest).c);
+  }
+  return dq;
+}
+
+// Next to a resonance the correction itself moves the resonance: the change itself (T3). The first correction stays
+// where the second one is small, and beyond the theory unless the change turns out to lie below.
+void follow_to_second_order(const ExactModel& model, double speed, std::span<const LinearRod> rods,
+                            const CrankAngles& angles, const std::vector<FourierSeries>& q, double first_error,
+                            std::vector<FourierSeries>& dq) {
+  double amplification = 0;
+  for (const LinearRod& rod : rods) amplification = std::max(amplification, nearest_amplification(*rod.system, speed));
+  const bool beyond = first_error > theory_error_limit;
+  if (amplification * first_error <= (beyond ? sharp : harmless)) return;
+  std::optional<std::vector<FourierSeries>> change;
+  if (beyond) {
+    change = change_by_newton(model, speed, q, theory_error_limit);
+    for (std::size_t r = 0; change && r < q.size(); ++r)
+      if (!(largest_value((*change)[r]) <= theory_error_limit * largest_value(q[r]))) return;
+  } else {
+    if (!second_matters(model, speed, rods, dq)) return;
+    change = repeated_corrections(model, speed, rods, angles, q, dq);
+    if (!change) change = change_by_newton(model, speed, q, first_error);
+  }
+  if (change) dq = std::move(*change);
 }
 
 }  // namespace
@@ -219,9 +298,9 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
       errors.reason = body_name(model.linkage(), model.rods()[r].link) + " has no periodic solution";
       return errors;
     }
-  const std::vector<FourierSeries> q = cut_responses(rods);
+  const std::vector<FourierSeries> q = cut_responses(rods, of_theory_error.negligible);
   const CrankAngles angles(model.linkage(), num_samples(q));
-  Corrections first = corrections(model, speed, rods, angles, q);
+  Corrections first = corrections(model, speed, rods, angles, q, of_theory_error.tolerance);
   if (first.breakdown) {
     errors.reason = describe(*first.breakdown, model.linkage());
     errors.steepest = first.breakdown->slope;
@@ -232,14 +311,17 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     return errors;
   }
   std::vector<FourierSeries>& dq = first.dq;
-  double largest_error = 0;
-  for (std::size_t r = 0; r < rods.size(); ++r)
-    largest_error = std::max(largest_error, ratio(largest_value(dq[r]), largest_value(*rods[r].q)));
-  if (first.amplification * largest_error > harmless && largest_error <= theory_error_limit)
-    repeat(model, speed, rods, angles, q, dq);
+  std::vector<double> size;
+  double first_error = 0;
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    size.push_back(largest_value(*rods[r].q));
+    errors.rods[r].q = ratio(largest_value(dq[r]), size[r]);
+    first_error = std::max(first_error, *errors.rods[r].q);
+  }
+  follow_to_second_order(model, speed, rods, angles, q, first_error, dq);
   for (std::size_t r = 0; r < rods.size(); ++r) {
     TheoryErrors::Rod& rod = errors.rods[r];
-    rod.q = ratio(largest_value(dq[r]), largest_value(*rods[r].q));
+    rod.q = ratio(largest_value(dq[r]), size[r]);
     // Four angles a wave of the smallest harmonics, many of those that count.
     const Index N = fourier::fast_length(4 * std::max(q[r].num_harmonics(), dq[r].num_harmonics()) + 2);
     rod.deflection =

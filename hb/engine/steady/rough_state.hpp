@@ -7,16 +7,13 @@
 
 namespace hb {
 
-struct RoughState {
-  FourierSeries q;
-  // |q| over that of the load divided by the size of the diagonal without cancellation, both over the turn: large near
-  // resonance. 0 without load.
-  double amplification = 0;
-};
-
 // Of M q'' + B q' + C q = h over the crank angle, the residual of the window's rows below `tolerance` of the load; near
 // resonance the error is as many times larger as the response. Empty where the iteration does not get there:
 // solve_steady_state finds out why.
-[[nodiscard]] std::optional<RoughState> rough_steady_state(const HillSystem& system, double speed, double tolerance);
+[[nodiscard]] std::optional<FourierSeries> rough_steady_state(const HillSystem& system, double speed, double tolerance);
+
+// How many times larger than without cancellation of stiffness and inertia one mode answers to the harmonic of the
+// crank angle that is nearest to its resonance, with the mean stiffness; the largest of all modes.
+[[nodiscard]] double nearest_amplification(const HillSystem& system, double speed);
 
 }  // namespace hb
