@@ -1,4 +1,5 @@
 // The motion without linearisation asked for from C++.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -155,6 +156,33 @@ TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {
   EXPECT_FALSE(found.branches.followed.back());
 }
 
+// Asked during the linear part already, which comes first.
+TEST(NonlinearFromCpp, StopInTheLinearPartLeavesTheBranchesOut) {
+  int asked = 0;
+  const NonlinearSweepOptions options{.stop = [&] { return ++asked > 2; }};
+  SweepRequest request;
+  request.modes = 2;
+  request.only = with_stability;
+  request.x = along("rpm", 300, 1500, 121);
+  const NonlinearAlong found = nonlinear_sweep(read_scene(scenes + "six_link.toml"), request, options);
+  EXPECT_TRUE(found.branches.stopped);
+  EXPECT_TRUE(found.branches.branches.empty());
+  EXPECT_FALSE(found.branches.shortfalls.empty());
+  EXPECT_LT(asked, 200);  // of 121 speeds and thousands of points of a branch
+}
+
+TEST(NonlinearFromCpp, CheckThatTakesTooLongSaysWhichLimitEndedIt) {
+  CheckRequest request;
+  request.rpm = 600;
+  request.modes = 3;
+  request.case_limit = 1e-3;
+  const NonlinearChecks checks = nonlinear_check(read_scene(scenes + "six_link.toml"), request);
+  ASSERT_EQ(checks.speeds.size(), 1u);
+  EXPECT_FALSE(checks.reached());
+  EXPECT_NE(checks.speeds[0].not_compared.find("limit of 0.001 s"), std::string::npos) << checks.speeds[0].not_compared;
+  EXPECT_NE(checks.speeds[0].not_compared.find("6 modes"), std::string::npos) << checks.speeds[0].not_compared;
+}
+
 TEST(NonlinearFromCpp, CheckAgreesOverSeveralSpeeds) {
   CheckRequest request;
   request.rpms = {600, 1200};
@@ -181,6 +209,40 @@ TEST(NonlinearFromCpp, WhereNoMotionIsFoundItSaysHowFarItCame) {
   EXPECT_LT(*found.last_speed, 3000 * 3.1416 / 30);
   EXPECT_GT(found.last_max_abs[0][0], 0);
   EXPECT_NE(found.why.find("rpm"), std::string::npos) << found.why;
+}
+
+// A crank and rocker, metres, whose rod sags under its own weight.
+Scene sagging(double youngs_modulus, double pivot) {
+  return parse_scene(fmt::format(R"(
+gravity = 9.81
+[crank]
+pivot = [0, 0]
+length = 0.1
+[[dyad]]
+on = "crank"
+coupler = {{ name = "rod", length = 0.3, mass = 0.1, elastic = {{ E = {}, area = 20e-6, J = 30e-12, damping_internal = 1e-4 }} }}
+rocker = {{ name = "rocker", pivot = [{}, 0], length = 0.2, mass = 0.5, com = [0.1, 0], inertia_pivot = 0.01 }}
+branch = -1
+)",
+                                 youngs_modulus, pivot),
+                     "sagging.toml");
+}
+
+TEST(NonlinearFromCpp, AFoldedRodIsNamedWithItsCrankAngleAndSpeed) {
+  const NonlinearSteady found = nonlinear_steady(sagging(1e8, 0.38), at(30, 1, motion_alone));
+  EXPECT_EQ(found.search, MotionSearch::none);
+  const std::string said = fmt::format("{}", fmt::join(found.shortfalls, "; "));
+  EXPECT_NE(said.find("at 30 rpm the linear answer's rod is bent to a slope of 3.7"), std::string::npos) << said;
+  EXPECT_NE(said.find("at crank angle"), std::string::npos) << said;
+}
+
+// Pivots 5 mm nearer than the straight links reach.
+TEST(NonlinearFromCpp, ADeadCentreOfTheBentMechanismIsNamedWithItsCrankAngleAndSpeed) {
+  const NonlinearSteady found = nonlinear_steady(sagging(2e9, 0.395), at(30, 1, motion_alone));
+  EXPECT_EQ(found.search, MotionSearch::none);
+  const std::string said = fmt::format("{}", fmt::join(found.shortfalls, "; "));
+  EXPECT_NE(said.find("at 30 rpm"), std::string::npos) << said;
+  EXPECT_NE(said.find("rod and rocker does not close with its links bent, at crank angle"), std::string::npos) << said;
 }
 
 TEST(NonlinearFromCpp, RequestsThatCannotBeMetAreRefused) {

@@ -55,6 +55,32 @@ Answer answer(const Scene& scene, double at = speed, double tolerance = 1e-11) {
   return {std::move(model), settings, std::move(result)};
 }
 
+TEST(ShearOfAScene, WrongKeysAndValuesAreRefusedWithLineAndKey) {
+  const struct {
+    const char *shear, *key, *words;
+  } cases[] = {{"{ G = 0, k = 0.85 }", "shear.G", "0"},
+               {"{ G = -79.3e9, k = 0.85 }", "shear.G", "-79300000000"},
+               {"{ G = 79.3e9, k = 0 }", "shear.k", "0"},
+               {"{ G = 79.3e9, k = -1 }", "shear.k", "-1"},
+               {"{ G = nan, k = 0.85 }", "shear.G", "nan"},
+               {"{ G = 79.3e9 }", "shear", "k"},
+               {"{ k = 0.85 }", "shear", "G"},
+               {"{ G = 79.3e9, k = 0.85, kappa = 1 }", "shear", "kappa"},
+               {"{ G = \"79.3 kg\", k = 0.85 }", "shear.G", "79.3 kg"},
+               {"79.3e9", "shear", "table"}};
+  for (const auto& c : cases) {
+    try {
+      (void)engine(std::string(", shear = ") + c.shear);
+      ADD_FAILURE() << c.shear << " was accepted";
+    } catch (const SceneError& error) {
+      const std::string said = error.what();
+      EXPECT_EQ(said.rfind("engine.toml:7", 0), 0u) << said;
+      EXPECT_NE(said.find(c.key), std::string::npos) << c.shear << ": " << said;
+      EXPECT_NE(said.find(c.words), std::string::npos) << c.shear << ": " << said;
+    }
+  }
+}
+
 TEST(ShearOfAScene, ChangesEveryAnswerByAFewPercentAndKeepsItsShape) {
   const Answer with = answer(engine(steel_shear)), without = answer(engine(""));
   const RodResult &a = with.result.rods[0], &b = without.result.rods[0];

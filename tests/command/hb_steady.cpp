@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <complex>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -46,6 +47,34 @@ TEST_F(Steady, RefusesTheNonlinearTheoryOfARodWithShear) {
   EXPECT_EQ(result.status, 2);
   EXPECT_EQ(result.out, "");
   EXPECT_NE(result.err.find("--theory: found \"nonlinear\" with shear of rod"), std::string::npos) << result.err;
+}
+
+// A crank and rocker, metres, whose rod sags under its own weight: by a slope beyond 1, and so far that the loop opens.
+TEST_F(Steady, SaysWhereTheLinearAnswerFoldsARodOrOpensTheMechanism) {
+  const auto sagging = [&](const std::string& file, const std::string& modulus, const std::string& pivot) {
+    std::ofstream(folder_ / file) << R"(
+gravity = 9.81
+[crank]
+pivot = [0, 0]
+length = 0.1
+[[dyad]]
+on = "crank"
+branch = -1
+rocker = { name = "rocker", length = 0.2, mass = 0.5, com = [0.1, 0], inertia_pivot = 0.01, pivot = [)"
+                                  << pivot << R"(, 0] }
+coupler = { name = "rod", length = 0.3, mass = 0.1, elastic = { area = 20e-6, J = 30e-12, damping_internal = 1e-4, E = )"
+                                  << modulus << " } }\n";
+    return document("steady " + file + " --rpm 30 --modes 1 --only steady");
+  };
+  for (const auto& [found, words] :
+       {std::pair{sagging("folded.toml", "1e8", "0.38"), "rod is bent to a slope of 3.7"},
+        std::pair{sagging("open.toml", "2e9", "0.395"), "rod and rocker does not close with its links bent"}}) {
+    EXPECT_TRUE(found["rods"]["rod"]["theory_error"].is_null());
+    const std::string said = found["warnings"].dump();
+    EXPECT_NE(said.find("rod: beyond the linear theory"), std::string::npos) << said;
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+    EXPECT_NE(said.find("at crank angle"), std::string::npos) << said;
+  }
 }
 
 TEST_F(Steady, VerdictAloneIsProvedWithoutExponentsAndItsIntervalHoldsTheGrowthRate) {

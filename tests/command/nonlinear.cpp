@@ -1,6 +1,7 @@
 // `--theory nonlinear` as its users meet it: branches, folds, jumps, the cross-check, what is refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -197,6 +198,18 @@ TEST_F(Nonlinear, TimeLimitEndsWithWhatIsThere) {
   EXPECT_NE(found["notes"].dump().find("--time-limit 2"), std::string::npos) << found["notes"];
   const Json steady = document("steady " + scene("six_link") + " --rpm 1500 --modes 4 --time-limit 0.001", 3);
   EXPECT_EQ(steady["found"], false);
+}
+
+TEST_F(Nonlinear, TimeLimitInTheLinearPartGivesTheSpeedsThatAreThere) {
+  const Json found =
+      document("sweep " + scene("six_link") + " --rpm 300:1500:0.1 --modes 5 --no-search --time-limit 1", 3);
+  EXPECT_EQ(found["stopped"], true);
+  EXPECT_TRUE(found["branches"].empty());
+  const Json& growth = found["rods"]["AB"]["growth_rate"];
+  const auto answered = std::count_if(growth.begin(), growth.end(), [](const Json& value) { return !value.is_null(); });
+  EXPECT_GT(answered, 0);
+  EXPECT_LT(answered, static_cast<std::ptrdiff_t>(growth.size()));
+  EXPECT_NE(found["notes"].dump().find("--time-limit 1"), std::string::npos) << found["notes"];
 }
 
 TEST_F(Nonlinear, BenchComparesWithIntegration) {

@@ -16,7 +16,7 @@ using Eigen::Index;
 namespace {
 
 // Below this theory error at every lower speed the linear answer starts Newton's method on the branch from low speed.
-constexpr double weakly_bent = 0.01;
+constexpr double most_theory_error = 0.01;
 // Of the motions on the way: enough to stay on the branch; where doublings are sought, enough to locate and leave them.
 constexpr double way_tolerance = 1e-5, doubling_tolerance = 1e-8;
 // A resonance curve with its folds takes some hundred.
@@ -60,6 +60,8 @@ void MotionFinder::find() {
   const std::optional<double> start = starting_speed();
   if (!start) {
     result_.why = "no speed was found at which the linear theory holds, from which a branch could be followed";
+    if (const std::string reason = linear_errors(speed_).reason; !reason.empty())
+      result_.why += fmt::format(": at {:.6g} rpm the linear answer's {}", rpm(speed_), reason);
     return;
   }
   PeriodicMotion first = solve_periodic_motion(system_, *start, linear_answer(*start), motion_options_);
@@ -129,15 +131,17 @@ FourierSeries MotionFinder::linear_answer(double speed) const {
   return stacked(q);
 }
 
-double MotionFinder::theory_error(double speed) const {
+TheoryErrors MotionFinder::linear_errors(double speed) const {
   std::vector<FourierSeries> q;
   std::vector<LinearRod> linear;
   for (const RodModel& rod : model_.rods) q.push_back(solve_steady_state(rod.system, speed, {.tolerance = 1e-8}).q);
   for (std::size_t r = 0; r < q.size(); ++r) linear.push_back({&model_.rods[r].system, &q[r]});
-  double largest = 0;
-  for (const TheoryErrors::Rod& rod : theory_errors(*exact_, speed, linear).rods)
-    largest = std::max(largest, rod.q.value_or(HUGE_VAL));
-  return largest;
+  return theory_errors(*exact_, speed, linear);
+}
+
+bool MotionFinder::weakly_bent(double speed) const {
+  return std::ranges::all_of(linear_errors(speed).rods,
+                             [](const TheoryErrors::Rod& rod) { return rod.q && *rod.q <= most_theory_error; });
 }
 
 std::optional<double> MotionFinder::starting_speed() const {
@@ -146,11 +150,11 @@ std::optional<double> MotionFinder::starting_speed() const {
   std::optional<double> start;
   for (int k = 0; k <= steps; ++k) {
     const double speed = k == steps ? speed_ : speed_ * std::pow(lowest, 1 - static_cast<double>(k) / steps);
-    if (!(theory_error(speed) <= weakly_bent)) break;
+    if (!weakly_bent(speed)) break;
     start = speed;
   }
   for (double speed = lowest * speed_ / 2; !start && speed > 1e-4 * speed_; speed /= 2)
-    if (theory_error(speed) <= weakly_bent) start = speed;
+    if (weakly_bent(speed)) start = speed;
   return start;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
+#include "hb/analysis/theory_error.hpp"
 #include "hb/engine/nonlinear/continuation.hpp"
 #include "lib/exact/exact_model.hpp"
 
@@ -44,8 +45,8 @@ class MotionFinder {
   bool stopped() const { return options_.stop && options_.stop(); }
   // All rods' linear responses; empty where one has none.
   FourierSeries linear_answer(double speed) const;
-  // Largest theory error of a rod; infinite where there is none.
-  double theory_error(double speed) const;
+  TheoryErrors linear_errors(double speed) const;
+  bool weakly_bent(double speed) const;
   // The highest speed up to which the rods are weakly bent, at most the one asked for.
   std::optional<double> starting_speed() const;
   bool usable(const PeriodicMotion& motion, double at);

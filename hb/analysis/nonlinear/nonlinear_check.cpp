@@ -1,5 +1,7 @@
 #include "hb/analysis/nonlinear/nonlinear_check.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -108,12 +110,17 @@ NonlinearCheck nonlinear_check(const SceneModel& model, double speed, const Sett
   shooting.integrator = asked.integrator;
   const auto began = std::chrono::steady_clock::now();
   const double limit = asked.time_limit;
-  shooting.stop = [&options, began, limit] {
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    return seconds > limit || (options.stop && options.stop());
+  bool late = false;
+  shooting.stop = [&options, &late, began, limit] {
+    late = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count() > limit;
+    return late || (options.stop && options.stop());
   };
   check.shooting = shoot_motion(exact_system(exact), speed, start, shooting);
   check.seconds_shooting = check.shooting.seconds;
+  if (late && check.shooting.status != ShootingStatus::converged)
+    check.shooting.message +=
+        fmt::format(" by the limit of {:g} s for each speed; {} modes take long, fewer or a longer limit would do",
+                    limit, exact->num_modes());
   if (check.shooting.status != ShootingStatus::converged)
     check.shortfalls.push_back("time integration: " + check.shooting.message);
   if (check.shooting.orbit.q.size() == 0) {
