@@ -70,7 +70,7 @@ py::object without_units(const std::string& field, const py::object& object, con
     for (const py::handle part : object)
       parts.append(is_text(part) ? without_units(field, py::reinterpret_borrow<py::object>(part), read)
                                  : py::reinterpret_borrow<py::object>(part));
-    return std::move(parts);
+    return parts;
   }
   std::string written;
   if (is_text(object)) {
