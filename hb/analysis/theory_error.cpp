@@ -28,7 +28,7 @@ constexpr Accuracy of_theory_error{3e-6, 3e-5};
 constexpr Accuracy of_second_look{1e-3, 1e-2};
 // Below the first, of the correction times the amplification next to the nearest resonance, one correction shows the
 // change to within a tenth (by random linkages); so it does where the second one has the same size to within the other.
-constexpr double harmless = 0.005, most_second = 0.07;
+constexpr double harmless = 0.015, most_second = 0.07;
 // Beyond the theory the change may lie below all the same where the resonance is sharper than that.
 constexpr double sharp = 10;
 
