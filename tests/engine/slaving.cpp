@@ -37,7 +37,9 @@ void expect_covered(const HillSystem& system, StabilityMethod method) {
       nearest = std::min(nearest, std::hypot(e.value.real() - double(x.value.real()), turn) - double(x.error));
     }
     EXPECT_LE(nearest, e.error) << to_string(method) << ": " << e.value << "; " << result.evidence;
-    EXPECT_LE(e.error, 1e-11);
+    // Of use beside the distance of the two exponents, 1.2e-7. Slaving converges here or not with the last bits of the
+    // machine's arithmetic: its bar is 2e-11, that of the propagation which takes over 3e-15.
+    EXPECT_LE(e.error, 3e-11);
   }
 }
 
