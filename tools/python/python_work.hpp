@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -69,7 +70,9 @@ class PythonWork : public Work {
   Clock::time_point start_ = Clock::now();
   py::object progress_;
   std::thread::id caller_ = std::this_thread::get_id();
-  mutable Clock::time_point last_, told_;
+  mutable std::int64_t last_, last_look_ = 0;  // at signals, and at the clock; in milliseconds
+  mutable int to_pass_ = 0;
+  mutable Clock::time_point told_;
   mutable std::atomic<bool> stopped_ = false;
   mutable std::exception_ptr error_;
   std::string what_;
