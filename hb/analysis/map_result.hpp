@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/map_loads.hpp"
 #include "hb/analysis/request.hpp"
 #include "hb/analysis/resonance_lines.hpp"
 #include "hb/analysis/scene_plane.hpp"
@@ -38,6 +39,7 @@ struct MapResult {
   std::vector<DampingCurves> damping;  // both ends of a damping range
   std::vector<ResonanceLine> lines;  // of the first rod
   std::vector<MissingPoints> missing;
+  std::vector<PlaceLoads> loads;  // at every point, as `worst`; empty: not asked for
 
   const std::vector<double>& x() const { return maps.front().x; }
   const std::vector<double>& y() const { return maps.front().y; }

@@ -48,13 +48,15 @@ SceneFamily with_damping(const SceneFamily& family, const MapRequest& request, d
 
 }  // namespace
 
-MapTask::MapTask(const SceneFamily& family, const MapRequest& request, const Work& geometry) : request_(request) {
+MapTask::MapTask(const SceneFamily& family, const MapRequest& request, const Work& geometry)
+    : request_(request), family_(family) {
   require_axes(family, request);
   if (!request.only.stability) throw RequestError("only", "no stability", "stability");
   const Scene scene = some_scene(family, {&request.x, &request.y});
   require_values("x", request.x, scene.units);
   require_values("y", request.y, scene.units);
   settings_ = settings_of(request, scene);
+  if (request.stress) require_sections(scene, settings_);
   if (const auto& range = request.damping_range) {
     const auto [low, high] = *range;
     if (!(low >= 0 && low < high && high < HUGE_VAL))
@@ -91,6 +93,11 @@ Map MapTask::compute(Work& work) const {
     std::vector<StabilityMap> maps;
     for (std::size_t r = 0; r < damped.rods().size(); ++r) maps.push_back(rod_map(damped, r, x, y, curves));
     map.damping.push_back({(*request_.damping_range)[end], worst_boundaries(damped, maps, search)});
+  }
+  if (request_.stress) {
+    Settings settings = settings_;
+    settings.modes = static_cast<int>(options_.num_modes);
+    map.loads = map_loads(family_, x_axis_, x, y_axis_, y, settings, options_.speed, work.of("stress"));
   }
   std::size_t samples = 0;
   for (const StabilityMap& rod : map.maps) samples += rod.samples;

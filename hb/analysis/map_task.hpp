@@ -16,6 +16,7 @@ struct MapRequest : Request {
   Along x, y;  // one of them may be the speed
   // Boundaries also with the damping (SceneFamily::damping_paths) times both factors, 0 <= low < high.
   std::optional<std::array<double, 2>> damping_range;
+  bool stress = false;  // also stress, safety and deflection at every point, of links that all have a section
 };
 
 struct Map : MapResult {
@@ -42,12 +43,14 @@ class MapTask {
   const Along& y() const { return request_.y; }
   const Settings& settings() const { return settings_; }
   const std::optional<std::array<double, 2>>& damping_range() const { return request_.damping_range; }
+  bool stress() const { return request_.stress; }
 
  private:
   MapRequest request_;
   Settings settings_;
   PlaneAxis x_axis_, y_axis_;
   PlaneOptions options_;
+  SceneFamily family_;
   std::optional<ScenePlane> plane_;
   std::vector<SceneFamily> damped_;  // at both ends of the damping range
 };

@@ -159,7 +159,13 @@ StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double sp
     const Place worst = worst_place(stresses, link.length, points, by_side, usage);
     const Range at = stresses.range(worst.x, worst.side);
     const double error = fatigue_usage(strength, cycle.error, cycle.error);
-    cycle.fatigue = {safety_factor(usage(at), error), mean(at), amplitude(at), worst.x, worst.side};
+    cycle.fatigue = {safety_factor(usage(at), error),
+                     mean(at),
+                     amplitude(at),
+                     worst.x,
+                     worst.side,
+                     at.max.crank_angle,
+                     at.min.crank_angle};
   }
   return cycle;
 }

@@ -15,6 +15,7 @@ struct FatigueSafety {
   double mean = 0, amplitude = 0;  // there
   double x = 0;
   int side = 1;
+  double largest_at = 0, smallest_at = 0;  // crank angles of the ends of its range, rad
 };
 
 // Of (D1), (D2) in hb/analysis/README.md: sigma(x, tau) = N/F + side M e/J with N the axial force of the rigid

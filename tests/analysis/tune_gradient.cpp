@@ -108,17 +108,30 @@ TEST(TuneGradient, AgreesWithDifferencesOfTheSixLinkMechanism) {
                           settings_of(3),
                           500,
                           1400};
-  expect_gradients(question, {45, 55, 1e-4},
-                   {"deflection", "deflection:AB", "stress:CD", "force:CD.1", "torque-ripple", "mass"},
-                   {"stable", "stable>=0/turn", "frequency>=1", "clearance:3>=0.1"});
+  expect_gradients(
+      question, {45, 55, 1e-4},
+      {"deflection", "deflection:AB", "stress:CD", "total-stress:CD", "force:CD.1", "torque-ripple", "mass"},
+      {"stable", "stable>=0/turn", "frequency>=1", "clearance:3>=0.1"});
 }
 
 TEST(TuneGradient, AgreesWithDifferencesOfTheSliderCrank) {
+  const SceneSource scene_file(tuned_scenes + "slider_crank.toml");
   const Question question{
-      SceneSource(tuned_scenes + "slider_crank.toml"), {"rod.length", "rod.mass"}, settings_of(3), 1000, 3000};
+      SceneSource(scene_file.text_with({{"rod.yield", "\"250 MPa\""}, {"rod.endurance", "\"100 MPa\""}}),
+                  "slider_crank.toml", tuned_scenes),
+      {"rod.length", "rod.mass"},
+      settings_of(3),
+      1000,
+      3000};
   const Scene scene = question.source.with();
   const Body& rod = *body_at(std::get<Linkage>(scene.model), 1);
-  expect_gradients(question, {rod.length, rod.mass}, {"deflection", "stress", "force:rod.0", "mass"}, {"stable"});
+  expect_gradients(question, {rod.length, rod.mass}, {"deflection", "stress", "total-stress", "force:rod.0", "mass"},
+                   {"stable", "safety>=1"});
+  // Fatigue is nearer there; without an endurance limit yielding is what is left.
+  const Question yielding{
+      SceneSource(scene_file.text_with({{"rod.yield", "\"250 MPa\""}}), "slider_crank.toml", tuned_scenes),
+      question.paths, question.settings, 1000, 3000};
+  expect_gradients(yielding, {rod.length, rod.mass}, {"mass"}, {"safety>=1"});
 }
 
 TEST(TuneGradient, AgreesWithDifferencesOfARodWithShear) {

@@ -147,6 +147,9 @@ TEST_F(Machine, ASweepHasWhatOneSpeedHas) {
   const Json one = document(about + " --rpm 2000");
   for (const char* key : {"max_abs", "mean", "amplitude", "yield_safety", "fatigue_safety"})
     near(sweep["rods"]["rod"]["stress"][key], one["rods"]["rod"]["stress"][key], 1e-6);
+  // Errors by a coarser solution with more modes.
+  for (const char* key : {"error", "yield_safety_error", "fatigue_safety_error"})
+    near(sweep["rods"]["rod"]["stress"][key], one["rods"]["rod"]["stress"][key], 0.05);
   for (const auto& [name, bearing] : one["bearings"].items())
     near(sweep["bearings"][name]["max"], bearing["max"], 1e-9);
   near(sweep["frame"]["max"], one["frame"]["max"], 1e-9);
@@ -160,6 +163,25 @@ TEST_F(Machine, ASweepHasWhatOneSpeedHas) {
   const auto [low, high] = column(folder_ / "out/sweep_machine.csv", "shaking force [N]");
   EXPECT_NEAR(high, sweep["frame"]["max"][2].get<double>(), 1e-9 * high);
   EXPECT_LT(low, high);
+}
+
+TEST_F(Machine, TheErrorOfAStressAlongASweepCoversTheModesLeftOut) {
+  const auto stress = [&](const char* modes) {
+    const CommandResult result = hb("sweep " + scene("slider_crank_units") + strengths +
+                                    " --rpm 1000:3000:1000 --only shape --no-search --json --modes " + modes);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out)["rods"]["rod"]["stress"];
+  };
+  const Json few = stress("2"), many = stress("20");
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const char* key : {"max_abs", "amplitude"}) {
+      const double off = std::abs(few[key][k].get<double>() - many[key][k].get<double>());
+      EXPECT_LE(off, few["error"][k].get<double>()) << key << " " << k;
+    }
+    EXPECT_LE(few["error"][k].get<double>(), 0.1 * few["max_abs"][k].get<double>());
+    EXPECT_LE(std::abs(few["fatigue_safety"][k].get<double>() - many["fatigue_safety"][k].get<double>()),
+              few["fatigue_safety_error"][k].get<double>());
+  }
 }
 
 TEST_F(Machine, StrengthsThatCannotBeAreRefused) {

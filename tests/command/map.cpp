@@ -57,6 +57,42 @@ TEST_F(Map, JsonHasTheKeysOfTheContract) {
   }
 }
 
+// At every place what `hb steady` says there, whichever axis is the speed.
+TEST_F(Map, StressesOfItsPlacesAreThoseOfOneSpeed) {
+  const std::string rod =
+      scene("slider_crank_units") + " --modes 3 --set rod.yield=\"250 MPa\" --set rod.endurance=\"100 MPa\" ";
+  const std::string rpm = "rpm=1000:3000:3", mass = "piston.mass=0.3:0.5:2";
+  const Json by_x = document(rod + "--no-boundaries --stress --x " + rpm + " --y " + mass),
+             by_y = document(rod + "--no-boundaries --stress --x " + mass + " --y " + rpm);
+  const CommandResult steady = hb("steady " + rod + "--rpm 2000 --set piston.mass=0.5 --json");
+  const Json one = Json::parse(steady.out)["rods"]["rod"];
+  for (const char* key : {"max_abs", "mean", "amplitude", "yield_safety", "fatigue_safety"}) {
+    const double expected = one["stress"][key];
+    EXPECT_NEAR(by_x["rods"]["rod"]["stress"][key][1][1], expected, 1e-6 * std::abs(expected)) << key;
+    EXPECT_NEAR(by_y["rods"]["rod"]["stress"][key][1][1], expected, 1e-6 * std::abs(expected)) << key;
+  }
+  EXPECT_NEAR(by_x["rods"]["rod"]["deflection"][1][1], one["deflection"]["max_abs"],
+              1e-8 * one["deflection"]["max_abs"].get<double>());
+  EXPECT_FALSE(document(rod + "--no-boundaries --x " + rpm + " --y " + mass)["rods"]["rod"].contains("stress"));
+}
+
+TEST_F(Map, DrawsStressAndSafety) {
+  const CommandResult result = hb("map " + scene("slider_crank_units") +
+                                  " --modes 2 --set rod.yield=\"250 MPa\" --stress --x rpm=1000:3000:4 --y "
+                                  "piston.mass=0.3:0.5:3 --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("smallest safety against yielding"), std::string::npos) << result.out;
+  EXPECT_NE(read(folder_ / "out/map_stress_rod.svg").find("largest stress [MPa]"), std::string::npos);
+  EXPECT_NE(read(folder_ / "out/map_yield_safety_rod.svg").find("safety against yielding"), std::string::npos);
+  EXPECT_NE(read(folder_ / "out/map_stress.csv").find("rod stress [MPa]"), std::string::npos);
+}
+
+TEST_F(Map, AStressOfARodWithoutASectionNamesTheKeyToAdd) {
+  refused(scene("slider_crank") + " --stress --x rpm=1000:3000:3 --y piston.mass=0.3:0.5:2",
+          "stress: found no section of rod, allowed: rod.section");
+  refused(scene("mathieu") + " --stress --x omega=1:3:4 --y " + swing + "=0.1:1:4", "[hill]");
+}
+
 TEST_F(Map, WithoutBoundariesItHasTheSameGridAndNoCurves) {
   for (const std::string& grid :
        {std::string("9 --y *.J=30:60:5 --modes 1"), std::string("250 --y *.J=30:60:200 --modes 1")}) {

@@ -116,6 +116,28 @@ TEST_F(Nonlinear, SweepAlongASceneNumberIsTheSteadyMotionOfEachScene) {
   }
 }
 
+TEST_F(Nonlinear, StressesOfABranchAreThoseOfItsMotions) {
+  const std::string common = scene("six_link") + " --modes 2 --only steady,shape";
+  const Json found = document("sweep " + common + " --rpm 900:1000:100");
+  const Json& branch = found["branches"][0];
+  const Json steady = document("steady " + common + " --rpm 1000");
+  std::size_t at = 0, between = 0;
+  for (std::size_t k = 0; k < branch["rpm"].size(); ++k) {
+    if (branch["rpm"][k] == 1000.0) at = k;
+    if (!branch["asked"][k]) between = k;
+  }
+  for (const char* rod : {"AB", "CD"}) {
+    const Json &along = branch["rods"][rod], &one = steady["rods"][rod];
+    const auto near = [](const Json& value, const Json& expected) {
+      EXPECT_NEAR(value.get<double>(), expected.get<double>(), 1e-6 * expected.get<double>());
+    };
+    near(along["deflection"][at], one["deflection"]["max_abs"]);
+    near(along["stress"]["axial"][at], one["stress"]["axial"]);
+    near(along["stress"]["bending"][at], one["stress"]["bending"]);
+    if (between > 0) EXPECT_TRUE(along["stress"]["bending"][between].is_null());
+  }
+}
+
 TEST_F(Nonlinear, SweepWritesItsBranchesAndDrawsThem) {
   const CommandResult result =
       hb("sweep " + scene("six_link") +

@@ -147,6 +147,61 @@ TEST_F(Tune, IsHeldByTheRoomKeptForAnError) {
   EXPECT_GT(condition["gain_of_1_percent"], 0);
 }
 
+// Strengths of a mild steel.
+const std::string strong = "--set rod.yield='\"250 MPa\"' --set rod.tensile='\"400 MPa\"' ";
+const std::string least_mass_that_is_safe =
+    "--minimise mass --vary rod.section.height=0.002:0.02 --keep 'safety>=1.5' --over rpm=4000:5000 --modes 3 ";
+
+TEST_F(Tune, KeepsASafetyOverAllSpeeds) {
+  const Json found =
+      document(least_mass_that_is_safe + strong + "--set rod.endurance='\"120 MPa\"' --out tuned --no-plots");
+  EXPECT_EQ(found["status"], "optimal") << found;
+  const Json condition = found["conditions"][0];
+  EXPECT_GE(condition["value"].get<double>() - condition["error"].get<double>(), 1.5 * (1 - 1e-6));
+  EXPECT_EQ(condition["active"], true);
+  EXPECT_GT(condition["gain_of_1_percent"], 0);
+  const Json worst = found["metrics"][1]["after"];
+  EXPECT_EQ(worst["against"], "fatigue (Goodman)");
+  // hb steady of the scene found has the same safety at the worst speed, and nowhere a smaller one.
+  const Json there = steady("tuned/tuned.toml --modes 3 --rpm " + worst["rpm"].dump())["rods"]["rod"]["stress"];
+  EXPECT_NEAR(there["fatigue_safety"], condition["value"], 1e-6 * condition["value"].get<double>());
+  EXPECT_NEAR(there["fatigue_x"].get<double>() / 0.12, worst["x_over_l"], 1e-3);
+  EXPECT_GT(there["yield_safety"], there["fatigue_safety"]);
+  for (double other = 4000; other <= 5000; other += 250) {
+    const Json safe = steady("tuned/tuned.toml --modes 3 --rpm " + Json(other).dump())["rods"]["rod"]["stress"];
+    EXPECT_GE(safe["fatigue_safety"].get<double>(), condition["value"].get<double>() * (1 - 1e-6)) << other;
+  }
+}
+
+TEST_F(Tune, ASafetyWithoutEnduranceIsThatAgainstYielding) {
+  const Json found = document(least_mass_that_is_safe + strong + "--keep 'total-stress<=180' --analyses 60");
+  const Json metrics = found["metrics"];
+  EXPECT_EQ(metrics[1]["after"]["against"], "yielding") << metrics;
+  EXPECT_NEAR(metrics[1]["after"]["value"].get<double>() * metrics[2]["after"]["value"].get<double>(), 250, 1e-5 * 250);
+  EXPECT_EQ(metrics[2]["unit"], "MPa");
+}
+
+TEST_F(Tune, NamesTheKeysThatASafetyNeeds) {
+  const auto refused = [&](const std::string& set) {
+    return refusal("--minimise mass --vary rod.section.height=0.002:0.02 --over rpm=8000:9000 " + set);
+  };
+  for (const char* part : {"safety: found no strength of rod", "rod.yield", "rod.endurance beside rod.tensile"})
+    EXPECT_NE(refused("--keep 'safety>=1.5'").find(part), std::string::npos) << refused("--keep 'safety>=1.5'");
+  EXPECT_NE(
+      refused("--keep 'safety>=1.5' --set rod.endurance=1e8").find("rod.endurance without rod.tensile or rod.yield"),
+      std::string::npos);
+  EXPECT_NE(refused("--keep 'safety<=1.5'").find("better large"), std::string::npos);
+  const CommandResult flat = hb("tune " + scene("slider_crank") +
+                                " --minimise mass --vary rod.J=800:900 --keep 'safety>=1.5' --set rod.yield=250e3");
+  EXPECT_EQ(flat.status, 2);
+  EXPECT_NE(flat.err.find("found no section height of rod, allowed: --height rod=H, or a section in the scene"),
+            std::string::npos)
+      << flat.err;
+  EXPECT_NE(
+      hb("tune " + scene("mathieu") + " --maximise safety --vary hill.damping.0.0=0.1:0.2 --rpm 10").err.find("[hill]"),
+      std::string::npos);
+}
+
 // The stress met its bound without a word of the axial force, which is not in it.
 TEST_F(Tune, SaysThatItsStressIsOfBendingAlone) {
   const std::string question = " --vary rod.section.height=0.006:0.02 --over rpm=1000:2000 --modes 1 --analyses 4";
@@ -600,12 +655,13 @@ TEST(ErrorOfAMetric, CoversTheModesLeftOut) {
     const SceneModel cut = make_model(scene, few), full = make_model(scene, many);
     const hb::Work work;
     DesignAnalysis cut_design(cut, few, span, {{"*", 8}}, work), full_design(full, many, span, {{"*", 8}}, work);
-    for (const char* goal : {"deflection", "stress", "force", "torque-ripple", "stable", "frequency", "clearance"}) {
+    for (const char* goal :
+         {"deflection", "stress", "total-stress", "force", "torque-ripple", "stable", "frequency", "clearance"}) {
       SCOPED_TRACE(std::string(name) + ", " + goal);
       const bool large = std::string_view("stable frequency clearance").find(goal) != std::string_view::npos;
       const Metric metric = (large ? parse_largest_goal(goal) : parse_goal(goal)).terms[0].metric;
       MetricValue value = cut_design.value(metric);
-      complete(value, cut, span, few, metric);
+      complete(value, cut, {{"*", 8}}, span, few, metric);
       const double truth = full_design.value(metric).value, off = std::abs(value.value - truth);
       EXPECT_LE(off, value.error + 1e-9 * std::abs(truth));
       EXPECT_LE(value.error, 100 * off + 1e-4 * std::abs(truth));
@@ -628,7 +684,7 @@ TEST(TuneNotation, ReadsGoalsAndConditions) {
   for (const char* wrong :
        {"", "stable>=x", "mass", "mass<=0", "frequency<=3", "force<=", "mass<=nan", "clearance:0>=1"})
     EXPECT_THROW((void)parse_keep(wrong), RequestError) << wrong;
-  for (const char* wrong : {"", "mass+", "-1*mass", "frequency", "stable", "deflection:", "torque-ripple:AB"})
+  for (const char* wrong : {"", "mass+", "-1*mass", "frequency", "stable", "deflection:", "torque-ripple:AB", "safety"})
     EXPECT_THROW((void)parse_goal(wrong), RequestError) << wrong;
 }
 

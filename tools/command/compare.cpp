@@ -1,4 +1,4 @@
-// hb compare: two steady answers side by side, of scenes or of folders that hb steady wrote.
+// hb compare: two steady answers or two sweeps side by side, of scenes or of folders that hb wrote.
 #include "tools/command/compare.hpp"
 
 #include <fmt/core.h>
@@ -10,6 +10,7 @@
 #include <optional>
 #include <sstream>
 
+#include "hb/analysis/analyses.hpp"
 #include "hb/analysis/steady.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
@@ -18,13 +19,15 @@
 #include "tools/command/output_flags.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/speed_flags.hpp"
+#include "tools/command/sweep_axis.hpp"
 #include "tools/command/version.hpp"
-#include "tools/output/compare_output.hpp"
+#include "tools/output/compare_along.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
-#include "tools/pictures/figure_text.hpp"
-#include "tools/pictures/gnuplot.hpp"
+#include "tools/output/sweep_output.hpp"
+#include "tools/pictures/compare_figures.hpp"
+#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
@@ -38,80 +41,106 @@ struct CompareFlags : CommonFlags {
 
 bool is_document(const fs::path& place) { return fs::is_directory(place) || place.extension() == ".json"; }
 
-// What hb steady left in a folder, or in a file.
-ComparedSide from_files(const std::string& given) {
-  const fs::path file = fs::is_directory(given) ? fs::path(given) / "steady.json" : fs::path(given);
+// What hb steady or hb sweep left in a folder (`document`: steady.json or sweep.json), or in a file.
+ComparedSide from_files(const std::string& given, const std::string& document) {
+  const fs::path file = fs::is_directory(given) ? fs::path(given) / document : fs::path(given);
   std::ifstream stream(file);
   std::ostringstream text;
   text << stream.rdbuf();
-  const Json document = stream ? Json::parse(text.str(), nullptr, false) : Json();
-  const bool usable = document.is_object() && document.contains("rods") && document["rods"].is_object() &&
-                      document.contains("units") && document.contains("omega") && document["omega"].is_number();
+  const Json found = stream ? Json::parse(text.str(), nullptr, false) : Json();
+  const bool usable = found.is_object() && found.contains("rods") && found["rods"].is_object() &&
+                      found.contains("units") && found.contains("omega") &&
+                      (found["omega"].is_number() || (found.contains("x") && found["x"].is_object()));
   if (!usable)
-    throw UsageError(fmt::format("{}: found {}, allowed a scene, or a folder or file that `hb steady --out` wrote",
-                                 given, stream ? "no answer of hb steady in " + file.string() : "no " + file.string()));
-  return {given, document};
+    throw UsageError(fmt::format(
+        "{}: found {}, allowed a scene, or a folder or file that `hb steady --out` or `hb sweep --out` wrote", given,
+        stream ? "no answer of hb steady or hb sweep in " + file.string() : "no " + file.string()));
+  return {given, found};
 }
 
-ComparedSide computed(const CompareFlags& flags, const SceneInput& input, const std::vector<std::string>& more) {
+// Sweeps are compared where a range of speeds is asked for, or where a side has nothing else.
+bool asks_for_sweeps(const CompareFlags& flags) {
+  if (flags.rpm.find(':') != std::string::npos || flags.omega.find(':') != std::string::npos) return true;
+  for (const std::string& given : {flags.scene_file, flags.other}) {
+    if (fs::is_directory(given) && !fs::exists(fs::path(given) / "steady.json") &&
+        fs::exists(fs::path(given) / "sweep.json"))
+      return true;
+    if (fs::path(given).extension() == ".json" && fs::exists(given) && is_along(from_files(given, ""))) return true;
+  }
+  return false;
+}
+
+ComparedSide computed(const CompareFlags& flags, const SceneInput& input, const std::vector<std::string>& more,
+                      bool sweeps, int threads) {
   CommonFlags own = flags;
   own.set.insert(own.set.end(), more.begin(), more.end());
-  const Scene scene = input.source.with(overrides(own));
+  const std::vector<Override> set = overrides(own);
+  const Scene scene = input.source.with(set);
+  std::string source = input.name;
+  for (const std::string& each : more) source += " --set " + each;
+  if (sweeps) {
+    const auto along = sweep_scene(SceneFamily(input.source, set), asked_sweep(own, "", input.source, scene));
+    SharedWork work(threads);
+    return {source, sweep_json(*along, run_sweep(*along, work), false)};
+  }
   Request request = asked_request(own, scene);
   set_speed(request, first_speed(own, scene));
   const SteadyResult result = steady(scene, request);
-  std::string source = input.name;
-  for (const std::string& set : more) source += " --set " + set;
   return {source, steady_json(*result.model, result, result.settings, false)};
 }
 
-Figure response_figure(const ComparedSide& a, const ComparedSide& b, const CsvFile& csv) {
-  Figure figure;
-  figure.name = csv.name.substr(0, csv.name.size() - std::string(".csv").size());
-  figure.commands = fmt::format(
-      "set title {}\nset xrange [0:360]\nset xtics 0,60,360\nset xlabel 'crank angle [deg]'\nset ylabel {}\n"
-      "set key outside right top Left reverse samplen 2\nplot '{}' using 1:2 with lines lt 1 title 'A', '' using 1:3 "
-      "with lines lt 2 title 'B'\nunset title\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset xtics autofreq\nset "
-      "key "
-      "default\n",
-      two_lines(figure.name.substr(std::string("compare_").size()) + ", response over the turn",
-                literal(fmt::format("A: {}, {}", a.source, side_verdict(a))) + "\n" +
-                    literal(fmt::format("B: {}, {}", b.source, side_verdict(b)))),
-      quoted(csv.columns[1].substr(0, 3) + csv.columns[1].substr(5)), csv.name);
-  return figure;
+void require_one_kind(const ComparedSide& a, const ComparedSide& b) {
+  if (a.document["rods"].contains("system") != b.document["rods"].contains("system"))
+    throw UsageError("compare: found a mechanism and a [hill] scene, allowed: two of one kind");
+  if (is_along(a) != is_along(b)) throw UsageError("compare: found one speed and a sweep, allowed: two of one kind");
+  if (is_along(a)) require_comparable(a, b);
+}
+
+std::vector<Figure> steady_files(const ComparedSide& a, const ComparedSide& b, OutputFolder& place) {
+  std::vector<Figure> figures;
+  for (const CsvFile& file : compare_csvs(a, b)) {
+    place.write(file.name, csv_text(file));
+    figures.push_back(compare_response_figure(a, b, file));
+  }
+  return figures;
+}
+
+std::vector<Figure> along_files(const ComparedSide& a, const ComparedSide& b, OutputFolder& place) {
+  std::vector<Figure> figures;
+  for (const AlongCurves& curves : along_curves(a, b)) {
+    place.write(curves.a.name, csv_text(curves.a));
+    place.write(curves.b.name, csv_text(curves.b));
+    figures.push_back(compare_along_figure(a, b, curves));
+  }
+  return figures;
 }
 
 int run_compare(const CompareFlags& flags) {
   const Output out = output(flags);
+  const bool sweeps = asks_for_sweeps(flags);
   std::string texts;
   const auto side = [&](const std::string& given, const std::vector<std::string>& more) {
     if (is_document(given)) {
       if (!more.empty()) throw UsageError("--set-b: found beside a folder of results, allowed: beside a scene");
-      return from_files(given);
+      return from_files(given, sweeps ? "sweep.json" : "steady.json");
     }
     const SceneInput input = scene_input(given);
     texts += input.text;
-    return computed(flags, input, more);
+    return computed(flags, input, more, sweeps, out.threads);
   };
   const ComparedSide a = side(flags.scene_file, {}), b = side(flags.other, flags.set_b);
-  if (a.document["rods"].contains("system") != b.document["rods"].contains("system"))
-    throw UsageError("compare: found a mechanism and a [hill] scene, allowed: two of one kind");
+  require_one_kind(a, b);
   std::optional<OutputFolder> folder;
   if (out.folder)
     folder.emplace(
         *out.folder, "compare",
         Provenance{fmt::format("hb {}", version()), flags.line, flags.scene_file + ", " + flags.other, texts});
-  const Json document = compare_json(a, b);
+  const Json document = is_along(a) ? compare_along_json(a, b) : compare_json(a, b);
   Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : compare_table(a, b);
+  delivery.printed = out.json ? json_text(document) : is_along(a) ? compare_along_table(a, b) : compare_table(a, b);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("compare.json", json_file_text(document));
-    std::vector<Figure> figures;
-    for (const CsvFile& file : compare_csvs(a, b)) {
-      place.write(file.name, csv_text(file));
-      figures.push_back(response_figure(a, b, file));
-    }
-    return figures;
+    return is_along(a) ? along_files(a, b, place) : steady_files(a, b, place);
   };
   const auto reached = [](const ComparedSide& one) { return one.document.value("status", "reached") == "reached"; };
   return deliver(folder ? &*folder : nullptr, out.pictures, reached(a) && reached(b) ? exit_ok : exit_not_reached,
@@ -121,12 +150,16 @@ int run_compare(const CompareFlags& flags) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("compare", "two designs side by side: scenes, or folders that hb steady --out wrote");
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "two designs side by side at one speed or along speeds: scenes, or folders that hb steady --out or "
+      "hb sweep --out wrote");
   const auto flags = std::make_shared<CompareFlags>();
   add_scene_flags(*command, *flags);
-  add_analysis_flags(*command, *flags, SpeedsTaken::one);
-  command->get_option("SCENE")->description("a scene file (TOML), or a folder that hb steady --out wrote");
+  add_analysis_flags(*command, *flags);
+  command->get_option("--rpm")->description("speed of the crank in revolutions per minute, or a range: then sweeps");
+  command->get_option("SCENE")->description(
+      "a scene file (TOML), or a folder that hb steady --out or hb sweep --out wrote");
   command->add_option("B", flags->other, "the other scene, or folder")->required();
   command->add_option("--set-b", flags->set_b, "a number of the second scene alone, as in AB.J=60; repeatable")
       ->type_name("PATH=VALUE")

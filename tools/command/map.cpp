@@ -88,6 +88,8 @@ void add_map_command(CLI::App& app, int& status) {
   add_analysis_flags(*command, *flags, SpeedsTaken::one);
   allow_growth_alone(*command, *flags);
   command->add_flag("--no-boundaries", flags->map.no_boundaries, "the grid alone: no curves where the verdict changes");
+  command->add_flag("--stress", flags->map.stress,
+                    "also stress, safety and deflection at every point, of links with a section");
   command
       ->add_option("--boundary-tol", flags->map.boundary_tolerance,
                    "relative error of boundary points, 1e-14 to 0.01; default a tenth of --tol")

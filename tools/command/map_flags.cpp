@@ -110,6 +110,7 @@ MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneI
   if (!request.only.stability) throw UsageError(fmt::format("--only: found \"{}\", allowed: stability", flags.only));
   if (!is_speed(request.x.path) && !is_speed(request.y.path)) set_speed(request, first_speed(flags, scene));
   request.boundaries = !map.no_boundaries;
+  request.stress = map.stress;
   if (!map.boundary_tolerance.empty())
     request.boundary_tolerance =
         number_flag("--boundary-tol", map.boundary_tolerance, 1e-14, 0.01, "a number from 1e-14 to 0.01");

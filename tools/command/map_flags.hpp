@@ -13,7 +13,7 @@ namespace hb::tools {
 struct MapFlags {
   std::string x, y, damping_range;
   std::string boundary_tolerance;  // --boundary-tol
-  bool no_boundaries = false;
+  bool no_boundaries = false, stress = false;
 };
 
 // Throws UsageError, RequestError or SceneError.

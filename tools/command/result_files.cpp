@@ -4,6 +4,7 @@
 
 #include "tools/output/branches_output.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/map_loads_output.hpp"
 #include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/pictures/branch_figure.hpp"
@@ -81,7 +82,11 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
         document, damping.boundaries, file_name(fmt::format("map_boundaries_damping_{:g}", damping.factor)) + ".csv",
         fmt::format("boundaries of stability of the worst rod with damping times {:g}", damping.factor))));
   }
-  return {map_figure(document, files, colour)};
+  std::vector<Figure> figures;
+  if (!result.loads.empty()) files.loads = write(map_loads_csv(document));
+  figures.push_back(map_figure(document, files, colour));
+  for (Figure& figure : load_figures(document, files)) figures.push_back(std::move(figure));
+  return figures;
 }
 
 std::vector<PageText::Picture> report_pictures(const SweepScene& scene, const SweepResult& result,

@@ -21,13 +21,14 @@ void add_tune_flags(CLI::App& command, TuneFlags& flags) {
   };
   command
       .add_option("--minimise,--minimize", flags.minimise,
-                  "deflection, stress, force (each :NAME for one rod or joint), torque-ripple (largest minus smallest "
+                  "deflection, stress, total-stress, force (each :NAME for one rod or joint), torque-ripple (largest "
+                  "minus smallest "
                   "torque), mass, or a sum such as "
                   "0.7*deflection+0.3*mass of parts over their start values")
       ->type_name("GOAL");
   command
       .add_option("--maximise,--maximize", flags.maximise,
-                  "instead: stable (the margin), frequency, clearance:N or speed-range")
+                  "instead: stable (the margin), safety, frequency, clearance:N or speed-range")
       ->type_name("GOAL");
   repeatable("--vary", flags.vary,
              "a scene number to choose within bounds, as in AB.J=20:200, or an end of the speed range, over.from or "
@@ -37,12 +38,14 @@ void add_tune_flags(CLI::App& command, TuneFlags& flags) {
              "PATH=PATH");
   repeatable(
       "--keep", flags.keep,
-      "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa), force:JOINT<= (N), torque-ripple<= "
+      "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa, of bending), total-stress<= (MPa), safety>= "
+      "(against "
+      "yielding and fatigue), force:JOINT<= (N), torque-ripple<= "
       "(N m), mass<=, frequency>= (Hz), clearance:N>= (least |omega_1/(n Omega) - 1| over speeds, rods and n = 1..N)",
       "CONDITION");
   command.add_option("--over", flags.over, "speeds over which the worst case counts")->type_name("rpm=A:B");
-  repeatable("--height", flags.height, "height of a rod's section in the plane of motion, for stress; * for all",
-             "ROD=H");
+  repeatable("--height", flags.height,
+             "height of a rod's section in the plane of motion, for stresses and safety; * for all", "ROD=H");
   command.add_option("--algorithm", flags.algorithm, "automatic, direct, mlsl, cobyla, bobyqa, slsqp or mma (NLopt)")
       ->type_name("NAME");
   command.add_option("--seed", flags.seed, "of mlsl")->type_name("N");

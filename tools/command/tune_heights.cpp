@@ -50,11 +50,14 @@ void require_heights(const TuneTask& task, const Scene& scene) {
   }
   if (heights.contains("*") && heights.size() > 1)
     throw UsageError("--height: found * beside a rod's name, allowed: * alone, or one for each rod");
-  const auto is_stress = [](const Metric& metric) { return metric.kind == MetricKind::stress; };
+  const auto is_stress = [](const Metric& metric) {
+    return metric.kind == MetricKind::stress || is_whole_stress(metric);
+  };
   if (std::ranges::none_of(task.goal.terms, is_stress, &GoalTerm::metric) &&
       std::ranges::none_of(task.keeps, is_stress, &Keep::metric))
-    throw UsageError(fmt::format("--height: found {}={:g}, allowed: with stress as goal or condition",
-                                 heights.begin()->first, heights.begin()->second));
+    throw UsageError(
+        fmt::format("--height: found {}={:g}, allowed: with stress, total-stress or safety as goal or condition",
+                    heights.begin()->first, heights.begin()->second));
 }
 
 }  // namespace hb::tools

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "hb/analysis/rod_stress.hpp"
 #include "lib/constants.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/output_folder.hpp"
@@ -50,6 +52,61 @@ Json over(const std::vector<NonlinearPoint>& points, const Value& value) {
   return array;
 }
 
+// The safety against yielding of a rod's branch, no less than the true one.
+std::optional<double> yield_safety(const SweepScene& scene, const NonlinearPoint& point, std::size_t r) {
+  const LinkagePlace place = scene.linkage_at(point.x);
+  if (!place.linkage) return std::nullopt;
+  return least_yield_safety(point.loads[r].stress, *body_at(*place.linkage, scene.first().rods[r].link));
+}
+
+// Deflection and stress at the values asked for; null between them.
+void add_bent_loads(Json& rod, const SweepScene& scene, const std::vector<NonlinearPoint>& points, std::size_t r) {
+  if (std::ranges::none_of(points, [](const NonlinearPoint& p) { return !p.loads.empty(); })) return;
+  const auto each = [&](const std::function<Json(const NonlinearPoint&)>& value) {
+    return over(points, [&](const NonlinearPoint& p) { return p.loads.empty() ? Json(nullptr) : value(p); });
+  };
+  rod["deflection"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].deflection); });
+  rod["bending_moment"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].bending_moment); });
+  rod["buckling_share"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.buckling_share()); });
+  Json stress;
+  stress["axial"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.axial); });
+  stress["bending"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.bending); });
+  if (scene.first().linkage() &&
+      body_at(*scene.first().linkage(), scene.first().rods[r].link)->elastic->strength.yield > 0)
+    stress["yield_safety"] = each([&](const NonlinearPoint& p) {
+      const std::optional<double> safety = yield_safety(scene, p, r);
+      return safety ? number(*safety) : Json(nullptr);
+    });
+  rod["stress"] = std::move(stress);
+}
+
+// "largest stress where stable: AB 12.3 MPa axial and 45.6 MPa of bending at rpm = 900"
+std::string bent_stress_rows(const SweepScene& scene, const NonlinearSweep& sweep, const NonlinearBranch& branch) {
+  const OutputUnits units = output_units(scene.scene());
+  std::string text;
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r) {
+    if (!sweep.reported[r]) continue;
+    const NonlinearPoint* most = nullptr;
+    const auto sum = [r](const NonlinearPoint& p) { return p.loads[r].stress.axial + p.loads[r].stress.bending; };
+    bool all = true;
+    for (const NonlinearPoint& point : branch.points) {
+      if (point.loads.empty()) continue;
+      const bool stable = !point.stability || point.stability->verdict != Verdict::unstable;
+      all = all && stable;
+      if (stable && (!most || sum(point) > sum(*most))) most = &point;
+    }
+    if (!most) continue;
+    const std::optional<double> safety = yield_safety(scene, *most, r);
+    const RodStress& stress = most->loads[r].stress;
+    text += fmt::format("  {}: stress at most {:.4g} MPa axial and {:.4g} MPa of bending{} at {} = {:.8g}{}{}\n",
+                        sweep.rods[r], units.megapascal * stress.axial, units.megapascal * stress.bending,
+                        stress.height_known ? "" : " (as a rectangle)", scene.axis().path, most->x,
+                        all ? "" : ", where not unstable",
+                        safety ? fmt::format("; safety against yielding {:.4g} or more", *safety) : "");
+  }
+  return text;
+}
+
 Json branch_json(const SweepScene& scene, const NonlinearSweep& sweep, const NonlinearBranch& branch) {
   const std::vector<NonlinearPoint>& points = branch.points;
   Json json;
@@ -60,10 +117,13 @@ Json branch_json(const SweepScene& scene, const NonlinearSweep& sweep, const Non
   });
   json["omega"] = over(points, [](const NonlinearPoint& p) { return Json(p.speed); });
   json["asked"] = over(points, [](const NonlinearPoint& p) { return Json(p.asked); });
-  for (std::size_t r = 0; r < sweep.rods.size(); ++r)
-    if (sweep.reported[r])
-      json["rods"][sweep.rods[r]]["max_abs"] =
-          over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
+  for (std::size_t r = 0; r < sweep.rods.size(); ++r) {
+    if (!sweep.reported[r]) continue;
+    Json rod;
+    rod["max_abs"] = over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
+    add_bent_loads(rod, scene, points, r);
+    json["rods"][sweep.rods[r]] = std::move(rod);
+  }
   json["error_bound"] = over(points, [](const NonlinearPoint& p) { return number(p.error_bound); });
   json["growth_rate"] =
       over(points, [](const NonlinearPoint& p) { return p.stability ? number(p.stability->growth_rate) : Json(); });
@@ -213,6 +273,7 @@ std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep)
       add(text, "\n");
     }
     if (every > 1) add(text, "  (every {}th point; --json and --out have all)\n", every);
+    add(text, "{}", bent_stress_rows(scene, sweep, branch));
   }
   add(text, "\n{}\n", sweep.folds.empty() ? "no fold" : "folds: the branch turns back");
   for (const NonlinearEvent& fold : sweep.folds)
@@ -250,8 +311,10 @@ CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::
                   "points of each branch along its arc; growth rate and verdict of all rods together", verdict_numbers};
   file.columns = {"branch", "turns", axis_label(scene), "asked for"};
   for (int i = 1; i <= modes; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));
-  file.columns.insert(file.columns.end(), {"error bound", "growth rate" + bracketed(units.rate),
-                                           "growth error" + bracketed(units.rate), "verdict"});
+  file.columns.insert(
+      file.columns.end(),
+      {"error bound", "growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate), "verdict",
+       "deflection" + bracketed(units.response), "bending moment [N m]", "axial stress [MPa]", "bending stress [MPa]"});
   std::size_t count = 0;
   for (const NonlinearBranch& branch : sweep.branches) count += branch.points.size();
   file.rows.setConstant(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(file.columns.size()), nan);
@@ -266,6 +329,11 @@ CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::
       row(column++) = point.asked ? 1 : 0;
       for (const double value : point.max_abs[r]) row(column++) = value;
       row(column++) = point.error_bound;
+      if (!point.loads.empty()) {
+        const BentLoads& loads = point.loads[r];
+        row.tail(4) << loads.deflection, units.moment * loads.bending_moment, units.megapascal * loads.stress.axial,
+            units.megapascal * loads.stress.bending;
+      }
       if (!point.stability) continue;
       row(column++) = point.stability->growth_rate;
       row(column++) = point.stability->growth_error;

@@ -17,35 +17,8 @@
 namespace hb::tools {
 namespace {
 
-// Factors from the units of a document to mm, N, N m, MPa, Hz, W.
-struct Factors {
-  double length = 1, force = 1, moment = 1, stress = 1, frequency = 1, power = 1;
-  std::string length_unit, rate_unit;
-};
-
-Factors factors_of(const Json& document) {
-  static const std::map<std::string, double> metres = {{"m", 1},     {"mm", 1e-3}, {"cm", 1e-2},   {"dm", 0.1},
-                                                       {"um", 1e-6}, {"km", 1e3},  {"in", 0.0254}, {"ft", 0.3048}};
-  static const std::map<std::string, double> seconds = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
-  const Json& units = document.at("units");
-  const std::string time = units.at("time").get<std::string>();
-  const double second = seconds.at(time);
-  Factors factors;
-  factors.rate_unit = "1/" + time;
-  if (document.at("rods").contains("system")) return factors;
-  const double metre = metres.at(units.at("length").get<std::string>());
-  factors.length_unit = "mm";
-  factors.length = metre * 1e3;
-  factors.force = units.at("force_in_newton");
-  factors.moment = units.at("torque_in_newton_metre");
-  factors.stress = factors.force / (metre * metre) * 1e-6;
-  factors.frequency = 1 / (2 * std::numbers::pi * second);
-  factors.power = factors.moment / second;
-  return factors;
-}
-
 // The number at a path of keys; empty where there is none.
-std::optional<double> number_at(const Json& json, std::initializer_list<const char*> keys) {
+std::optional<double> compared_number_at(const Json& json, std::initializer_list<const char*> keys) {
   const Json* at = &json;
   for (const char* key : keys) {
     if (!at->is_object() || !at->contains(key)) return std::nullopt;
@@ -62,7 +35,7 @@ struct Entry {
 
 class Entries {
  public:
-  explicit Entries(const Json& document) : document_(document), factors_(factors_of(document)) {
+  explicit Entries(const Json& document) : document_(document), factors_(compared_factors(document)) {
     for (const auto& [name, rod] : document.at("rods").items()) add_rod(name, rod);
     add_machine();
   }
@@ -81,38 +54,42 @@ class Entries {
   }
 
   void add_rod(const std::string& name, const Json& rod) {
-    const Factors& f = factors_;
+    const ComparedFactors& f = factors_;
     const bool is_rod = name != "system";
-    const double bound = number_at(rod, {"error_bound"}).value_or(0), cut = number_at(rod, {"modes_error"}).value_or(0);
+    const double bound = compared_number_at(rod, {"error_bound"}).value_or(0),
+                 cut = compared_number_at(rod, {"modes_error"}).value_or(0);
     if (rod.contains("q") && !rod["q"]["max_abs"].empty())
       add_relative(name, "largest |q_1|", f.length_unit, f.length, rod["q"]["max_abs"][0].get<double>(), bound);
-    add_relative(name, "deflection", f.length_unit, f.length, number_at(rod, {"deflection", "max_abs"}), bound + cut);
-    add(name, "deflection at rest", f.length_unit, f.length, number_at(rod, {"static_deflection", "max_abs"}),
-        number_at(rod, {"static_deflection", "error"}));
-    const double I = number_at(rod, {"modes"}).value_or(1);
-    add_relative(name, "bending moment", "N m", f.moment, number_at(rod, {"bending_moment", "max_abs"}),
+    add_relative(name, "deflection", f.length_unit, f.length, compared_number_at(rod, {"deflection", "max_abs"}),
+                 bound + cut);
+    add(name, "deflection at rest", f.length_unit, f.length, compared_number_at(rod, {"static_deflection", "max_abs"}),
+        compared_number_at(rod, {"static_deflection", "error"}));
+    const double I = compared_number_at(rod, {"modes"}).value_or(1);
+    add_relative(name, "bending moment", "N m", f.moment, compared_number_at(rod, {"bending_moment", "max_abs"}),
                  I * I * (bound + cut));
-    add(name, "stress, axial", "MPa", f.stress, number_at(rod, {"stress", "axial"}), std::nullopt);
-    add(name, "stress, bending", "MPa", f.stress, number_at(rod, {"stress", "bending"}), std::nullopt);
+    add(name, "stress, axial", "MPa", f.stress, compared_number_at(rod, {"stress", "axial"}), std::nullopt);
+    add(name, "stress, bending", "MPa", f.stress, compared_number_at(rod, {"stress", "bending"}), std::nullopt);
     for (const char* key : {"max_abs", "amplitude"})
       add(name, std::string("stress, ") + (key[0] == 'm' ? "together" : "amplitude"), "MPa", f.stress,
-          number_at(rod, {"stress", key}), number_at(rod, {"stress", "error"}));
+          compared_number_at(rod, {"stress", key}), compared_number_at(rod, {"stress", "error"}));
     for (const char* what : {"yield", "fatigue"})
       add(name, std::string("safety, ") + what, "", 1,
-          number_at(rod, {"stress", (std::string(what) + "_safety").c_str()}),
-          number_at(rod, {"stress", (std::string(what) + "_safety_error").c_str()}));
-    add(name, "share of buckling load", "", 1, number_at(rod, {"axial_force", "buckling_share"}), std::nullopt);
-    add(name, "theory error", "", 1, number_at(rod, {"theory_error"}), std::nullopt);
-    add(name, "amplification", "", 1, number_at(rod, {"amplification"}), std::nullopt);
+          compared_number_at(rod, {"stress", (std::string(what) + "_safety").c_str()}),
+          compared_number_at(rod, {"stress", (std::string(what) + "_safety_error").c_str()}));
+    add(name, "share of buckling load", "", 1, compared_number_at(rod, {"axial_force", "buckling_share"}),
+        std::nullopt);
+    add(name, "theory error", "", 1, compared_number_at(rod, {"theory_error"}), std::nullopt);
+    add(name, "amplification", "", 1, compared_number_at(rod, {"amplification"}), std::nullopt);
     add(name, "omega_1", is_rod ? "Hz" : "rad per unit time", f.frequency,
-        number_at(rod, {"nearest_resonance", "frequency"}), std::nullopt);
-    add(name, "growth rate", f.rate_unit, 1, number_at(rod, {"growth_rate"}), number_at(rod, {"exponent_error"}));
+        compared_number_at(rod, {"nearest_resonance", "frequency"}), std::nullopt);
+    add(name, "growth rate", f.rate_unit, 1, compared_number_at(rod, {"growth_rate"}),
+        compared_number_at(rod, {"exponent_error"}));
   }
 
   void add_machine() {
-    const Factors& f = factors_;
+    const ComparedFactors& f = factors_;
     const auto sum = [&](const char* one, const char* other) -> std::optional<double> {
-      const std::optional<double> a = number_at(document_, {one}), b = number_at(document_, {other});
+      const std::optional<double> a = compared_number_at(document_, {one}), b = compared_number_at(document_, {other});
       return a ? std::optional(*a + b.value_or(0)) : std::nullopt;
     };
     const std::optional<double> force = sum("joints_error", "joints_modes_error"),
@@ -120,29 +97,30 @@ class Entries {
     if (document_.contains("bearings")) {
       double largest = 0;
       for (const auto& [name, bearing] : document_["bearings"].items())
-        largest = std::max(largest, number_at(bearing, {"max"}).value_or(0));
+        largest = std::max(largest, compared_number_at(bearing, {"max"}).value_or(0));
       for (const auto& [name, bearing] : document_["bearings"].items())
-        add("bearings", name, "N", f.force, number_at(bearing, {"max"}),
+        add("bearings", name, "N", f.force, compared_number_at(bearing, {"max"}),
             force ? std::optional(std::sqrt(2.0) * *force * largest) : std::nullopt);
     }
-    add("frame", "shaking force", "N", f.force, number_at(document_, {"frame", "max"}),
-        number_at(document_, {"frame", "force_error"}));
-    const std::optional<double> low = number_at(document_, {"torque", "min"}),
-                                high = number_at(document_, {"torque", "max"});
+    add("frame", "shaking force", "N", f.force, compared_number_at(document_, {"frame", "max"}),
+        compared_number_at(document_, {"frame", "force_error"}));
+    const std::optional<double> low = compared_number_at(document_, {"torque", "min"}),
+                                high = compared_number_at(document_, {"torque", "max"});
     const double size = std::max(std::abs(low.value_or(0)), std::abs(high.value_or(0)));
     const std::optional<double> error = torque ? std::optional(*torque * size) : std::nullopt;
     add("drive", "torque, largest", "N m", f.moment, high, error);
     add("drive", "torque, smallest", "N m", f.moment, low, error);
-    add("drive", "torque, rms", "N m", f.moment, number_at(document_, {"torque", "rms"}), error);
-    const double omega = number_at(document_, {"omega"}).value_or(0);
-    add("drive", "power, mean", "W", f.power, number_at(document_, {"power", "mean"}),
+    add("drive", "torque, rms", "N m", f.moment, compared_number_at(document_, {"torque", "rms"}), error);
+    const double omega = compared_number_at(document_, {"omega"}).value_or(0);
+    add("drive", "power, mean", "W", f.power, compared_number_at(document_, {"power", "mean"}),
         error ? std::optional(omega * *error) : std::nullopt);
-    add("drive", "energy of a flywheel", "J", f.moment, number_at(document_, {"flywheel", "energy_fluctuation"}),
+    add("drive", "energy of a flywheel", "J", f.moment,
+        compared_number_at(document_, {"flywheel", "energy_fluctuation"}),
         error ? std::optional(2 * std::numbers::pi * *error) : std::nullopt);
   }
 
   const Json& document_;
-  Factors factors_;
+  ComparedFactors factors_;
   std::vector<Entry> list_;
 };
 
@@ -159,15 +137,6 @@ std::string side_line(const char* letter, const ComparedSide& side) {
   return fmt::format("{}  {} ({}){}{}\n", letter, title_of(side), side.source, verdict.empty() ? "" : ": ", verdict);
 }
 
-std::string cell(const std::optional<double>& value, const std::optional<double>& error) {
-  if (!value) return "";
-  return fmt::format("{:.{}g}", *value, std::min(6, trusted_digits(*value, error.value_or(1e-6 * std::abs(*value)))));
-}
-
-Json optional_json(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? Json(*value) : Json();
-}
-
 // c_0..c_H of q_1; empty where the document has none.
 std::vector<std::complex<double>> first_unknown(const ComparedSide& side, const std::string& rod) {
   const Json& rods = side.document.at("rods");
@@ -181,6 +150,40 @@ double value_at(const std::vector<std::complex<double>>& c, double tau) {
   double value = c[0].real();
   for (std::size_t n = 1; n < c.size(); ++n) value += 2 * (c[n] * std::polar(1.0, static_cast<double>(n) * tau)).real();
   return value;
+}
+
+}  // namespace
+
+ComparedFactors compared_factors(const Json& document) {
+  static const std::map<std::string, double> metres = {{"m", 1},     {"mm", 1e-3}, {"cm", 1e-2},   {"dm", 0.1},
+                                                       {"um", 1e-6}, {"km", 1e3},  {"in", 0.0254}, {"ft", 0.3048}};
+  static const std::map<std::string, double> seconds = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60}};
+  const Json& units = document.at("units");
+  const std::string time = units.at("time").get<std::string>();
+  const double second = seconds.at(time);
+  ComparedFactors factors;
+  factors.rate_unit = "1/" + time;
+  if (document.at("rods").contains("system")) return factors;
+  const double metre = metres.at(units.at("length").get<std::string>());
+  factors.length_unit = "mm";
+  factors.length = metre * 1e3;
+  factors.force = units.at("force_in_newton");
+  factors.moment = units.at("torque_in_newton_metre");
+  factors.stress = factors.force / (metre * metre) * 1e-6;
+  factors.frequency = 1 / (2 * std::numbers::pi * second);
+  factors.power = factors.moment / second;
+  return factors;
+}
+
+namespace {
+
+std::string compared_cell(const std::optional<double>& value, const std::optional<double>& error) {
+  if (!value) return "";
+  return fmt::format("{:.{}g}", *value, std::min(6, trusted_digits(*value, error.value_or(1e-6 * std::abs(*value)))));
+}
+
+Json compared_number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json();
 }
 
 }  // namespace
@@ -233,14 +236,30 @@ std::string compare_table(const ComparedSide& a, const ComparedSide& b) {
   for (const ComparedQuantity& q : compared_quantities(a, b)) {
     if (q.of != of) text += q.of + "\n";
     of = q.of;
-    const std::optional<double> change = q.change();
-    text += fmt::format("  {:<32}{:>16}{:>16}{:>12}\n", q.name + (q.unit.empty() ? "" : " [" + q.unit + "]"),
-                        cell(q.a, q.error_a), cell(q.b, q.error_b),
-                        q.same() ? "same"
-                        : change ? fmt::format("{:+.3g} %", 100 * *change)
-                                 : "");
+    text += compared_row(q) + "\n";
   }
   return text + "\nsame: no further apart than the errors of both computations\n";
+}
+
+Json compared_json(const ComparedQuantity& q) {
+  return {{"of", q.of},
+          {"name", q.name},
+          {"unit", q.unit},
+          {"a", compared_number(q.a)},
+          {"b", compared_number(q.b)},
+          {"error_a", compared_number(q.error_a)},
+          {"error_b", compared_number(q.error_b)},
+          {"change", compared_number(q.change())},
+          {"same", q.same()}};
+}
+
+std::string compared_row(const ComparedQuantity& q) {
+  const std::optional<double> change = q.change();
+  return fmt::format("  {:<32}{:>16}{:>16}{:>12}", q.name + (q.unit.empty() ? "" : " [" + q.unit + "]"),
+                     compared_cell(q.a, q.error_a), compared_cell(q.b, q.error_b),
+                     q.same() ? "same"
+                     : change ? fmt::format("{:+.3g} %", 100 * *change)
+                              : "");
 }
 
 Json compare_json(const ComparedSide& a, const ComparedSide& b) {
@@ -252,24 +271,15 @@ Json compare_json(const ComparedSide& a, const ComparedSide& b) {
     json[key] = std::move(entry);
   }
   Json list = Json::array();
-  for (const ComparedQuantity& q : compared_quantities(a, b))
-    list.push_back({{"of", q.of},
-                    {"name", q.name},
-                    {"unit", q.unit},
-                    {"a", optional_json(q.a)},
-                    {"b", optional_json(q.b)},
-                    {"error_a", optional_json(q.error_a)},
-                    {"error_b", optional_json(q.error_b)},
-                    {"change", optional_json(q.change())},
-                    {"same", q.same()}});
+  for (const ComparedQuantity& q : compared_quantities(a, b)) list.push_back(compared_json(q));
   json["quantities"] = std::move(list);
   return json;
 }
 
 std::vector<CsvFile> compare_csvs(const ComparedSide& a, const ComparedSide& b) {
   std::vector<CsvFile> files;
-  const double factor_a = factors_of(a.document).length, factor_b = factors_of(b.document).length;
-  const std::string unit = factors_of(a.document).length_unit;
+  const double factor_a = compared_factors(a.document).length, factor_b = compared_factors(b.document).length;
+  const std::string unit = compared_factors(a.document).length_unit;
   for (const auto& [name, rod] : a.document.at("rods").items()) {
     const auto first = first_unknown(a, name), second = first_unknown(b, name);
     if (first.empty() || second.empty()) continue;

@@ -25,6 +25,18 @@ struct ComparedQuantity {
   [[nodiscard]] bool same() const;
 };
 
+// Factors from the units of a document to mm, N, N m, MPa, Hz, W.
+struct ComparedFactors {
+  double length = 1, force = 1, moment = 1, stress = 1, frequency = 1, power = 1;
+  std::string length_unit, rate_unit;
+};
+
+// From the document's units.
+[[nodiscard]] ComparedFactors compared_factors(const nlohmann::ordered_json& document);
+[[nodiscard]] nlohmann::ordered_json compared_json(const ComparedQuantity& quantity);
+// A line of the table without its end.
+[[nodiscard]] std::string compared_row(const ComparedQuantity& quantity);
+
 // Lengths in mm, forces in N, moments in N m, stresses in MPa; of a [hill] scene without units.
 [[nodiscard]] std::vector<ComparedQuantity> compared_quantities(const ComparedSide& a, const ComparedSide& b);
 

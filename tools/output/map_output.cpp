@@ -14,6 +14,7 @@
 #include "lib/scene/scene_keys.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/map_loads_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/printable.hpp"
@@ -223,6 +224,11 @@ std::string map_text(const MapDocument& document) {
       rod.add("boundaries", std::move(curves));
       rod.add("not_excluded", r.maps[k].not_excluded);
     }
+    if (!r.loads.empty()) {
+      Json loads = Json::object();
+      add_loads(loads, r, k);
+      for (auto& [key, grid] : loads.items()) rod.add(key, std::move(grid));
+    }
     rods.add(r.rods[k], rod);
   }
   json.add("rods", rods);
@@ -396,6 +402,7 @@ std::string map_summary(const MapDocument& document) {
     text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,
                         m.x, r.y_axis.path, m.y, m.message);
   }
+  text += loads_rows(document);
   for (const std::string& note : map_notes(document))
     text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
   if (!document.boundaries) return text + "  boundaries were not asked for\n";

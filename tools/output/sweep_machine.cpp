@@ -42,8 +42,13 @@ const std::vector<StressQuantity>& stress_quantities() {
       {"max_abs", "stress [MPa]", [](const StressPoint& p) { return p.max_abs; }, true},
       {"mean", "mean stress [MPa]", [](const StressPoint& p) { return p.mean; }, true},
       {"amplitude", "stress amplitude [MPa]", [](const StressPoint& p) { return p.amplitude; }, true},
+      {"error", "stress error [MPa]", [](const StressPoint& p) { return p.error; }, true},
       {"yield_safety", "yield safety", [](const StressPoint& p) { return or_none(p.yield_safety); }, false},
-      {"fatigue_safety", "fatigue safety", [](const StressPoint& p) { return or_none(p.fatigue_safety); }, false}};
+      {"yield_safety_error", "yield safety error",
+       [](const StressPoint& p) { return p.yield_safety ? p.yield_safety_error : no_number; }, false},
+      {"fatigue_safety", "fatigue safety", [](const StressPoint& p) { return or_none(p.fatigue_safety); }, false},
+      {"fatigue_safety_error", "fatigue safety error",
+       [](const StressPoint& p) { return p.fatigue_safety ? p.fatigue_safety_error : no_number; }, false}};
   return list;
 }
 

@@ -28,6 +28,10 @@ std::string label(MetricKind kind, bool linkage) {
       return linkage ? "largest deflection" : "largest |q_i|";
     case MetricKind::stress:
       return "largest bending stress";
+    case MetricKind::total_stress:
+      return "largest stress";
+    case MetricKind::safety:
+      return "least safety";
     case MetricKind::force:
       return "largest joint force";
     case MetricKind::torque_ripple:
@@ -77,6 +81,7 @@ std::string place(const TuneTask& task, const MetricValue& value, const Units& u
   if (value.speed) add(fmt::format("{:.6g} {}", *value.speed / task.speed_unit, speed_unit(task, units)));
   if (value.position) add(fmt::format("{:.4f} l", *value.position));
   if (value.crank_angle) add(fmt::format("{:.2f} deg", positive_degrees(*value.crank_angle)));
+  if (!value.against.empty()) add("against " + value.against);
   return text;
 }
 
@@ -159,6 +164,7 @@ Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed,
   Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
   if (!value.where.empty()) json["at"] = value.where;
   if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = shown_speed(task, *value.speed, units);
+  if (!value.against.empty()) json["against"] = value.against;
   if (value.position) json["x_over_l"] = *value.position;
   if (value.crank_angle) json["crank_angle"] = scene_angle(*value.crank_angle, units);
   return json;
@@ -218,7 +224,7 @@ std::string worst_cases_text(const TuneTask& task, const TuneResult& result, con
   if (!confirmed)
     text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
   if (std::ranges::any_of(result.rows, [](const TuneRow& row) { return row.metric.kind == MetricKind::stress; }))
-    text += "  bending alone: the axial force adds |N|/area to it (hb steady has both together)\n";
+    text += "  bending alone: the axial force adds |N|/area to it (total-stress has both together)\n";
   for (const bool after : {false, true})
     if (after ? unstable_after : unstable_before)
       text += fmt::format("  the design {} is not stable over all these speeds: its response there would not be seen\n",
@@ -227,11 +233,13 @@ std::string worst_cases_text(const TuneTask& task, const TuneResult& result, con
 }
 
 std::string places_text(const TuneTask& task, const TuneResult& result, const Scene& scene) {
-  std::string text = fmt::format("\n{:<36}{:<40}{}\n", "where", "before", "after");
+  std::size_t width = 38;
+  for (const TuneRow& row : result.rows) width = std::max(width, place(task, row.before, scene.units).size());
+  std::string text = fmt::format("\n{:<36}{:<{}}  {}\n", "where", "before", width, "after");
   for (const TuneRow& row : result.rows) {
     const std::string before = place(task, row.before, scene.units), after = place(task, row.after, scene.units);
     if (!before.empty() || !after.empty())
-      text += fmt::format("{:<36}{:<40}{}\n", label(row.metric, scene), before, after);
+      text += fmt::format("{:<36}{:<{}}  {}\n", label(row.metric, scene), before, width, after);
   }
   return text;
 }

@@ -115,6 +115,15 @@ std::string line_labels(const MapResult& r) {
   return text;
 }
 
+}  // namespace
+
+std::string map_axes(const MapDocument& document) {
+  const MapResult& r = document.result;
+  return fmt::format("set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\n", r.x().front(),
+                     r.x().back(), r.y().front(), r.y().back(), map_axis_label(document, r.x_axis),
+                     map_axis_label(document, r.y_axis));
+}
+
 std::vector<std::string> boundary_layers(const MapResult& r, const MapFiles& files) {
   std::vector<std::string> layers;
   struct Kind {
@@ -148,8 +157,6 @@ std::vector<std::string> boundary_layers(const MapResult& r, const MapFiles& fil
   return layers;
 }
 
-}  // namespace
-
 Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour colour) {
   const MapResult& r = document.result;
   const ColourScale c = colour_scale(document, colour);
@@ -167,16 +174,14 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                        [&](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == verdict; });
   };
   figure.commands = fmt::format(
-      "set title heading('{{/:Bold {}}}'.\"\\n\".{})\n"
-      "set xrange [{}:{}]\nset yrange [{}:{}]\nset xlabel {}\nset ylabel {}\nset cblabel {} offset 1.5,0\n"
+      "set title heading('{{/:Bold {}}}'.\"\\n\".{})\n{}set cblabel {}\n"
       "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
-      "set bmargin at screen 0.2\nset key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
+      "{}set key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
       "samplen 3 width -4 font ',12'\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(short_name(document.scene) + ", " + map_verdict(document)),
-      quoted("stability of the steady motion" + rods), r.x().front(), r.x().back(), r.y().front(), r.y().back(),
-      map_axis_label(document, r.x_axis), map_axis_label(document, r.y_axis), quoted(c.label), -limit, limit,
-      ticks(c, colour), palette, line_labels(r));
+      quoted("stability of the steady motion" + rods), map_axes(document), quoted(c.label), -limit, limit,
+      ticks(c, colour), palette, map_frame, line_labels(r));
   if (some_missing) {
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
@@ -216,7 +221,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
   }
   for (std::string& layer : boundary_layers(r, files)) layers.push_back(std::move(layer));
   figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));
-  figure.commands += "unset label\nunset object\nset key default\nset bmargin -1\nset xrange [*:*]\nset yrange [*:*]\n";
+  figure.commands += map_clean_up;
   return figure;
 }
 

@@ -30,6 +30,7 @@ std::uint64_t map_key(const MapTask& task) {
       .add(settings.boundaries)
       .add(settings.only.growth)
       .add(settings.only.verdict)
+      .add(task.stress())
       .add(static_cast<double>(settings.stability_method));
   const auto& factors = task.damping_range();
   key.add(factors ? factors->front() : -1).add(factors ? factors->back() : -1);

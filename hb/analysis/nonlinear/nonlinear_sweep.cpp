@@ -107,6 +107,7 @@ class Sweeper {
     follow_what_leaves();
     find_jumps();
     find_passages();
+    add_loads();
     if (stopped()) {
       result_.stopped = true;
       result_.shortfalls.push_back("stopped before all branches were followed to their ends");
@@ -326,6 +327,25 @@ class Sweeper {
       });
       if (place != points.end()) result_.followed[k] = {0, static_cast<std::size_t>(place - points.begin())};
     }
+  }
+
+  // Shape and stress of the bent rods at the values asked for.
+  void add_loads() {
+    Settings settings = scene_.settings();
+    if (!settings.only.shape) return;
+    settings.only = {.steady = false, .stability = false, .reactions = false, .shape = true};
+    Stopwatch watch;
+    for (NonlinearBranch& branch : result_.branches)
+      for (NonlinearPoint& point : branch.points) {
+        if (!point.motion || stopped()) continue;
+        const ScenePlace place = scene_.at(point.x);
+        if (!place.model) continue;
+        const NonlinearResult answer =
+            nonlinear_answer(*place.model, *point.motion, std::nullopt, result_.tolerance, settings);
+        for (const NonlinearRod& rod : answer.rods)
+          point.loads.push_back({rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, *rod.stress});
+      }
+    result_.stages.push_back({"shape and stress of the bent rods", watch.seconds(), ""});
   }
 
   const SweepScene& scene_;

@@ -9,10 +9,17 @@
 #include <vector>
 
 #include "hb/analysis/nonlinear/rod_peaks.hpp"
+#include "hb/analysis/rod_stress.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "hb/engine/nonlinear/continuation.hpp"
 
 namespace hb {
+
+// Of a bent rod over the motion, as NonlinearRod has them.
+struct BentLoads {
+  double deflection = 0, bending_moment = 0;
+  RodStress stress;
+};
 
 struct NonlinearPoint {
   double x = 0, speed = 0;  // along the axis; rad per unit time
@@ -22,6 +29,7 @@ struct NonlinearPoint {
   double x_error = 0;
   std::optional<Stability> stability;  // of all rods together
   std::shared_ptr<const PeriodicMotion> motion = nullptr;  // where asked; for nonlinear_answer
+  std::vector<BentLoads> loads = {};  // by rod; where asked, with settings().only.shape
 };
 
 struct NonlinearBranch {

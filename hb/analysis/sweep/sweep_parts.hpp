@@ -17,6 +17,9 @@ void visit_stress(Visit& visit, StressPoint& stress) {
   visit(stress.max_abs);
   visit(stress.mean);
   visit(stress.amplitude);
+  visit(stress.error);
+  visit(stress.yield_safety_error);
+  visit(stress.fatigue_safety_error);
   visit_if_there(visit, stress.yield_safety, visit);
   visit_if_there(visit, stress.fatigue_safety, visit);
 }

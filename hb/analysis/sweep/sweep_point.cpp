@@ -1,9 +1,11 @@
 #include "hb/analysis/sweep/sweep_point.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/machine_loads.hpp"
+#include "hb/analysis/modes.hpp"
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/analysis/stress_cycle.hpp"
 
@@ -19,10 +21,29 @@ TurnRange turn_range(const FourierSeries& series, Eigen::Index component) {
 }
 
 StressPoint stress_point(const StressCycle& cycle) {
-  StressPoint point{cycle.max_abs, cycle.mean, cycle.amplitude, {}, {}};
-  if (cycle.yield) point.yield_safety = cycle.yield->value;
-  if (cycle.fatigue) point.fatigue_safety = cycle.fatigue->factor.value;
+  StressPoint point;
+  point.max_abs = cycle.max_abs;
+  point.mean = cycle.mean;
+  point.amplitude = cycle.amplitude;
+  point.error = cycle.error;
+  if (cycle.yield) {
+    point.yield_safety = cycle.yield->value;
+    point.yield_safety_error = cycle.yield->error;
+  }
+  if (cycle.fatigue) {
+    point.fatigue_safety = cycle.fatigue->factor.value;
+    point.fatigue_safety_error = cycle.fatigue->factor.error;
+  }
   return point;
+}
+
+// The response with more modes, for the error of the stress: what that adds is not seen below this part of it.
+FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings) {
+  constexpr double accuracy = 1e-6;
+  SteadyOptions options = response_options(settings);
+  options.tolerance = std::max(options.tolerance, accuracy);
+  SteadyState state = solve_rod(rod.finer, comparison_modes(rod.num_modes), speed, options);
+  return state.status == SteadyStatus::singular ? FourierSeries() : std::move(state.q);
 }
 
 MachinePoint machine_point(const MachineLoads& loads) {
@@ -56,8 +77,11 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
         const RodStress stress = rod_stress(link, coefficients, speed, *point.bending_moment);
         point.buckling_share = stress.buckling_share();
         point.strain = stress.strain;
-        if (stress.height_known)
-          point.stress = stress_point(stress_cycle(link, coefficients, speed, state.q, {}, state.error_bound));
+        if (stress.height_known) {
+          const FourierSeries finer = with_more_modes(rod, speed, settings);
+          point.stress = stress_point(stress_cycle(link, coefficients, speed, state.q, finer,
+                                                   finer.c.size() > 0 ? state.error_bound : HUGE_VAL));
+        }
       }
       q = std::move(state.q);
     }

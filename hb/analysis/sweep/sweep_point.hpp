@@ -19,7 +19,9 @@ struct TurnRange {
 // StressCycle in short, scene's units; safeties infinite without stress.
 struct StressPoint {
   double max_abs = 0, mean = 0, amplitude = 0;
+  double error = 0;  // of each of these, an estimate; infinite where no more modes were looked at
   std::optional<double> yield_safety, fatigue_safety;
+  double yield_safety_error = 0, fatigue_safety_error = 0;
 };
 
 // MachineLoads in short, elastic.

@@ -12,6 +12,19 @@ std::size_t next_id() {
   return next++;
 }
 
+// The error of the cut is no part of a sweep but for stresses, of rods with a section: finer Ritz matrices of these.
+std::shared_ptr<SceneModel> sweep_model(Scene scene, const Settings& settings) {
+  auto model = std::make_shared<SceneModel>(make_model(std::move(scene), settings, false));
+  if (!settings.only.shape || !model->linkage()) return model;
+  for (RodModel& rod : model->rods) {
+    const Body& link = *body_at(*model->linkage(), rod.link);
+    if (rod.reported && link.elastic->section_height > 0)
+      rod.finer = ritz_system(link, model->coefficients.rods[static_cast<std::size_t>(rod.coefficients)],
+                              comparison_modes(rod.num_modes));
+  }
+  return model;
+}
+
 }  // namespace
 
 SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double fixed_speed, double fixed_rpm)
@@ -21,20 +34,17 @@ SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double 
       fixed_speed_(fixed_speed),
       fixed_rpm_(fixed_rpm),
       id_(next_id()) {
-  // The error of the cut is no part of a sweep: no finer Ritz matrices.
-  Settings model_settings = settings_;
-  constexpr bool compares_modes = false;
   const bool auto_modes = is_auto(settings_.modes);
   if (axis_.kind != Axis::Kind::parameter) {
     Scene scene = family_.scene();
     units_ = scene.units;
-    first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings, compares_modes));
+    first_ = sweep_model(std::move(scene), settings_);
   } else {
     for (std::size_t k = 0; k < axis_.values.size() && !first_; ++k) {
       try {
         Scene scene = family_.scene({{axis_.path, axis_.values[k]}});
         units_ = scene.units;
-        first_ = std::make_shared<SceneModel>(make_model(std::move(scene), model_settings, compares_modes));
+        first_ = sweep_model(std::move(scene), settings_);
       } catch (const ObstructedLinkage&) {
         if (k + 1 == axis_.values.size()) throw;
       }
@@ -52,9 +62,8 @@ SweepScene::SweepScene(SceneFamily family, Settings settings, Axis axis, double 
       modes = most_modes(analyse(*place.model, place.speed, steady).rods, modes);
     }
     settings_.modes = modes;
-    model_settings.modes = modes;
     id_ = next_id();  // places looked at so far have other models
-    first_ = std::make_shared<SceneModel>(make_model(first_->scene, model_settings, compares_modes));
+    first_ = sweep_model(first_->scene, settings_);
   }
 }
 
@@ -89,7 +98,7 @@ ScenePlace SweepScene::at(double x) const {
   if (last.owner == id_ && last.x == x) return last.place;
   ScenePlace place{nullptr, fixed_speed_, ""};
   try {
-    place.model = std::make_shared<SceneModel>(make_model(family_.scene({{axis_.path, x}}), settings_, false));
+    place.model = sweep_model(family_.scene({{axis_.path, x}}), settings_);
   } catch (const ObstructedLinkage& obstruction) {
     place.problem = obstruction.what();
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/tune/tune_stress.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "lib/constants.hpp"
@@ -28,6 +29,7 @@ struct DesignAnalysis::Sample {
   std::vector<double> forces;  // by joint; empty: not computed
   double ripple = nan;
   std::vector<double> theory;  // by rod; empty: not computed
+  std::vector<double> total_stress, usage;  // by rod, of stress_peak; NaN: not computed
   std::vector<double> growth;  // by rod; empty: not computed
 };
 
@@ -36,6 +38,7 @@ struct DesignAnalysis::Curve {
   std::size_t index = 0;  // of rod or joint
   double factor = 1;
   std::string where;
+  Body link = {};  // of total_stress and safety: with the height of its section
 };
 
 DesignAnalysis::DesignAnalysis(const SceneModel& model, const Settings& settings, SpeedSpan span,
@@ -95,8 +98,8 @@ void DesignAnalysis::respond() {
   work_.for_each(nodes_.size(), [&](std::size_t k) {
     Sample& node = *nodes_[k];
     if (!node.deflection.empty()) return;
-    node.deflection.assign(model_.rods.size(), nan);
-    node.moment.assign(model_.rods.size(), nan);
+    for (std::vector<double>* values : {&node.deflection, &node.moment, &node.total_stress, &node.usage})
+      values->assign(model_.rods.size(), nan);
     for (std::size_t r = 0; r < model_.rods.size(); ++r) {
       std::optional<FourierSeries> q = rod_response(model_.rods[r], node.speed, settings_);
       if (!q) {
@@ -132,6 +135,24 @@ void DesignAnalysis::need_theory() {
     if (!node.theory.empty()) return;
     node.theory = node.q.size() == model_.rods.size() ? theory_of(model_, node.speed, node.q)
                                                       : std::vector<double>(model_.rods.size(), nan);
+  });
+}
+
+double DesignAnalysis::whole_stress(const Curve& curve, double speed, const FourierSeries& q) const {
+  const auto coefficients = static_cast<std::size_t>(model_.rods[curve.index].coefficients);
+  const StressCycle cycle = stress_cycle(curve.link, model_.coefficients.rods[coefficients], speed, q, {}, 0);
+  return stress_peak(curve.kind, cycle, curve.link.elastic->strength).value;
+}
+
+void DesignAnalysis::need_whole_stress(const std::vector<Curve>& curves) {
+  respond();
+  work_.for_each(nodes_.size(), [&](std::size_t k) {
+    Sample& node = *nodes_[k];
+    if (node.q.size() != model_.rods.size()) return;
+    for (const Curve& curve : curves) {
+      double& value = (curve.kind == MetricKind::safety ? node.usage : node.total_stress)[curve.index];
+      if (std::isnan(value)) value = whole_stress(curve, node.speed, node.q[curve.index]);
+    }
   });
 }
 
@@ -194,9 +215,9 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
     names.push_back(name);
     if (metric.name.empty() || metric.name == name) curves.push_back({metric.kind, index, factor, name});
   };
-  const bool needs_linkage = metric.kind == MetricKind::stress || metric.kind == MetricKind::force ||
-                             metric.kind == MetricKind::torque_ripple || metric.kind == MetricKind::mass ||
-                             metric.kind == MetricKind::theory;
+  const bool needs_linkage = metric.kind == MetricKind::stress || is_whole_stress(metric) ||
+                             metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple ||
+                             metric.kind == MetricKind::mass || metric.kind == MetricKind::theory;
   if (needs_linkage && !model_.linkage())
     throw RequestError(metric.text, "a [hill] scene", "deflection, stable, frequency, clearance",
                        "found in a [hill] scene, which has no links; allowed there: deflection, stable, frequency, "
@@ -217,7 +238,11 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
         double factor = 1;
         if (metric.kind == MetricKind::stress && (metric.name.empty() || metric.name == rod.name))
           factor = stress_factor(model_, rod, heights_, metric);
+        if (metric.kind == MetricKind::total_stress) factor = in_megapascal(units);
         choose(r, rod.name, factor);
+        if (!is_whole_stress(metric) || curves.empty() || curves.back().index != r) continue;
+        curves.back().link = with_height(model_, rod, heights_, metric);
+        require_strength(curves.back().link, metric);
       }
   }
   if (curves.empty())
@@ -232,6 +257,10 @@ double DesignAnalysis::at_node(const Curve& curve, std::size_t node) {
       return curve.factor * sample.deflection[curve.index];
     case MetricKind::stress:
       return curve.factor * sample.moment[curve.index];
+    case MetricKind::total_stress:
+      return curve.factor * sample.total_stress[curve.index];
+    case MetricKind::safety:
+      return sample.usage[curve.index];
     case MetricKind::force:
       return curve.factor * sample.forces[curve.index];
     case MetricKind::torque_ripple:
@@ -257,6 +286,11 @@ double DesignAnalysis::at(const Curve& curve, double speed) {
       const RodShape shape = shape_of(model_, rod, speed, *q);
       return curve.factor *
              (curve.kind == MetricKind::stress ? shape.bending_moment.max_abs : shape.deflection.max_abs);
+    }
+    case MetricKind::total_stress:
+    case MetricKind::safety: {
+      const std::optional<FourierSeries> q = rod_response(model_.rods[curve.index], speed, settings_);
+      return q ? curve.factor * whole_stress(curve, speed, *q) : nan;
     }
     case MetricKind::theory:
     case MetricKind::force:
@@ -308,6 +342,7 @@ MetricValue DesignAnalysis::worst(const Metric& metric, const std::vector<Curve>
     if (found.value > result.value) result = {found.value, found.x, curves[c].where, curves[c].index, curves[c].factor};
   }
   if (metric.kind == MetricKind::margin || metric.kind == MetricKind::margin_per_turn) result.value = -result.value;
+  if (metric.kind == MetricKind::safety) result.value = 1 / result.value;
   return result;
 }
 
@@ -358,6 +393,8 @@ MetricValue DesignAnalysis::value(const Metric& metric) {
     need_forces();
   } else if (metric.kind == MetricKind::theory) {
     need_theory();
+  } else if (is_whole_stress(metric)) {
+    need_whole_stress(curves);
   } else {
     respond();
   }

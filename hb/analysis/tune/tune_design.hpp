@@ -56,6 +56,8 @@ class DesignAnalysis {
   void respond();
   void need_forces();
   void need_theory();
+  void need_whole_stress(const std::vector<Curve>& curves);
+  double whole_stress(const Curve& curve, double speed, const FourierSeries& q) const;
   void find_instabilities();  // adds nodes in narrow bands
 
   const SceneModel& model_;

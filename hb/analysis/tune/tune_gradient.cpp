@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "hb/analysis/tune/tune_quantities.hpp"
+#include "hb/analysis/tune/tune_stress.hpp"
 #include "hb/engine/design/differences.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "lib/constants.hpp"
@@ -112,6 +113,44 @@ OptionalVector shape_gradient(Neighbourhood& near, const Metric& metric, const M
   });
 }
 
+// Largest stress, axial and bending together, or smallest safety of one rod at one speed.
+OptionalVector whole_stress_gradient(Neighbourhood& near, const Metric& metric, const MetricValue& value,
+                                     const Settings& settings) {
+  const double speed = *value.speed;
+  const std::size_t r = value.index;
+  const Neighbour& here = near.here();
+  const RodModel& rod = here.model.rods[r];
+  const std::optional<FourierSeries> unknowns = rod_unknowns(rod, speed, settings);
+  if (!unknowns) return std::nullopt;
+  const FourierSeries q = ritz_coordinates(*unknowns, rod.num_modes);
+  const auto coefficients = [&](const Neighbour& other) -> const RodCoefficients& {
+    return other.model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+  };
+  const auto link = [&](const Neighbour& other) {
+    return with_height(other.model, other.model.rods[r], other.heights, metric);
+  };
+  const Body own = link(here);
+  const StressPeak peak =
+      stress_peak(metric.kind, stress_cycle(own, coefficients(here), speed, q, {}, 0), own.elastic->strength);
+  const auto functional = [&](const Neighbour& other) {
+    return stress_functional(metric.kind, link(other), coefficients(other), speed, q.num_components(),
+                             q.num_harmonics(), peak, peak.x / own.length);
+  };
+  const RodFunctional J = functional(here);
+  const std::optional<FourierSeries> lambda =
+      solve_adjoint(rod.system, speed, on_unknowns(J.g, rod.system.num_modes()), q.num_harmonics());
+  if (!lambda) return std::nullopt;
+  const double at = J.offset + mean_product(J.g, q), sign = at < 0 ? -1 : 1;
+  // Of a safety n = 1/usage: d n = -n^2 d usage.
+  const double factor = metric.kind == MetricKind::safety ? -1 / (at * at) : in_megapascal(here.model.scene.units);
+  return near.gradient([&](const Neighbour& other, const VectorXd&) {
+    const RodFunctional K = functional(other);
+    const double lagrangian = K.offset + mean_product(K.g, q) +
+                              mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *unknowns));
+    return sign * factor * lagrangian;
+  });
+}
+
 // Joint force or torque ripple: all rods take part.
 OptionalVector force_gradient(Neighbourhood& near, const Metric& metric, const MetricValue& value,
                               const Settings& settings) {
@@ -208,6 +247,9 @@ OptionalVector metric_gradient(Neighbourhood& near, const Metric& metric, const 
     case MetricKind::deflection:
     case MetricKind::stress:
       return shape_gradient(near, metric, value, settings);
+    case MetricKind::total_stress:
+    case MetricKind::safety:
+      return whole_stress_gradient(near, metric, value, settings);
     case MetricKind::force:
     case MetricKind::torque_ripple:
       return force_gradient(near, metric, value, settings);

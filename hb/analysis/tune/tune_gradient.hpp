@@ -1,7 +1,7 @@
 // Derivatives of a design's metrics with respect to its variables. The worst speed, place and crank angle of a metric
 // do not move to first order, so each is differentiated where it is worst, and only the scene's coefficients are
 // computed for neighbouring designs (their differences), never a response or an exponent:
-//   deflection, stress     adjoint solution of the rod's Hill system (hill_sensitivity.hpp)
+//   deflection, stresses, safety   adjoint solution of the rod's Hill system (hill_sensitivity.hpp)
 //   margin                 right and left Floquet vectors
 //   joint force, torque    derivative of q by one linear solution per variable, through the linear force map
 //   mass, frequency, clearance   closed form of the coefficients

@@ -11,12 +11,12 @@ namespace hb {
 namespace {
 
 constexpr const char* metric_words =
-    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD], frequency[:ROD], stable, "
-    "clearance[:N], speed-range";
+    "deflection[:ROD], stress[:ROD], total-stress[:ROD], safety[:ROD], force[:JOINT], torque-ripple, mass[:ROD], "
+    "theory[:ROD], frequency[:ROD], stable, clearance[:N], speed-range";
 
 constexpr const char* small_words =
-    "deflection[:ROD], stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD]";
-constexpr const char* large_words = "stable (the margin), frequency[:ROD], clearance[:N], speed-range";
+    "deflection[:ROD], stress[:ROD], total-stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD]";
+constexpr const char* large_words = "stable (the margin), safety[:ROD], frequency[:ROD], clearance[:N], speed-range";
 
 // What may stand in a field of the request.
 const char* words_of(const std::string& field) {
@@ -59,6 +59,10 @@ Metric parse_metric(const char* field, const std::string& whole, const std::stri
     metric.kind = MetricKind::deflection;
   } else if (word == "stress") {
     metric.kind = MetricKind::stress;
+  } else if (word == "total-stress") {
+    metric.kind = MetricKind::total_stress;
+  } else if (word == "safety") {
+    metric.kind = MetricKind::safety;
   } else if (word == "force") {
     metric.kind = MetricKind::force;
   } else if (word == "mass") {
@@ -120,8 +124,9 @@ Goal parse_goal(const std::string& text) {
     if (part.empty()) refuse("minimise", text, "with an empty term", small_words);
     term.metric = parse_metric("minimise", text, part.substr(star == std::string::npos ? 0 : star + 1));
     if (better_large(term.metric.kind))
-      refuse("minimise", text, fmt::format("where {} is better large", term.metric.text),
-             "deflection, stress, force, torque-ripple, mass, theory; the others behind @maximise or @keep");
+      refuse(
+          "minimise", text, fmt::format("where {} is better large", term.metric.text),
+          "deflection, stress, total-stress, force, torque-ripple, mass, theory; the others behind @maximise or @keep");
     goal.terms.push_back(std::move(term));
     if (end == std::string::npos) break;
     begin = end + 1;
@@ -137,7 +142,7 @@ Goal parse_largest_goal(const std::string& text) {
   goal.terms.push_back({1, parse_metric("maximise", text, without_blanks(text))});
   if (!better_large(goal.terms[0].metric.kind))
     refuse("maximise", text, "which is better small",
-           "stable (the margin), frequency, clearance, speed-range; the others behind @minimise");
+           "stable (the margin), safety, frequency, clearance, speed-range; the others behind @minimise");
   return goal;
 }
 
@@ -181,11 +186,15 @@ Keep parse_keep(const std::string& text) {
 
 bool better_large(MetricKind kind) {
   return kind == MetricKind::frequency || kind == MetricKind::margin || kind == MetricKind::margin_per_turn ||
-         kind == MetricKind::clearance || kind == MetricKind::speed_range;
+         kind == MetricKind::clearance || kind == MetricKind::speed_range || kind == MetricKind::safety;
 }
 
 bool needs_forces(const Metric& metric) {
   return metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple;
+}
+
+bool is_whole_stress(const Metric& metric) {
+  return metric.kind == MetricKind::total_stress || metric.kind == MetricKind::safety;
 }
 
 bool is_margin(const Metric& metric) {
@@ -200,6 +209,7 @@ std::string unit_of(MetricKind kind, const Scene& scene) {
     case MetricKind::deflection:
       return std::holds_alternative<Linkage>(scene.model) ? units.length : "";
     case MetricKind::stress:
+    case MetricKind::total_stress:
       return "MPa";
     case MetricKind::force:
       return "N";
@@ -215,6 +225,7 @@ std::string unit_of(MetricKind kind, const Scene& scene) {
       return "per turn";
     case MetricKind::theory:
     case MetricKind::clearance:
+    case MetricKind::safety:
       return "";
     case MetricKind::speed_range:
       return "rpm";

@@ -13,6 +13,8 @@ namespace hb {
 enum class MetricKind {
   deflection,  // largest |w| over rod, turn and speeds
   stress,  // largest bending stress E J w'' h/(2 J), h the section's height
+  total_stress,  // largest |N/F +- M h/(2 J)|, both at one place and crank angle
+  safety,  // smallest of those against yielding and fatigue that the rod's strengths give (safety.hpp)
   force,  // largest joint force
   torque_ripple,  // largest minus smallest driving torque over the turn
   mass,  // of the elastic links
@@ -60,6 +62,7 @@ struct Keep {
 [[nodiscard]] bool depends_on_speed(MetricKind kind);
 [[nodiscard]] bool better_large(MetricKind kind);
 [[nodiscard]] bool needs_forces(const Metric& metric);
+[[nodiscard]] bool is_whole_stress(const Metric& metric);  // total_stress, safety
 [[nodiscard]] bool is_margin(const Metric& metric);
 // Scene's length and mass; N, N m, MPa, Hz, rpm. The unknowns of a [hill] scene have no unit.
 [[nodiscard]] std::string unit_of(MetricKind kind, const Scene& scene);

@@ -12,6 +12,7 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/bearing_load.hpp"
+#include "hb/analysis/tune/tune_stress.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "hb/engine/exponents/hill_sensitivity.hpp"
 #include "lib/rod/rod_functional.hpp"
@@ -44,16 +45,25 @@ RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, co
   return shape;
 }
 
-double stress_factor(const SceneModel& model, const RodModel& rod, const SectionHeights& heights,
-                     const Metric& metric) {
+Body with_height(const SceneModel& model, const RodModel& rod, const SectionHeights& heights, const Metric& metric) {
   const auto named = heights.find(rod.name), all = heights.find("*");
   const auto height = named != heights.end() ? named : all;
   if (height == heights.end())
     throw RequestError(metric.text, fmt::format("no section height of {}", rod.name),
                        fmt::format("@height {}=H, or a section in the scene", rod.name));
-  const Units& units = model.scene.units;
-  const double pascal = units.force_in_newton() / (units.length_in_m * units.length_in_m);
-  return height->second / (2 * body_at(*model.linkage(), rod.link)->elastic->second_moment) * pascal * 1e-6;
+  Body link = *body_at(*model.linkage(), rod.link);
+  link.elastic->section_height = height->second;
+  return link;
+}
+
+double in_megapascal(const Units& units) {
+  return units.force_in_newton() / (units.length_in_m * units.length_in_m) * 1e-6;
+}
+
+double stress_factor(const SceneModel& model, const RodModel& rod, const SectionHeights& heights,
+                     const Metric& metric) {
+  const Elastic elastic = *with_height(model, rod, heights, metric).elastic;
+  return elastic.section_height / (2 * elastic.second_moment) * in_megapascal(model.scene.units);
 }
 
 JointForces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q, double tolerance) {
@@ -243,6 +253,23 @@ void complete_force(MetricValue& value, const SpeedResult& at, bool torque) {
   value.error = std::numbers::sqrt2 * (errors.force + errors.force_cut) * size * value.factor;
 }
 
+void complete_whole_stress(MetricValue& value, const SceneModel& model, const SectionHeights& heights,
+                           const SpeedResult& at, const Metric& metric) {
+  const RodModel& rod = model.rods[value.index];
+  const RodResult& result = at.rods[value.index];
+  const Body link = with_height(model, rod, heights, metric);
+  const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+  const StressPeak peak = stress_peak(
+      metric.kind,
+      stress_cycle(link, coefficients, at.speed, result.steady->q, result.more_modes, result.steady->error_bound),
+      link.elastic->strength);
+  value.position = peak.x / link.length;
+  value.crank_angle = peak.largest_at;
+  value.against = peak.against;
+  const double error = result.more_modes.c.size() > 0 ? peak.error : HUGE_VAL;
+  value.error = metric.kind == MetricKind::safety ? safety_factor(peak.value, error).error : value.factor * error;
+}
+
 // What more modes change of the theory error of a rod.
 double theory_error_of_modes(const SceneModel& model, std::size_t rod, double speed, const Settings& settings) {
   Settings asked = settings;
@@ -291,8 +318,8 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
 
 }  // namespace
 
-void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
-              const Metric& metric) {
+void complete(MetricValue& value, const SceneModel& model, const SectionHeights& heights, const SpeedSpan& span,
+              const Settings& settings, const Metric& metric) {
   if (!std::isfinite(value.value) || metric.kind == MetricKind::mass || metric.kind == MetricKind::speed_range) return;
   const RodModel& rod = model.rods[value.index < model.rods.size() ? value.index : 0];
   const auto change_with_more_modes = [&](const std::function<double(const HillSystem&)>& of) {
@@ -306,16 +333,21 @@ void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span
   switch (metric.kind) {
     case MetricKind::deflection:
     case MetricKind::stress:
+    case MetricKind::total_stress:
+    case MetricKind::safety:
     case MetricKind::force:
     case MetricKind::torque_ripple: {
       const bool forces = metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple;
       asked.only = {!forces, false, forces, !forces};
-      if (!forces) seek_jointly(value, model, span, settings, metric.kind == MetricKind::stress);
+      if (!forces && !is_whole_stress(metric))
+        seek_jointly(value, model, span, settings, metric.kind == MetricKind::stress);
       const SpeedResult at = analyse(model, *value.speed, asked);
       if (std::ranges::any_of(at.rods, [](const RodResult& r) { return r.steady->status == SteadyStatus::singular; })) {
         value.error = HUGE_VAL;
       } else if (forces) {
         complete_force(value, at, metric.kind == MetricKind::torque_ripple);
+      } else if (is_whole_stress(metric)) {
+        complete_whole_stress(value, model, heights, at, metric);
       } else {
         complete_shape(value, model, at, metric.kind == MetricKind::stress);
       }

@@ -24,6 +24,7 @@ struct MetricValue {
   double error = 0;  // estimate: modes left out, harmonics, rounding
   std::optional<double> position = std::nullopt;  // from joint 0, over the rod's length
   std::optional<double> crank_angle = std::nullopt;  // rad
+  std::string against = {};  // of a safety: yielding, fatigue
 };
 
 // Section height across the rod, by name; "*" for all that are not named.
@@ -35,6 +36,12 @@ using SectionHeights = std::map<std::string, double>;
 // Of a [hill] scene the deflection is the largest |q_i|.
 [[nodiscard]] RodShape shape_of(const SceneModel& model, const RodModel& rod, double speed, const FourierSeries& q);
 
+// The link with the height of its section, also where it is given beside the scene. Throws RequestError for a rod
+// without one.
+[[nodiscard]] Body with_height(const SceneModel& model, const RodModel& rod, const SectionHeights& heights,
+                               const Metric& metric);
+// MPa in a unit of stress of the scene.
+[[nodiscard]] double in_megapascal(const Units& units);
 // MPa per unit of bending moment: sigma = |E J w''| h/(2 J). Throws RequestError for a rod without height.
 [[nodiscard]] double stress_factor(const SceneModel& model, const RodModel& rod, const SectionHeights& heights,
                                    const Metric& metric);
@@ -75,7 +82,7 @@ struct SpeedSpan {
 
 // Place, crank angle and error of a worst case found. The largest deflection and stress are sought once more over
 // speed, place and crank angle together; errors are seen with more modes, and from the harmonics' bound.
-void complete(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
-              const Metric& metric);
+void complete(MetricValue& value, const SceneModel& model, const SectionHeights& heights, const SpeedSpan& span,
+              const Settings& settings, const Metric& metric);
 
 }  // namespace hb

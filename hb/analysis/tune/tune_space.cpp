@@ -27,6 +27,8 @@ std::vector<std::string> names_of(const SceneModel& model, const Metric& metric)
   switch (metric.kind) {
     case MetricKind::deflection:
     case MetricKind::stress:
+    case MetricKind::total_stress:
+    case MetricKind::safety:
     case MetricKind::theory:
     case MetricKind::frequency:
     case MetricKind::margin:
@@ -90,11 +92,12 @@ void DesignSpace::refine(int times) {
 std::vector<MetricValue> DesignSpace::values(const std::vector<double>& x, int times) const {
   const SceneModel scene = model(x);
   const SpeedSpan speeds = span(x, times);
-  DesignAnalysis analysis(scene, settings_, speeds, heights(scene), work_, required_);
+  const SectionHeights section = heights(scene);
+  DesignAnalysis analysis(scene, settings_, speeds, section, work_, required_);
   std::vector<MetricValue> values;
   for (const Metric& metric : metrics_) {
     values.push_back(analysis.value(metric));
-    if (times > 1) complete(values.back(), scene, speeds, settings_, metric);
+    if (times > 1) complete(values.back(), scene, section, speeds, settings_, metric);
   }
   return values;
 }
@@ -132,21 +135,22 @@ std::optional<Eigen::MatrixXd> DesignSpace::gradients(const std::vector<double>&
 DesignSpace::Report DesignSpace::report(const std::vector<double>& x, const std::vector<Metric>& metrics, int times,
                                         double tolerance) const {
   const SceneModel scene = model(x);
-  DesignAnalysis rough(scene, settings_, span(x, 1), heights(scene), work_, required_);
+  const SectionHeights section = heights(scene);
+  DesignAnalysis rough(scene, settings_, span(x, 1), section, work_, required_);
   const SpeedSpan speeds = span(x, times);
-  DesignAnalysis fine(scene, settings_, speeds, heights(scene), work_, required_);
+  DesignAnalysis fine(scene, settings_, speeds, section, work_, required_);
   Report result;
   for (const Metric& metric : metrics) {
     const MetricValue first = rough.value(metric), second = fine.value(metric);
     const bool first_is_worse = better_large(metric.kind) ? first.value < second.value : first.value > second.value;
     MetricValue& worst = result.values.emplace_back(first_is_worse ? first : second);
-    complete(worst, scene, speeds, settings_, metric);
+    complete(worst, scene, section, speeds, settings_, metric);
     result.confirmed.push_back(std::abs(first.value - second.value) <= tolerance * std::abs(worst.value));
   }
   result.curves = fine.curves();
   result.margins = fine.margins();
   for (MetricValue& margin : result.margins)
-    complete(margin, scene, speeds, settings_, {MetricKind::margin, "", 1, "stable"});
+    complete(margin, scene, section, speeds, settings_, {MetricKind::margin, "", 1, "stable"});
   return result;
 }
 

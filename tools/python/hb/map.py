@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Optional
 
 from . import _core
+from .machine_loads import Stress, made
 from .result import Result, floats, words
 
 if TYPE_CHECKING:
@@ -89,6 +90,23 @@ class RodMap(_Grid):
     def __init__(self, name: str, entry: dict[str, Any]) -> None:
         self.name = name
         self._entry = entry
+
+    @cached_property
+    def stress(self) -> Optional[Stress]:
+        """With map(stress=True): max_abs, mean, amplitude, error and safeties, (len(y), len(x)); else None."""
+        return made(Stress, self._entry.get("stress"), floats)
+
+    @cached_property
+    def deflection(self) -> "Optional[NDArray[Any]]":
+        """With map(stress=True): largest deflection over rod and turn."""
+        entry = self._entry.get("deflection")
+        return None if entry is None else floats(entry)
+
+    @cached_property
+    def theory_error(self) -> "Optional[NDArray[Any]]":
+        """With map(stress=True): what the first nonlinear correction would change of q; NaN where it has no value."""
+        entry = self._entry.get("theory_error")
+        return None if entry is None else floats(entry)
 
     def __repr__(self) -> str:
         return f"<hb.RodMap {self.name}: {len(self.boundaries)} boundaries>"

@@ -227,6 +227,7 @@ class Scene:
         damping_range: Any = None,
         boundaries: bool = True,
         boundary_tol: Optional[float] = None,
+        stress: bool = False,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
         time_limit: Optional[float] = None,
@@ -237,7 +238,8 @@ class Scene:
         x, y: "PATH=FROM:TO:COUNT" as in "rpm=200:6000:117" or "*.J=20:200:61", or (path, range) with a range
         (from, to, count) or an array of values. damping_range: a pair of factors on the damping; boundaries with either are
         in `damping`. boundaries: False computes the grid alone. boundary_tol: relative error
-        wanted of boundary points, 1e-14 to 0.01. only: "stability", "growth" or "verdict". Other arguments as in sweep().
+        wanted of boundary points, 1e-14 to 0.01. stress: also stress, safety and deflection of links with a section, in
+        `mp["AB"].stress` and `.deflection`. only: "stability", "growth" or "verdict". Other arguments as in sweep().
         """
         from .map import Map
 
@@ -253,6 +255,7 @@ class Scene:
             "damping_range": damping_range,
             "boundaries": boundaries,
             "boundary_tol": boundary_tol,
+            "stress": stress or None,
             "stability_method": stability_method,
             "threads": threads,
             "time_limit": time_limit,
@@ -359,10 +362,10 @@ class Scene:
     ) -> "Tune":
         """A design: numbers of the scene that are best by a goal under conditions, worst over the speeds: hb.Tune.
 
-        minimise: "mass", "deflection", "stress", "force", "torque-ripple", or a sum "0.7*deflection+0.3*mass"; maximise:
-        "stable", "frequency", "clearance:N" or "speed-range". vary: {path: (from, to)}. keep: conditions such as
-        "stable>=5". over: (from, to) in rpm, or "omega=FROM:TO". tie: {path: path} or {path: (factor, path)}. height:
-        {rod: height} for stress.
+        minimise: "mass", "deflection", "stress", "total-stress", "force", "torque-ripple", or a sum
+        "0.7*deflection+0.3*mass"; maximise: "stable", "safety", "frequency", "clearance:N" or "speed-range".
+        vary: {path: (from, to)}. keep: conditions such as "stable>=5", "safety>=1.5". over: (from, to) in rpm, or
+        "omega=FROM:TO". tie: {path: path} or {path: (factor, path)}. height: {rod: height} for stresses and safety.
         """
         from .tune import Tune
 
