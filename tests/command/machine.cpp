@@ -387,12 +387,67 @@ TEST_F(Machine, CompareSaysWhatDiffersAndWhatIsTheSame) {
   EXPECT_NE(text.out.find("same\n"), std::string::npos) << text.out;
 }
 
+TEST_F(Machine, CompareOfSweepsSaysWhatEachHasAndWhere) {
+  const std::string range = scene("slider_crank_units") + strengths + " --modes 3 ";
+  ASSERT_EQ(hb("sweep " + range + "--rpm 1000:3000:500 --no-plots --out a").status, 0);
+  ASSERT_EQ(hb("sweep " + range + "--rpm 2000:4000:500 --set piston.mass=0.6 --no-plots --out b").status, 0);
+  const CommandResult result = hb("compare a b --json --out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json found = Json::parse(result.out);
+  EXPECT_EQ(found["along"], Json({{"path", "rpm"}, {"from", 2000.0}, {"to", 3000.0}}));
+  const Json a = Json::parse(read(folder_ / "a/sweep.json")), b = Json::parse(read(folder_ / "b/sweep.json"));
+  bool stress = false, safety = false, shaking = false;
+  for (const Json& quantity : found["quantities"]) {
+    if (quantity["name"] == "stress, together") {
+      stress = true;
+      // Both grow with the speed: at 3000 rpm, point 4 of A and 2 of B.
+      EXPECT_EQ(quantity["at_a"], 3000.0);
+      EXPECT_NEAR(quantity["a"], a["rods"]["rod"]["stress"]["max_abs"][4].get<double>() * 1e-6, 1e-6);
+      EXPECT_NEAR(quantity["b"], b["rods"]["rod"]["stress"]["max_abs"][2].get<double>() * 1e-6, 1e-6);
+      EXPECT_NEAR(quantity["error_b"], b["rods"]["rod"]["stress"]["error"][2].get<double>() * 1e-6, 1e-6);
+      EXPECT_EQ(quantity["same"], false);
+    }
+    if (quantity["name"] == "safety, fatigue") {
+      safety = true;
+      EXPECT_EQ(quantity["a"], a["rods"]["rod"]["stress"]["fatigue_safety"][4]);
+    }
+    if (quantity["name"] == "shaking force") {
+      shaking = true;
+      EXPECT_NEAR(quantity["b"], b["frame"]["max"][2].get<double>(), 1e-9 * quantity["b"].get<double>());
+    }
+  }
+  EXPECT_TRUE(stress && safety && shaking);
+  EXPECT_GT(fs::file_size(folder_ / "out/compare_sweep_rod.svg"), 5000u);
+  EXPECT_GT(fs::file_size(folder_ / "out/compare_sweep_machine.svg"), 5000u);
+  // The same of scenes as of their folders.
+  const CommandResult computed = hb("compare a " + range + "--rpm 2000:4000:500 --set-b piston.mass=0.6 --json");
+  ASSERT_EQ(computed.status, 0) << computed.err;
+  EXPECT_EQ(Json::parse(computed.out)["quantities"], found["quantities"]);
+  const CommandResult text = hb("compare a b");
+  for (const char* part : {"compared from 2000 to 3000 rpm", "unstable bands: A none; B none", "resonance peaks"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << text.out;
+}
+
+TEST_F(Machine, CompareOfSweepsRefusesRangesThatDoNotMeet) {
+  const std::string range = "sweep " + scene("slider_crank_units") + " --modes 1 --only shape --no-search --no-plots ";
+  ASSERT_EQ(hb(range + "--rpm 1000:1500:500 --out a").status, 0);
+  ASSERT_EQ(hb(range + "--rpm 2000:2500:500 --out b").status, 0);
+  ASSERT_EQ(hb(range + "--rpm 2000 --x piston.mass=0.4:0.6:0.1 --out c").status, 0);
+  ASSERT_EQ(hb("steady " + scene("slider_crank_units") + " --rpm 1000 --modes 1 --no-plots --out d").status, 0);
+  for (const auto& [sides, said] :
+       {std::pair("a b", "a part in common"), {"a c", "along one number"}, {"a/sweep.json d", "d/sweep.json"}}) {
+    const CommandResult result = hb(std::string("compare ") + sides);
+    EXPECT_EQ(result.status, 2) << sides;
+    EXPECT_NE(result.err.find(said), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(Machine, CompareRefusesWhatCannotBeCompared) {
   fs::create_directory(folder_ / "empty");
   std::ofstream(folder_ / "other.json") << "{\"rods\": 3}";
   for (const auto& [arguments, said] :
        {std::pair("empty " + scene("six_link"), "empty/steady.json"),
-        std::pair(scene("six_link") + " other.json", "no answer of hb steady in other.json"),
+        std::pair(scene("six_link") + " other.json", "no answer of hb steady or hb sweep in other.json"),
         std::pair(scene("six_link") + " " + scene("mathieu") + " --omega 10", "two of one kind"),
         std::pair(scene("six_link"), "B is required"),
         std::pair(scene("six_link") + " empty --rpm 300 --modes 1 --set-b AB.J=3", "--set-b")}) {

@@ -396,7 +396,7 @@ std::vector<AlongCurves> along_curves(const ComparedSide& a, const ComparedSide&
     list.push_back(std::move(curves));
   }
   if (!a.document.contains("frame") || !b.document.contains("frame")) return list;
-  AlongCurves machine{"machine", {"largest bearing force [N]", "shaking force [N]", "rms torque [N m]"}, {}, {}};
+  AlongCurves machine{"machine", {"bearing force [N]", "shaking force [N]", "rms torque [N m]"}, {}, {}};
   const auto csv = [&](const ComparedSide& side, const char* letter) {
     const ComparedFactors f = compared_factors(side.document);
     const auto bearing = [f](const Json& part, std::size_t k) {

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <nlohmann/json.hpp>
+#include "tools/output/json.hpp"
 
 namespace hb::tools {
 namespace {
