@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
@@ -95,10 +94,10 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
       const Eigen::Index more = comparison_modes(I);
       SteadyState finer_state = solve_rod(system_with(model, rod, more), more, speed, options);
       if (finer_state.status == SteadyStatus::singular) break;
-      result.modes_error = cut_error(link, coefficients, speed, state.q, finer_state.q);
+      result.cut = cut_error(link, coefficients, speed, state.q, finer_state.q);
       result.more_modes = finer_state.q;
       stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
-      if (!grows || *result.modes_error <= settings.tolerance || I == max_modes) break;
+      if (!grows || result.cut->deflection <= settings.tolerance || I == max_modes) break;
       I = more_modes(I);
       state = I == more ? std::move(finer_state) : solve_rod(system_with(model, rod, I), I, speed, options);
     }
@@ -157,9 +156,9 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Settings& set
                                       rod.name, rod.steady->error_bound, settings.tolerance));
     }
   }
-  if (is_auto(settings.modes) && rod.modes_error && !(*rod.modes_error <= settings.tolerance)) {
+  if (is_auto(settings.modes) && rod.cut && !(rod.cut->deflection <= settings.tolerance)) {
     sentences.push_back(fmt::format("{}: with {} modes the error of the cut is {:.1e}, above the tolerance {:.1e}",
-                                    rod.name, rod.num_modes, *rod.modes_error, settings.tolerance));
+                                    rod.name, rod.num_modes, rod.cut->deflection, settings.tolerance));
   }
   if (rod.growth_modes_error && !(*rod.growth_modes_error <= settings.tolerance)) {
     sentences.push_back(
@@ -242,26 +241,6 @@ void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
 Only available(const SceneModel& model, Only only) {
   if (!model.linkage()) only.reactions = only.shape = false;
   return only;
-}
-
-double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
-                 const FourierSeries& finer) {
-  // The error of I modes falls at least like I^-3, and I grows by half: the difference is at least 1 - 1.5^-3 = 0.7 of
-  // the error. The factor 2 covers that and neighbouring modes of unequal weight (chosen by experiment).
-  constexpr double safety = 2;
-  // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic.
-  const Eigen::Index num_x = std::max<Eigen::Index>(33, 4 * finer.num_components() + 1);
-  const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
-  // A power of two, whose transform is planned at once.
-  const auto num_samples =
-      static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(4 * std::max<Eigen::Index>(16, harmonics))));
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
-  const Eigen::MatrixXd w = rod_field(link, rod, speed, q, x, num_samples).w;
-  end_if_wished();
-  const Eigen::MatrixXd w_finer = rod_field(link, rod, speed, finer, x, num_samples).w;
-  const double scale = w_finer.cwiseAbs().maxCoeff();
-  if (scale == 0) return 0;
-  return safety * ((w - w_finer).cwiseAbs().maxCoeff() / scale);
 }
 
 const char* method_text(SteadyMethod method) {
@@ -371,7 +350,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       entry.num_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
     if (only.steady || only.shape || only.reactions || auto_modes) {
       solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry.num_modes, entry, stages);
-      if (!shows_cut) entry.modes_error.reset();
+      if (!shows_cut) entry.cut.reset();
     } else {
       stages.push_back({"steady state of " + rod.name, 0, "not asked for", true});
     }
@@ -384,6 +363,9 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       entry.shape = rod_shape(link_of(model, rod), coefficients_of(model, rod), speed, entry.steady->q);
       entry.stress =
           rod_stress(link_of(model, rod), coefficients_of(model, rod), speed, entry.shape->bending_moment.max_abs);
+      if (entry.cut)
+        entry.peak_errors =
+            peak_errors(link_of(model, rod), *entry.shape, entry.steady->q, entry.steady->error_bound, *entry.cut);
       stages.push_back({"shape of " + rod.name, watch.seconds(), ""});
     }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/cut_error.hpp"
 #include "hb/analysis/force_error.hpp"
 #include "hb/analysis/request.hpp"
 #include "hb/analysis/rod_stress.hpp"
@@ -59,12 +60,12 @@ struct RodResult {
   Eigen::Index num_exponents = 0;  // of its system
   std::optional<SteadyState> steady;  // q_1..q_I
   std::vector<Extremum> max_abs;  // of each q_i over the turn
-  // Estimated max |error of w| / max |w| over rod and turn from cutting the Ritz series, quasi-static tail included.
-  std::optional<double> modes_error;
+  std::optional<CutError> cut;
   // With modes = "auto": estimated error of the growth rate from cutting the Ritz series, relative to the larger of
   // itself and the speed.
   std::optional<double> growth_modes_error;
   std::optional<RodShape> shape;
+  std::optional<PeakErrors> peak_errors;  // of the shape, where the error of the cut was asked for
   std::optional<RodStress> stress;  // beside the shape
   std::optional<Stability> stability;
   bool growth_alone = false;  // exponents other than the leading ones were not asked for
@@ -102,20 +103,12 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
 [[nodiscard]] const char* method_text(SteadyMethod method);
 
 // The cut of the Ritz series leaves a visible part of the deflection out.
-[[nodiscard]] inline bool needs_more_modes(const RodResult& rod) {
-  return rod.modes_error && !(*rod.modes_error <= 0.01);
-}
+[[nodiscard]] inline bool needs_more_modes(const RodResult& rod) { return rod.cut && !(rod.cut->deflection <= 0.01); }
 
 // Exponents that were looked for, not resolved and not listed, of num_exponents.
 [[nodiscard]] inline Eigen::Index unresolved_exponents(const RodResult& rod) {
   if (rod.stability->method == StabilityMethod::bound || rod.growth_alone) return 0;
   return rod.num_exponents - static_cast<Eigen::Index>(rod.stability->exponents.size());
 }
-
-// Number of modes that I modes are compared with to see the error of the cut: I + max(3, I/2).
-
-// Estimate described at RodResult::modes_error from two solutions of the same rod, the second with more modes.
-[[nodiscard]] double cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
-                               const FourierSeries& finer);
 
 }  // namespace hb

@@ -155,7 +155,8 @@ TEST_F(Steady, JsonHasTheKeysOfTheContract) {
     EXPECT_LE(rod["error_bound"], 1e-10);
     EXPECT_GT(rod["modes_error"], 0.0);
     for (const char* peak : {"deflection", "bending_moment"}) {
-      for (const char* key : {"max_abs", "x", "crank_angle"}) EXPECT_TRUE(rod[peak][key].is_number()) << peak << key;
+      for (const char* key : {"max_abs", "x", "crank_angle", "error"})
+        EXPECT_TRUE(rod[peak][key].is_number()) << peak << key;
     }
     EXPECT_EQ(rod["exponents"][0].size(), 2u);
     EXPECT_EQ(rod["exponents"].size(), rod["exponent_errors"].size());

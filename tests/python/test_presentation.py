@@ -1,6 +1,8 @@
 """Tables, pictures, pages and notebooks."""
 
+import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -125,6 +127,15 @@ def test_pages_are_written_whole(tmp_path, six_link, steady, sweep, map):
         assert page.startswith("<!DOCTYPE html>") and page.rstrip().endswith("</html>")
     assert 'id="speed"' in (tmp_path / "sweep.html").read_text()
     assert 'id="map"' in (tmp_path / "both.html").read_text()
+
+
+@pytest.mark.skipif(not pathlib.Path("/usr/share/javascript/dygraphs").exists(), reason="libjs-dygraphs is missing")
+def test_a_page_has_the_bands_of_its_answer(tmp_path, six_link):
+    steady = six_link.steady(rpm=300, modes=1, band="damping=0.5:2")
+    steady.report(tmp_path / "band.html")
+    page = (tmp_path / "band.html").read_text()
+    inside = json.loads(re.search('<script type="application/json" id="report-data">(.*?)</script>', page, re.S)[1])
+    assert inside["bands"] == steady.to_dict()["bands"]
 
 
 def test_pages_that_cannot_be_written_are_told(steady, tmp_path):

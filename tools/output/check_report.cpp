@@ -136,7 +136,13 @@ void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck
   const auto cells = [](const std::optional<Comparison>& c) {
     return c ? fmt::format("{:>10.2e} {:>10.2e}", c->difference, c->allowed) : fmt::format("{:>21}", "");
   };
-  for (const SpeedCheck& check : checks) {
+  const std::vector<std::size_t> some = shown_rows(checks.size());
+  std::size_t shown = 0;
+  for (std::size_t k = 0; k < checks.size(); ++k) {
+    const SpeedCheck& check = checks[k];
+    const bool compared = std::ranges::all_of(check.rods, &RodCheck::compared);
+    if (compared && check.agrees() && !std::ranges::binary_search(some, k)) continue;
+    ++shown;
     const double speed = speed_column(check.speed);
     for (const RodCheck& rod : check.rods) {
       if (!rod.compared()) {
@@ -151,6 +157,8 @@ void add_range(Text& text, const SceneModel& model, const std::vector<SpeedCheck
                                     {"torque", check.joints->torque}})
         add(text, "{:>10}  {:<12} {} {:>53}{}\n", "", name, cells(c), "", c.agrees() ? "yes" : "NO");
   }
+  if (shown < checks.size())
+    add(text, "  ({} of {} speeds, the others agree; --json and --out have all)\n", shown, checks.size());
   if (const std::optional<WorstComparison> worst = worst_comparison(checks))
     add(text, "\nworst case: {} at {}, {}\n", worst->where, speed_text(worst->speed, model.scene),
         differs(worst->comparison, units));

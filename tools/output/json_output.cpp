@@ -127,13 +127,12 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
     if (result.computed.steady) add_steady(entry, rod, units);
     if (result.computed.steady) add_resonance(entry, model.rods[r], rod, result.speed, units);
     if (model.linkage()) add_theory(entry, result.theory, r);
-    if (rod.modes_error) {
-      entry["modes_error"] = *rod.modes_error;
+    if (rod.cut) {
+      entry["modes_error"] = rod.cut->deflection;
       entry["more_modes_needed"] = needs_more_modes(rod);
     }
     if (rod.shape) {
-      entry["deflection"] = peak_json(rod.shape->deflection, units);
-      entry["bending_moment"] = peak_json(rod.shape->bending_moment, units);
+      add_shape(entry, *rod.shape, rod.peak_errors, units);
       entry["static_deflection"] = static_json(model, result, r);
       add_stress(entry, *rod.stress);
       add_stress_cycle(entry["stress"], model, result, r);

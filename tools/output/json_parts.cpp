@@ -26,6 +26,13 @@ Json peak_json(const RodPeak& peak, const Units& units) {
   return {{"max_abs", peak.max_abs}, {"x", peak.x}, {"crank_angle", scene_angle(peak.crank_angle, units)}};
 }
 
+void add_shape(Json& rod, const RodShape& shape, const std::optional<PeakErrors>& errors, const Units& units) {
+  rod["deflection"] = peak_json(shape.deflection, units);
+  if (errors) rod["deflection"]["error"] = number(errors->deflection);
+  rod["bending_moment"] = peak_json(shape.bending_moment, units);
+  if (errors) rod["bending_moment"]["error"] = number(errors->bending_moment);
+}
+
 Json stability_json(const Stability& stability, Eigen::Index num_exponents) {
   Json json;
   Json exponents = Json::array(), errors = Json::array();

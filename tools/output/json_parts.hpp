@@ -3,7 +3,9 @@
 
 #include <complex>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "hb/analysis/cut_error.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "lib/linkage/joint_forces.hpp"
 #include "lib/rod/rod.hpp"
@@ -19,6 +21,8 @@ namespace hb::tools {
 // Per component [[re, im], ...].
 [[nodiscard]] Json fourier_json(const FourierSeries& series);
 [[nodiscard]] Json peak_json(const RodPeak& peak, const Units& units);
+// "deflection" and "bending_moment" of a rod.
+void add_shape(Json& rod, const RodShape& shape, const std::optional<PeakErrors>& errors, const Units& units);
 // [[re, im], ...].
 [[nodiscard]] Json exponents_json(const std::vector<Exponent>& exponents);
 // Exponents with their errors, growth rate, verdict; of `num_exponents` that there are.

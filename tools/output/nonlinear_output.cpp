@@ -12,6 +12,7 @@
 #include "tools/output/json_parts.hpp"
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/shape_rows.hpp"
 #include "tools/output/stress_words.hpp"
 #include "tools/output/text.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -35,13 +36,12 @@ Json rod_json(const NonlinearRod& rod, const Linkage& linkage, const NonlinearRe
   if (result.computed.steady)
     json["q"] = {{"max_abs", std::move(max_abs)}, {"crank_angle", std::move(angles)}, {"fourier", fourier_json(rod.q)}};
   json["error_bound"] = number(rod.error_bound);
-  if (rod.modes_error) {
-    json["modes_error"] = *rod.modes_error;
-    json["more_modes_needed"] = !(*rod.modes_error <= 0.01);
+  if (rod.cut) {
+    json["modes_error"] = rod.cut->deflection;
+    json["more_modes_needed"] = !(rod.cut->deflection <= 0.01);
   }
   if (rod.shape) {
-    json["deflection"] = peak_json(rod.shape->deflection, units);
-    json["bending_moment"] = peak_json(rod.shape->bending_moment, units);
+    add_shape(json, *rod.shape, rod.peak_errors, units);
     if (rod.stress) {
       add_stress(json, *rod.stress);
       if (const std::optional<double> least = least_yield_safety(*rod.stress, *body_at(linkage, rod.link)))
@@ -62,20 +62,19 @@ void add_rod(Text& text, const NonlinearRod& rod, const Linkage& linkage, const 
       rod.q.num_harmonics());
   add(text, "  q_i: amplitude of sin(i pi x/l), largest over the motion\n");
   add(text, "    {:>3}  {:>18}  {:>18}\n", "i", "max |q_i| [" + units.length + "]", "crank angle [deg]");
+  const double largest = std::ranges::max(rod.max_abs, {}, &Extremum::value).value;
   for (std::size_t i = 0; i < rod.max_abs.size(); ++i)
-    add(text, "    {:>3}  {:>18.10g}  {:>18.3f}\n", i + 1, rod.max_abs[i].value,
+    add(text, "    {:>3}  {:>18.{}g}  {:>18.3f}\n", i + 1, rod.max_abs[i].value,
+        std::min(10, trusted_digits(rod.max_abs[i].value, rod.error_bound * largest)),
         rod.max_abs[i].crank_angle * degrees_per_radian);
   add(text, "  error bound       {:.1e} of the largest |q|, estimated\n", rod.error_bound);
-  if (rod.modes_error)
-    add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
-        *rod.modes_error <= 0.01 ? "" : "; MORE MODES ARE NEEDED (--modes)");
-  const auto peak = [&](const char* name, const RodPeak& at, double factor, const std::string& unit) {
-    add(text, "  {:<16}  {:.8g} {} at x = {:.5g} {}, crank angle {:.3f} deg\n", name, at.max_abs * factor, unit, at.x,
-        units.length, at.crank_angle * degrees_per_radian);
-  };
+  if (rod.cut)
+    add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", rod.cut->deflection,
+        rod.cut->deflection <= 0.01 ? "" : "; MORE MODES ARE NEEDED (--modes)");
   if (rod.shape) {
-    peak("deflection", rod.shape->deflection, 1, units.length);
-    peak("bending moment", rod.shape->bending_moment, units.moment, "N m");
+    const std::optional<PeakErrors>& errors = rod.peak_errors;
+    add(text, "{}", deflection_row(rod.shape->deflection, errors, units));
+    add(text, "{}", moment_row(rod.shape->bending_moment, errors, units));
   }
   if (rod.stress) {
     const Body& link = *body_at(linkage, rod.link);

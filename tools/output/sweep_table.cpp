@@ -45,16 +45,6 @@ std::string growth_digits(const Stability& stability) {
                      std::min(6, trusted_digits(stability.growth_rate, stability.growth_error)));
 }
 
-// Rows of the table: every so many points, and the last.
-std::vector<std::size_t> shown_rows(std::size_t count) {
-  constexpr std::size_t most = 16;
-  const std::size_t every = (count + most - 1) / most;
-  std::vector<std::size_t> rows;
-  for (std::size_t k = 0; k < count; k += every) rows.push_back(k);
-  if (rows.back() != count - 1) rows.push_back(count - 1);
-  return rows;
-}
-
 bool is_doubtful(const RodPoint& point) { return beyond_theory(point.theory_error) || beyond_limits(point); }
 
 void add_point(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r, const SweepPoint& point,

@@ -11,6 +11,7 @@
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/shape_rows.hpp"
 #include "tools/output/stress_words.hpp"
 #include "tools/output/text.hpp"
 #include "tools/output/theory_words.hpp"
@@ -90,15 +91,6 @@ void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size
         rough_share(*rod.axial_share));
 }
 
-// As many digits as the modes kept leave.
-void add_peak(Text& text, const char* name, const RodPeak& peak, double factor, const std::string& unit,
-              const OutputUnits& units, double relative_error) {
-  const double value = peak.max_abs * factor;
-  add(text, "  {:<16}  {:.{}g} {} at x = {:.4g} {}, crank angle {:.2f} deg\n", name, value,
-      std::min(8, trusted_digits(value, relative_error * value)), unit, peak.x, units.length,
-      peak.crank_angle * degrees_per_radian);
-}
-
 void add_stability(Text& text, const RodModel& model, const RodResult& rod, double speed, const Scene& scene,
                    bool multipliers) {
   const Stability& stability = *rod.stability;
@@ -163,17 +155,14 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     add(text, "\n");
     if (rod.steady && result.computed.steady) add_steady(text, model, r, result, settings.tolerance);
     if (is_linkage) add_theory(text, result.theory, r);
-    if (rod.modes_error) {
-      add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", *rod.modes_error,
+    if (rod.cut) {
+      add(text, "  error of the cut  {:.1e} of the largest deflection, estimated{}\n", rod.cut->deflection,
           !needs_more_modes(rod) ? "" : "; MORE MODES ARE NEEDED (--modes)");
     }
     if (rod.shape) {
-      const double error = rod.modes_error.value_or(0) + (rod.steady ? rod.steady->error_bound : 0);
-      add_peak(text, "deflection", rod.shape->deflection, 1, units.length, units, error);
+      add(text, "{}", deflection_row(rod.shape->deflection, rod.peak_errors, units));
       add(text, "{}", static_row(model, result, r));
-      // The moment's series converges two powers of I more slowly.
-      add_peak(text, "bending moment", rod.shape->bending_moment, units.moment, "N m", units,
-               error * static_cast<double>(rod.num_modes * rod.num_modes));
+      add(text, "{}", moment_row(rod.shape->bending_moment, rod.peak_errors, units));
     }
     if (rod.stress) add(text, "{}", stress_lines(*rod.stress, *body_at(*model.linkage(), rod.link), units));
     add(text, "{}", stress_rows(model, result, r));

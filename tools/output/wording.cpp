@@ -93,4 +93,13 @@ const char* status_text(SteadyStatus status) {
   return "singular";
 }
 
+std::vector<std::size_t> shown_rows(std::size_t count) {
+  constexpr std::size_t most = 16;
+  const std::size_t every = (count + most - 1) / most;
+  std::vector<std::size_t> rows;
+  for (std::size_t k = 0; k < count; k += every) rows.push_back(k);
+  if (rows.back() != count - 1) rows.push_back(count - 1);
+  return rows;
+}
+
 }  // namespace hb::tools

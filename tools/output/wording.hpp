@@ -32,5 +32,7 @@ inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided
 [[nodiscard]] std::string force_frames(const std::vector<std::string>& elastic_rockers);
 [[nodiscard]] std::vector<std::string> elastic_rockers(const Linkage& linkage);
 [[nodiscard]] const char* status_text(SteadyStatus status);
+// Of `count` points those that a table shows: every so many, at most 17, and the last.
+[[nodiscard]] std::vector<std::size_t> shown_rows(std::size_t count);
 
 }  // namespace hb::tools

@@ -144,7 +144,7 @@ std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& argumen
     answer->result = tools::as_speed_result(*answer->nonlinear);
     answer->result.shortfalls = answer->nonlinear->shortfalls;
     for (std::size_t r = 0; r < answer->result.rods.size(); ++r)
-      answer->result.rods[r].modes_error = answer->nonlinear->rods[r].modes_error;
+      answer->result.rods[r].cut = answer->nonlinear->rods[r].cut;
     return answer;
   });
 }
@@ -300,7 +300,11 @@ void add_rod(py::module_& module) {
           },
           "Bound on max |error of q| / max |q| for this number of modes.")
       .def_property_readonly(
-          "modes_error", [](const RodView& rod) { return optional(rod.result().modes_error); },
+          "modes_error",
+          [](const RodView& rod) -> py::object {
+            const auto& cut = rod.result().cut;
+            return cut ? py::cast(cut->deflection) : py::none();
+          },
           "Estimated relative error of the deflection from cutting the Ritz series; None: not asked.")
       .def_property_readonly(
           "theory_error",

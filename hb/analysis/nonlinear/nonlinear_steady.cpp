@@ -91,10 +91,11 @@ void add_rods(const SceneModel& model, const ExactModel& exact, const std::optio
       f.c *= power;
       power *= result.speed / base;
     }
-    if (finer) rod.modes_error = cut_error(body, coefficients, base, rod.q, (*finer)[r]);
+    if (finer) rod.cut = cut_error(body, coefficients, base, rod.q, (*finer)[r]);
     if (result.computed.shape) {
       rod.shape = rod_shape(body, coefficients, base, rod.q);
       bend(rod.shape->bending_moment, rod.q, body.length);
+      if (rod.cut) rod.peak_errors = peak_errors(body, *rod.shape, rod.q, rod.error_bound, *rod.cut);
       rod.stress = bent_stress(body, tension[r], coefficients, base, rod.shape->bending_moment.max_abs);
     }
     // Over the turns.
@@ -239,7 +240,7 @@ NonlinearResult with_automatic_modes(SceneModel model, double speed, Settings se
     for (std::size_t r = 0; r < model.rods.size(); ++r) {
       const NonlinearRod& rod = result.rods[r];
       const Index I = rod.q.num_components();
-      const bool enough = rod.modes_error && *rod.modes_error <= wanted;
+      const bool enough = rod.cut && rod.cut->deflection <= wanted;
       const Index more = enough ? I : more_modes(I);
       grows = grows || more > I;
       if (more > I) set_modes(model, r, more);
@@ -256,10 +257,10 @@ NonlinearResult with_automatic_modes(SceneModel model, double speed, Settings se
   result.others = std::move(others);
   result.cut_tolerance = wanted;
   for (const NonlinearRod& rod : result.rods)
-    if (!(rod.modes_error && *rod.modes_error <= wanted))
+    if (!(rod.cut && rod.cut->deflection <= wanted))
       result.shortfalls.push_back(fmt::format("{}: with {} modes the error of the cut is {:.1e}, above {:.1e}",
-                                              rod.name, rod.q.num_components(), rod.modes_error.value_or(HUGE_VAL),
-                                              wanted));
+                                              rod.name, rod.q.num_components(),
+                                              rod.cut ? rod.cut->deflection : HUGE_VAL, wanted));
   return result;
 }
 

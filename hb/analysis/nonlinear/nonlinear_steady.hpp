@@ -26,8 +26,8 @@ struct NonlinearRod {
   FourierSeries q = {};  // harmonic k is k Omega/T
   std::vector<Extremum> max_abs = {};  // of each q_i; crank angles over the T turns
   double error_bound = 0;  // estimate of max |error of q_i| / max |q_i|, for the number of modes kept
-  // Estimated max |error of w| / max |w| from cutting the Ritz series: the motion once more with more modes.
-  std::optional<double> modes_error = std::nullopt;
+  std::optional<CutError> cut = std::nullopt;  // the motion once more with more modes
+  std::optional<PeakErrors> peak_errors = std::nullopt;  // of the shape, beside `cut`
   std::optional<RodShape> shape = std::nullopt;  // the moment EJ kappa, kappa = w''/cos psi
   std::optional<RodStress> stress = std::nullopt;  // beside it, with the axial force along the bent rod
 };
@@ -48,7 +48,7 @@ struct NonlinearResult {
   double speed = 0;  // rad per unit time
   int turns = 1;
   double tolerance = 0;  // that the motion was solved to: the one asked for, at least 1e-9
-  // With modes = "auto": what modes_error was to come below, the tolerance asked for, at least 2e-8.
+  // With modes = "auto": what cut->deflection was to come below, the tolerance asked for, at least 2e-8.
   std::optional<double> cut_tolerance;
   Only computed;
   MotionSearch search = MotionSearch::none;
@@ -81,7 +81,7 @@ void require_nonlinear(const SceneModel& model, int turns);
                                                const NonlinearOptions& options = {});
 
 // A motion that is known already, solved to `tolerance` at its speed, as such an answer: shape, forces and their errors
-// of this motion alone; modes_error and other motions, which take further motions, are left out.
+// of this motion alone; cut and other motions, which take further motions, are left out.
 [[nodiscard]] NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
                                                const std::optional<Stability>& stability, double tolerance,
                                                const Settings& settings);

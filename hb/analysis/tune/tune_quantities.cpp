@@ -168,25 +168,6 @@ namespace {
 // A difference of two answers, the second with half as many modes again, is at least half of the first one's error.
 constexpr double safety = 2;
 
-// max |error of EJ w''| / max |EJ w''| over rod and turn, as modes_error is of w.
-double moment_cut_error(const SceneModel& model, const RodModel& rod, double speed, const RodResult& result) {
-  if (result.more_modes.c.size() == 0) return HUGE_VAL;
-  const Body& link = *body_at(*model.linkage(), rod.link);
-  const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
-  const FourierSeries &q = result.steady->q, &finer = result.more_modes;
-  const Eigen::Index num_x = std::max<Eigen::Index>(33, 4 * finer.num_components() + 1);
-  const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
-  const auto num_samples =
-      static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(4 * std::max<Eigen::Index>(16, harmonics))));
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
-  const auto moment = [&](const FourierSeries& response) {
-    return rod_field(link, coefficients, speed, response, x, num_samples).bending_moment;
-  };
-  const Eigen::MatrixXd fine = moment(finer), difference = moment(q) - fine;
-  const double scale = fine.cwiseAbs().maxCoeff();
-  return scale == 0 ? 0 : safety * difference.cwiseAbs().maxCoeff() / scale;
-}
-
 // The largest |w| or |EJ w''| over speed, place and crank angle at once, from where it was found speed by speed.
 void seek_jointly(MetricValue& value, const SceneModel& model, const SpeedSpan& span, const Settings& settings,
                   bool stress) {
@@ -223,19 +204,20 @@ void seek_jointly(MetricValue& value, const SceneModel& model, const SpeedSpan& 
 void complete_shape(MetricValue& value, const SceneModel& model, const SpeedResult& at, bool stress) {
   const RodModel& rod = model.rods[value.index];
   const RodResult& result = at.rods[value.index];
-  // |error of q_i| <= bound max |q|: in w = sum q_i sin(i pi x/l) at most I times that, in w'' sum i^2 times.
-  const auto I = static_cast<double>(result.steady->q.num_components());
-  const double sum = stress ? I * (I + 1) * (2 * I + 1) / 6 : I;
-  double relative = sum * result.steady->error_bound;
   if (rod.link < 0) {
     value.crank_angle = shape_of(model, rod, at.speed, result.steady->q).deflection.crank_angle;
-  } else {
-    const RodPeak& peak = stress ? result.shape->bending_moment : result.shape->deflection;
-    value.position = peak.x / body_at(*model.linkage(), rod.link)->length;
-    value.crank_angle = peak.crank_angle;
-    relative += stress ? moment_cut_error(model, rod, at.speed, result) : result.modes_error.value_or(HUGE_VAL);
+    // |error of q_i| <= bound max |q|, in their sum at most I times that.
+    value.error =
+        static_cast<double>(result.steady->q.num_components()) * result.steady->error_bound * std::abs(value.value);
+    return;
   }
-  value.error = relative * std::abs(value.value);
+  const RodPeak& peak = stress ? result.shape->bending_moment : result.shape->deflection;
+  value.position = peak.x / body_at(*model.linkage(), rod.link)->length;
+  value.crank_angle = peak.crank_angle;
+  value.error = HUGE_VAL;
+  if (!result.peak_errors) return;
+  const double error = stress ? result.peak_errors->bending_moment : result.peak_errors->deflection;
+  value.error = peak.max_abs > 0 ? error / peak.max_abs * std::abs(value.value) : 0;
 }
 
 void complete_force(MetricValue& value, const SpeedResult& at, bool torque) {

@@ -136,7 +136,7 @@ class MapPlot {
     const xTicks = niceTicks(x0, x1, Math.max(3, Math.round(box.width / 120))), yTicks = niceTicks(y0, y1, 6);
     const narrow = box.width < 560;
     this.left = 14 + Math.max(...yTicks.map((v) => pen.measureText(tickText(v, yTicks)).width));
-    this.right = box.width - (narrow ? 62 : 86);
+    this.right = box.width - 36 - Math.max(...this.barValues().map((v) => pen.measureText(short(v, 2)).width));
     this.top = 26;
     this.bottom = box.height - 42;
     const width = this.right - this.left, height = this.bottom - this.top;
@@ -203,6 +203,11 @@ class MapPlot {
       }
     }
   }
+  barValues() {
+    const values = [0];
+    for (let e = Math.floor(Math.log10(this.scale)); e <= Math.log10(this.largest); ++e) for (const s of [1, -1]) values.push(s * Math.pow(10, e));
+    return values;
+  }
   colourBar(pen, box, narrow) {
     const left = this.right + 14, wide = 14, limit = Math.asinh(this.largest / this.scale), height = this.bottom - this.top;
     for (let p = 0; p < height; ++p) {
@@ -212,10 +217,8 @@ class MapPlot {
     }
     pen.fillStyle = colours.muted;
     pen.textAlign = "left"; pen.textBaseline = "middle";
-    const values = [0];
-    for (let e = Math.floor(Math.log10(this.scale)); e <= Math.log10(this.largest); ++e) for (const s of [1, -1]) values.push(s * Math.pow(10, e));
     const taken = [];
-    for (const v of values) {
+    for (const v of this.barValues()) {
       const y = this.top + (height * (1 - Math.asinh(v / this.scale) / limit)) / 2;
       if (y < this.top - 2 || y > this.bottom + 2 || taken.some((t) => Math.abs(t - y) < 15)) continue;
       taken.push(y);

@@ -53,7 +53,7 @@ const rodRows = (rod, numbers) => {
   for (const [key, [name, unit, factor]] of Object.entries(named)) {
     const peak = own[key];
     if (!peak) continue;
-    add(name, cell(peak.max_abs, {factor, unit, digits: 6, path: path(`${key}.max_abs`), relative: key === "deflection" && own.modes_error !== undefined && own.modes_error !== null ? own.modes_error + (own.error_bound || 0) : undefined}));
+    add(name, cell(peak.max_abs, {factor, unit, digits: 6, path: path(`${key}.max_abs`), error: peak.error}));
     rows.push(element("tr", {}, element("td", {colspan: 2, class: "words error"}, `at x = ${short(peak.x)} ${units.length}, crank angle ${short(peak.crank_angle * units.degrees, 5)}°`)));
   }
   for (const [name, cells] of strengthRows(own, path)) add(name, cells);

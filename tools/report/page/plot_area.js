@@ -2,13 +2,17 @@
 const niceTicks = (low, high, wanted) => {
   const range = high - low;
   if (!(range > 0) || !Number.isFinite(range)) return [low];
-  // The smallest round step that gives no more than `wanted` intervals; at least three of them where that is possible.
+  // The smallest round step that gives no more than `wanted` intervals; where that leaves less than three ticks, the
+  // next smaller one.
   const power = Math.pow(10, Math.floor(Math.log10(range / wanted)));
   const steps = [1, 2, 5, 10].map((m) => m * power);
-  const size = steps.find((s) => range / s <= wanted && range / s >= 2) || steps.find((s) => range / s <= wanted);
-  const ticks = [];
-  for (let k = Math.ceil(low / size - 1e-9); k * size <= high + 1e-9 * size; ++k) ticks.push(k * size);
-  return ticks;
+  const ticksOf = (size) => {
+    const ticks = [];
+    for (let k = Math.ceil(low / size - 1e-9); k * size <= high + 1e-9 * size; ++k) ticks.push(k * size);
+    return ticks;
+  };
+  const fitting = steps.filter((s) => range / s <= wanted), ticks = ticksOf(fitting[0]);
+  return ticks.length >= 3 ? ticks : ticksOf(steps[Math.max(0, steps.indexOf(fitting[0]) - 1)]);
 };
 const tickText = (value, ticks) => {
   const size = ticks.length > 1 ? ticks[1] - ticks[0] : Math.abs(value) || 1;
