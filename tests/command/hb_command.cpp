@@ -251,6 +251,9 @@ TEST_F(Command, NewWritesScenesThatRunAtOnce) {
   EXPECT_EQ(read(folder_ / "hill.toml"), before);
   EXPECT_EQ(hb("new four-bar mine.toml").status, 0);
   EXPECT_TRUE(fs::exists(folder_ / "mine.toml"));
+  const CommandResult shown = hb("new four-bar -");
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  EXPECT_EQ(shown.out, read(folder_ / "mine.toml"));
   const CommandResult unknown = hb("new fourbar");
   EXPECT_EQ(unknown.status, 2);
   EXPECT_NE(unknown.err.find("found \"fourbar\" (four-bar meant?), allowed: slider-crank"), std::string::npos)

@@ -14,6 +14,7 @@
 #include "lib/scene/scene_keys.hpp"
 #include "lib/scene/scene_reader.hpp"
 #include "tools/command/command.hpp"
+#include "tools/output/standard_output.hpp"
 #include "tools/templates/scene_templates.hpp"
 
 namespace hb::tools {
@@ -56,6 +57,10 @@ void write_new_file(const std::string& name, std::string_view text) {
 
 int run_new(const std::string& kind, const std::string& file) {
   const SceneTemplate& scene = template_of(kind);
+  if (file == "-") {
+    print_out(std::string(scene.text));
+    return exit_ok;
+  }
   const std::string name = file.empty() ? kind + ".toml" : file;
   write_new_file(name, scene.text);
   fmt::print("{0} written. Next: hb scene {0}, hb steady {0}\n", hb::printable(name));
@@ -68,7 +73,7 @@ void add_new_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("new", "writes a commented scene that runs at once");
   const auto kind = std::make_shared<std::string>(), file = std::make_shared<std::string>();
   command->add_option("KIND", *kind, fmt::format("{}", fmt::join(kinds(), ", ")))->required();
-  command->add_option("FILE", *file, "the new file; default KIND.toml");
+  command->add_option("FILE", *file, "the new file; default KIND.toml; -: standard output");
   command->callback([kind, file, &status] { status = run_new(*kind, *file); });
 }
 
