@@ -19,13 +19,15 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Harmonics of q smaller than `negligible` of the largest are left out; `tolerance` is asked of the correction.
+// Harmonics of q smaller than `negligible` of the largest are left out, but at least so many are kept; `stiffness` of C
+// is left out where the exact model is compared with the linear one; `tolerance` is asked of the correction.
 struct Accuracy {
-  double negligible, tolerance;
+  double negligible, stiffness, tolerance;
+  Index least_harmonics;
 };
-constexpr Accuracy of_theory_error{3e-6, 3e-5};
+constexpr Accuracy of_theory_error{3e-6, 1e-13, 3e-5, 8};
 // Enough to see whether the second correction matters.
-constexpr Accuracy of_second_look{1e-3, 1e-2};
+constexpr Accuracy of_second_look{3e-3, 1e-7, 2e-2, 7};
 // Below the first, of the correction times the amplification next to the nearest resonance, one correction shows the
 // change to within a tenth (by random linkages); so it does where the second one has the same size to within the other.
 constexpr double harmless = 0.015, most_second = 0.07;
@@ -35,15 +37,16 @@ constexpr double sharp = 10;
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods, double negligible) {
   std::vector<FourierSeries> q;
   for (const LinearRod& rod : rods) {
-    const FourierSeries all(MatrixXd(rod.q->c.cwiseAbs().colwise().maxCoeff()).cast<std::complex<double>>());
+    const FourierSeries all(
+        MatrixXd(rod.q->c.cwiseAbs2().colwise().maxCoeff().cwiseSqrt()).cast<std::complex<double>>());
     q.push_back(fourier::resized(*rod.q, fourier::significant_harmonics(all, negligible)));
   }
   return q;
 }
 
 // Products of three responses do not fold onto their own harmonics.
-Index num_samples(const std::vector<FourierSeries>& q) {
-  Index H = 8;
+Index num_samples(const std::vector<FourierSeries>& q, const Accuracy& accuracy) {
+  Index H = accuracy.least_harmonics;
   for (const FourierSeries& series : q) H = std::max(H, series.num_harmonics());
   return fourier::fast_length(4 * H + 2);
 }
@@ -72,40 +75,55 @@ FourierSeries without_small(const FourierSeries& C, Index I, double relative) {
 
 // M q'' + B q' + C q - h at the samples.
 MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd& q, const MatrixXd& q1,
-                         const MatrixXd& q2) {
-  constexpr double exact = 1e-13;
+                         const MatrixXd& q2, double negligible_stiffness) {
   const Index I = system.num_modes(), N = q.cols();
   MatrixXd r = system.mass * q2 + system.damping * q1;
-  const MatrixXd C = values(without_small(stiffness_at(system, speed), I, exact), N);
+  const MatrixXd C = values(without_small(stiffness_at(system, speed), I, negligible_stiffness), N);
   for (Index j = 0; j < N; ++j) r.col(j).noalias() += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I) * q.col(j);
   const FourierSeries h = load_at(system, speed);
   if (h.c.size() > 0) r -= values(h, N);
   return r;
 }
 
-// What the system's q answer to the load on them given by samples; empty at resonance.
-std::optional<FourierSeries> response(const HillSystem& system, double speed, const MatrixXd& load, double tolerance) {
-  const HillSystem loaded{system.mass,
-                          system.damping,
-                          {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * tolerance), {}, {}},
-                          {on_unknowns(fourier::analyse(load), system.num_modes()), {}, {}}};
-  if (!loaded.load[0].c.allFinite()) return std::nullopt;
-  if (const auto q = rough_steady_state(loaded, speed, tolerance)) return ritz_coordinates(*q, load.rows());
-  const SteadyState state = solve_steady_state(loaded, speed, {.tolerance = tolerance});
-  if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
-  return ritz_coordinates(state.q, load.rows());
-}
+// One linear rod's answers to loads at one speed.
+class Answers {
+ public:
+  Answers(const HillSystem& system, double speed, double tolerance)
+      : speed_(speed),
+        unloaded_{system.mass,
+                  system.damping,
+                  {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * tolerance), {}, {}},
+                  {}},
+        rough_(unloaded_, speed) {}
+
+  // What q answer to the load on them given by samples; empty at resonance.
+  std::optional<FourierSeries> operator()(const MatrixXd& samples, double tolerance) {
+    FourierSeries load = on_unknowns(fourier::analyse(samples), unloaded_.num_modes());
+    if (!load.c.allFinite()) return std::nullopt;
+    if (const auto q = rough_.solve(load, tolerance)) return ritz_coordinates(*q, samples.rows());
+    HillSystem loaded = unloaded_;
+    loaded.load[0] = std::move(load);
+    const SteadyState state = solve_steady_state(loaded, speed_, {.tolerance = tolerance});
+    if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
+    return ritz_coordinates(state.q, samples.rows());
+  }
+
+ private:
+  double speed_;
+  HillSystem unloaded_;
+  RoughSolver rough_;
+};
 
 double ratio(double change, double size) { return change == 0 ? 0 : change / size; }
 
-// Largest |sum_i q_i sin(i pi x/l)| over the samples and points of the rod.
-double largest_deflection(const MatrixXd& q) {
+// Of two series of samples, the largest |sum_i q_i sin(i pi x/l)| over points of the rod, the first over the second.
+double deflection_ratio(const MatrixXd& change, const MatrixXd& q) {
   const Index I = q.rows(), points = 4 * I + 4;
   MatrixXd shapes(points + 1, I);
   for (Index k = 0; k <= points; ++k)
     for (Index i = 0; i < I; ++i)
       shapes(k, i) = std::sin(std::numbers::pi * static_cast<double>((i + 1) * k) / static_cast<double>(points));
-  return dense::largest(shapes * q);
+  return ratio(dense::largest(shapes * change), dense::largest(shapes * q));
 }
 
 // Largest |q_i| over the turn: of components that can have it, their values at four angles a wave being at least 0.7 of
@@ -140,6 +158,19 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
   errors.torque = ratio(dense::largest(change.row(last)), dense::largest(size.row(last)));
 }
 
+// What is asked, with what all corrections share.
+struct Question {
+  const ExactModel& model;
+  double speed;
+  std::span<const LinearRod> rods;
+  std::vector<Answers> answers;
+
+  Question(const ExactModel& exact, double at_speed, std::span<const LinearRod> linear)
+      : model(exact), speed(at_speed), rods(linear) {
+    for (const LinearRod& rod : rods) answers.emplace_back(*rod.system, speed, of_theory_error.tolerance);
+  }
+};
+
 // The exact model at q, and what the linear rods answer to what their model leaves out there (T1).
 struct Corrections {
   std::vector<FourierSeries> dq;
@@ -147,22 +178,24 @@ struct Corrections {
   std::optional<std::size_t> singular;  // this rod has no periodic solution
 };
 
-Corrections corrections(const ExactModel& model, double speed, std::span<const LinearRod> rods,
-                        const CrankAngles& angles, const std::vector<FourierSeries>& q, double tolerance) {
+Corrections corrections(Question& of, const CrankAngles& angles, const std::vector<FourierSeries>& q,
+                        const Accuracy& accuracy) {
+  const ExactModel& model = of.model;
+  const double speed = of.speed;
   Corrections found;
   const RitzSamples motion = ritz_samples(q, speed, angles.size());
   const ExactResidual exact = model.residual(speed, angles, motion);
   found.breakdown = exact.breakdown;
-  for (std::size_t r = 0; r < rods.size() && !found.breakdown && !found.singular; ++r) {
+  for (std::size_t r = 0; r < of.rods.size() && !found.breakdown && !found.singular; ++r) {
     const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
-    const HillSystem& system = *rods[r].system;
+    const HillSystem& system = *of.rods[r].system;
     const MatrixXd own = motion.q.middleRows(first, I), own1 = motion.q1.middleRows(first, I),
                    own2 = motion.q2.middleRows(first, I);
     const Body& link = *body_at(model.linkage(), model.rods()[r].link);
-    const MatrixXd linear = link.elastic->shear
-                                ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1, own2)
-                                : linear_residual(system, speed, own, own1, own2);
-    std::optional<FourierSeries> dq = response(system, speed, linear - exact.r.middleRows(first, I), tolerance);
+    const MatrixXd linear = link.elastic->shear ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1,
+                                                                  own2, accuracy.stiffness)
+                                                : linear_residual(system, speed, own, own1, own2, accuracy.stiffness);
+    std::optional<FourierSeries> dq = of.answers[r](linear - exact.r.middleRows(first, I), accuracy.tolerance);
     if (!dq) found.singular = r;
     if (dq) found.dq.push_back(std::move(*dq));
   }
@@ -180,14 +213,11 @@ std::vector<FourierSeries> moved_by(const std::vector<FourierSeries>& q, const s
   return moved;
 }
 
-// Largest change of a rod's largest |dq_i|, relative to it.
-double growth(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to) {
-  double largest = 0;
-  for (std::size_t r = 0; r < from.size(); ++r) {
-    const double size = largest_value(to[r]);
-    largest = std::max(largest, ratio(std::abs(size - largest_value(from[r])), size));
-  }
-  return largest;
+// Largest |dq_i| of each rod.
+std::vector<double> sizes(const std::vector<FourierSeries>& dq) {
+  std::vector<double> values;
+  for (const FourierSeries& own : dq) values.push_back(largest_value(own));
+  return values;
 }
 
 // Largest change itself, relative to the rod's largest.
@@ -202,27 +232,26 @@ double difference(const std::vector<FourierSeries>& from, const std::vector<Four
 }
 
 // (T1) at q + dq, roughly, changes the size of dq.
-bool second_matters(const ExactModel& model, double speed, std::span<const LinearRod> rods,
-                    const std::vector<FourierSeries>& dq) {
-  const std::vector<FourierSeries> q = cut_responses(rods, of_second_look.negligible);
-  const CrankAngles angles(model.linkage(), num_samples(q));
-  const Corrections second =
-      corrections(model, speed, rods, angles, moved_by(q, dq, angles.size()), of_second_look.tolerance);
-  return !second.breakdown && !second.singular && growth(dq, second.dq) > most_second;
+bool second_matters(Question& of, const std::vector<FourierSeries>& dq, const std::vector<double>& first) {
+  const std::vector<FourierSeries> q = cut_responses(of.rods, of_second_look.negligible);
+  const CrankAngles angles(of.model.linkage(), num_samples(q, of_second_look));
+  const Corrections second = corrections(of, angles, moved_by(q, dq, angles.size()), of_second_look);
+  if (second.breakdown || second.singular) return false;
+  const std::vector<double> now = sizes(second.dq);
+  for (std::size_t r = 0; r < now.size(); ++r)
+    if (ratio(std::abs(now[r] - first[r]), now[r]) > most_second) return true;
+  return false;
 }
 
 // (T1) at q + dq until dq settles; empty where it does not.
-std::optional<std::vector<FourierSeries>> repeated_corrections(const ExactModel& model, double speed,
-                                                               std::span<const LinearRod> rods,
-                                                               const CrankAngles& angles,
+std::optional<std::vector<FourierSeries>> repeated_corrections(Question& of, const CrankAngles& angles,
                                                                const std::vector<FourierSeries>& q,
                                                                std::vector<FourierSeries> dq) {
   constexpr int most = 8;
   constexpr double settled = 0.02, slow = 0.7;
   double last = HUGE_VAL;
   for (int step = 0; step < most; ++step) {
-    Corrections next =
-        corrections(model, speed, rods, angles, moved_by(q, dq, angles.size()), of_theory_error.tolerance);
+    Corrections next = corrections(of, angles, moved_by(q, dq, angles.size()), of_theory_error);
     if (next.breakdown || next.singular) return std::nullopt;
     const double change = difference(dq, next.dq);
     dq = std::move(next.dq);
@@ -257,26 +286,26 @@ std::optional<std::vector<FourierSeries>> change_by_newton(const ExactModel& mod
   return dq;
 }
 
-// Next to a resonance the correction itself moves the resonance: the change itself (T3). The first correction stays
-// where the second one is small, and beyond the theory unless the change turns out to lie below.
-void follow_to_second_order(const ExactModel& model, double speed, std::span<const LinearRod> rods,
-                            const CrankAngles& angles, const std::vector<FourierSeries>& q, double first_error,
-                            std::vector<FourierSeries>& dq) {
+// Next to a resonance the correction itself moves the resonance: the change itself (T3). The first correction, of the
+// sizes given, stays where the second one is small, and beyond the theory unless the change turns out to lie below.
+std::optional<std::vector<FourierSeries>> second_order(Question& of, const CrankAngles& angles,
+                                                       const std::vector<FourierSeries>& q,
+                                                       const std::vector<FourierSeries>& dq,
+                                                       const std::vector<double>& first, double first_error) {
   double amplification = 0;
-  for (const LinearRod& rod : rods) amplification = std::max(amplification, nearest_amplification(*rod.system, speed));
+  for (const LinearRod& rod : of.rods)
+    amplification = std::max(amplification, nearest_amplification(*rod.system, of.speed));
   const bool beyond = first_error > theory_error_limit;
-  if (amplification * first_error <= (beyond ? sharp : harmless)) return;
-  std::optional<std::vector<FourierSeries>> change;
+  if (amplification * first_error <= (beyond ? sharp : harmless)) return std::nullopt;
   if (beyond) {
-    change = change_by_newton(model, speed, q, theory_error_limit);
+    auto change = change_by_newton(of.model, of.speed, q, theory_error_limit);
     for (std::size_t r = 0; change && r < q.size(); ++r)
-      if (!(largest_value((*change)[r]) <= theory_error_limit * largest_value(q[r]))) return;
-  } else {
-    if (!second_matters(model, speed, rods, dq)) return;
-    change = repeated_corrections(model, speed, rods, angles, q, dq);
-    if (!change) change = change_by_newton(model, speed, q, first_error);
+      if (!(largest_value((*change)[r]) <= theory_error_limit * largest_value(q[r]))) return std::nullopt;
+    return change;
   }
-  if (change) dq = std::move(*change);
+  if (!second_matters(of, dq, first)) return std::nullopt;
+  auto change = repeated_corrections(of, angles, q, dq);
+  return change ? change : change_by_newton(of.model, of.speed, q, first_error);
 }
 
 }  // namespace
@@ -286,7 +315,7 @@ ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_mo
   std::vector<ExactModel::Rod> rods;
   const std::vector<int> links = elastic_links(linkage);
   for (std::size_t r = 0; r < links.size(); ++r) rods.push_back({links[r], num_modes.at(r)});
-  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 10);
+  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 8);
 }
 
 TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,
@@ -299,8 +328,9 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
       return errors;
     }
   const std::vector<FourierSeries> q = cut_responses(rods, of_theory_error.negligible);
-  const CrankAngles angles(model.linkage(), num_samples(q));
-  Corrections first = corrections(model, speed, rods, angles, q, of_theory_error.tolerance);
+  const CrankAngles angles(model.linkage(), num_samples(q, of_theory_error));
+  Question question(model, speed, rods);
+  Corrections first = corrections(question, angles, q, of_theory_error);
   if (first.breakdown) {
     errors.reason = describe(*first.breakdown, model.linkage());
     errors.steepest = first.breakdown->slope;
@@ -311,21 +341,22 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     return errors;
   }
   std::vector<FourierSeries>& dq = first.dq;
-  std::vector<double> size;
+  std::vector<double> size, change = sizes(dq);
   double first_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     size.push_back(largest_value(*rods[r].q));
-    errors.rods[r].q = ratio(largest_value(dq[r]), size[r]);
-    first_error = std::max(first_error, *errors.rods[r].q);
+    first_error = std::max(first_error, ratio(change[r], size[r]));
   }
-  follow_to_second_order(model, speed, rods, angles, q, first_error, dq);
+  if (auto second = second_order(question, angles, q, dq, change, first_error)) {
+    dq = std::move(*second);
+    change = sizes(dq);
+  }
   for (std::size_t r = 0; r < rods.size(); ++r) {
     TheoryErrors::Rod& rod = errors.rods[r];
-    rod.q = ratio(largest_value(dq[r]), size[r]);
+    rod.q = ratio(change[r], size[r]);
     // Four angles a wave of the smallest harmonics, many of those that count.
     const Index N = fourier::fast_length(4 * std::max(q[r].num_harmonics(), dq[r].num_harmonics()) + 2);
-    rod.deflection =
-        ratio(largest_deflection(fourier::synthesise(dq[r], N)), largest_deflection(fourier::synthesise(q[r], N)));
+    rod.deflection = deflection_ratio(fourier::synthesise(dq[r], N), fourier::synthesise(q[r], N));
     rod.correction = std::move(dq[r]);
   }
   if (forces != nullptr) compare_forces(model, speed, rods, *forces, errors);

@@ -5,24 +5,61 @@
 
 #include "hb/engine/steady/steady_iterative.hpp"
 #include "hb/engine/steady/truncation.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
-std::optional<FourierSeries> rough_steady_state(const HillSystem& system, double speed, double tolerance) {
+// L M T = 1, y = weight T^-1 q:  y'' + G y' + K y = weight L load/Omega^2.
+struct RoughSolver::Impl {
+  steady::WeightedSystem weighted;
+  Eigen::MatrixXd L, T;  // with the weights
+  std::optional<steady::Operator> A;
+  std::optional<steady::IterativeInverse> inverse;
+  double tolerance = 0;  // that the window of A was made for
+
+  explicit Impl(const ScaledSystem& scaled, const Eigen::MatrixXd& mass) : weighted(steady::weighted(scaled)) {
+    L = weighted.weight.asDiagonal() * dense::inverse(Eigen::MatrixXd(mass * scaled.T)) / (scaled.speed * scaled.speed);
+    T = scaled.T * weighted.weight.cwiseInverse().asDiagonal();
+  }
+};
+
+RoughSolver::RoughSolver(const HillSystem& system, double speed) {
+  const HillSystem unloaded{system.mass, system.damping, system.stiffness, {}};
+  impl_ = std::make_unique<Impl>(scale_system(unloaded, speed), system.mass);
+}
+
+RoughSolver::~RoughSolver() = default;
+RoughSolver::RoughSolver(RoughSolver&&) noexcept = default;
+RoughSolver& RoughSolver::operator=(RoughSolver&&) noexcept = default;
+
+std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, double tolerance) {
   constexpr Eigen::Index most_harmonics = 256;
-  const ScaledSystem scaled = scale_system(system, speed);
-  if (scaled.load_scale == 0) return FourierSeries(system.num_modes(), 0);
-  const steady::WeightedSystem weighted = steady::weighted(scaled);
-  const Eigen::Index H = steady::predicted_harmonics(weighted, tolerance, most_harmonics);
-  if (H >= most_harmonics) return std::nullopt;
-  steady::Operator A(weighted, H);
-  steady::Spectrum f = steady::Spectrum::Zero(H + 1, weighted.I), x;
-  const Eigen::Index rows = std::min(H + 1, weighted.f.rows());
-  f.topRows(rows) = weighted.f.topRows(rows);
-  steady::IterativeInverse inverse(A);
-  if (!inverse.solve(f, tolerance, x) || !x.allFinite()) return std::nullopt;
-  const Eigen::MatrixXd T = scaled.load_scale * scaled.T * weighted.weight.cwiseInverse().asDiagonal();
-  FourierSeries q(Eigen::MatrixXcd(T * x.transpose()));
+  constexpr double negligible = 1e-3;  // of the load; a sharper resonance at so high a harmonic is not looked for
+  steady::WeightedSystem& system = impl_->weighted;
+  system.f = (impl_->L * load.c).transpose();
+  // Moduli of extreme size overflow or vanish in squares: then the iteration says no.
+  const double scale = std::sqrt(system.f.cwiseAbs2().maxCoeff());
+  if (scale == 0) return FourierSeries(system.I, 0);
+  if (!std::isfinite(scale)) return std::nullopt;
+  system.f *= 1 / scale;
+  const double floor = std::pow(negligible * tolerance, 2);
+  Eigen::Index last = system.f.rows() - 1;
+  while (last > 0 && !(system.f.row(last).cwiseAbs2().maxCoeff() > floor)) --last;
+  system.f.conservativeResize(last + 1, Eigen::NoChange);
+  if (!impl_->A || tolerance < impl_->tolerance) {
+    const Eigen::Index H = steady::predicted_harmonics(system, tolerance, most_harmonics);
+    if (H >= most_harmonics) return std::nullopt;
+    impl_->inverse.reset();
+    impl_->A.emplace(system, H);
+    impl_->inverse.emplace(*impl_->A);
+    impl_->tolerance = tolerance;
+  }
+  const Eigen::Index window = impl_->A->num_harmonics();
+  steady::Spectrum f = steady::Spectrum::Zero(window + 1, system.I), x;
+  const Eigen::Index rows = std::min(window + 1, system.f.rows());
+  f.topRows(rows) = system.f.topRows(rows);
+  if (!impl_->inverse->solve(f, tolerance, x) || !x.allFinite()) return std::nullopt;
+  FourierSeries q(Eigen::MatrixXcd(scale * impl_->T * x.transpose()));
   q.c.col(0) = q.c.col(0).real().cast<std::complex<double>>().eval();
   return q;
 }

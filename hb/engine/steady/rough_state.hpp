@@ -1,16 +1,31 @@
-// The periodic answer to a load to a few digits, without an error bound: one solve on a predicted window of harmonics.
+// Periodic answers to loads to a few digits, without an error bound: one solve each on a predicted window of harmonics.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "lib/hill_system.hpp"
 
 namespace hb {
 
-// Of M q'' + B q' + C q = h over the crank angle, the residual of the window's rows below `tolerance` of the load; near
-// resonance the error is as many times larger as the response. Empty where the iteration does not get there:
-// solve_steady_state finds out why.
-[[nodiscard]] std::optional<FourierSeries> rough_steady_state(const HillSystem& system, double speed, double tolerance);
+// M q'' + B q' + C q = load at one speed, for one load after another: what depends on the system alone is kept.
+class RoughSolver {
+ public:
+  // The system's own load is not looked at.
+  RoughSolver(const HillSystem& system, double speed);
+  ~RoughSolver();
+  RoughSolver(RoughSolver&&) noexcept;
+  RoughSolver& operator=(RoughSolver&&) noexcept;
+
+  // Over the crank angle, the residual of the window's rows below `tolerance` of the load; near resonance the error is
+  // as many times larger as the response. The window of the first load serves all of no smaller tolerance. Empty where
+  // the iteration does not get there: solve_steady_state finds out why.
+  [[nodiscard]] std::optional<FourierSeries> solve(const FourierSeries& load, double tolerance);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 // How many times larger than without cancellation of stiffness and inertia one mode answers to the harmonic of the
 // crank angle that is nearest to its resonance, with the mean stiffness; the largest of all modes.
