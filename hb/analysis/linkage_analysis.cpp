@@ -8,6 +8,7 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/rod_steady.hpp"
+#include "hb/analysis/theory_growth.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/stop_wish.hpp"
@@ -207,6 +208,14 @@ void add_forces(const SceneModel& model, double speed, const Settings& settings,
   stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
 }
 
+// What the exact model would change of the growth rate, where all rods' exponents were computed.
+void judge_growth(const SceneModel& model, double speed, std::span<const LinearRod> rods, SpeedResult& result) {
+  if (!std::ranges::all_of(result.rods, [](const RodResult& rod) { return rod.stability.has_value(); })) return;
+  Stopwatch watch;
+  result.theory->growth = growth_theory_error(*model.linkage(), speed, rods, *result.theory);
+  result.stages.push_back({"theory error of the growth rate", watch.seconds(), ""});
+}
+
 // What the exact model would change, where q was computed.
 void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
   if (!model.linkage() || result.rods.empty()) return;
@@ -230,6 +239,7 @@ void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
   result.theory = as_made ? theory_errors(*model.exact, speed, rods, forces)
                           : theory_errors(theory_model(*model.linkage(), modes), speed, rods, forces);
   result.stages.push_back({"theory error", watch.seconds(), result.theory->reason});
+  judge_growth(model, speed, rods, result);
   if (!model.exact) return;
   Stopwatch share_watch;
   for (std::size_t r = 0; r < modes.size(); ++r) result.theory->rods[r].axial_share = axial_share(*model.exact, r);

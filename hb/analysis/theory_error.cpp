@@ -27,12 +27,16 @@ struct Accuracy {
 };
 constexpr Accuracy of_theory_error{3e-6, 1e-13, 3e-5, 8};
 // Enough to see whether the second correction matters.
-constexpr Accuracy of_second_look{3e-3, 1e-7, 2e-2, 7};
+constexpr Accuracy of_second_look{1e-3, 1e-7, 1e-2, 8};
 // Below the first, of the correction times the amplification next to the nearest resonance, one correction shows the
-// change to within a tenth (by random linkages); so it does where the second one has the same size to within the other.
-constexpr double harmless = 0.015, most_second = 0.07;
+// change to within a tenth (by random linkages); so it does where the second one differs by less than the other.
+constexpr double harmless = 0.015, most_second = 0.085;
+// Above the first the second correction, and those after it, are amplified so much that it must be smaller.
+constexpr double amplified = 1, most_amplified = 0.03;
 // Beyond the theory the change may lie below all the same where the resonance is sharper than that.
 constexpr double sharp = 10;
+// The first correction's size is the theory error of q, (T2), where it is this near to that of the change followed.
+constexpr double same_size = 0.05;
 
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods, double negligible) {
   std::vector<FourierSeries> q;
@@ -231,16 +235,12 @@ double difference(const std::vector<FourierSeries>& from, const std::vector<Four
   return largest;
 }
 
-// (T1) at q + dq, roughly, changes the size of dq.
-bool second_matters(Question& of, const std::vector<FourierSeries>& dq, const std::vector<double>& first) {
+// (T1) at q + dq, roughly, changes dq by more than `most` of itself.
+bool second_matters(Question& of, const std::vector<FourierSeries>& dq, double most) {
   const std::vector<FourierSeries> q = cut_responses(of.rods, of_second_look.negligible);
   const CrankAngles angles(of.model.linkage(), num_samples(q, of_second_look));
   const Corrections second = corrections(of, angles, moved_by(q, dq, angles.size()), of_second_look);
-  if (second.breakdown || second.singular) return false;
-  const std::vector<double> now = sizes(second.dq);
-  for (std::size_t r = 0; r < now.size(); ++r)
-    if (ratio(std::abs(now[r] - first[r]), now[r]) > most_second) return true;
-  return false;
+  return !second.breakdown && !second.singular && difference(dq, second.dq) > most;
 }
 
 // (T1) at q + dq until dq settles; empty where it does not.
@@ -286,12 +286,11 @@ std::optional<std::vector<FourierSeries>> change_by_newton(const ExactModel& mod
   return dq;
 }
 
-// Next to a resonance the correction itself moves the resonance: the change itself (T3). The first correction, of the
-// sizes given, stays where the second one is small, and beyond the theory unless the change turns out to lie below.
+// Next to a resonance the correction itself moves the resonance: the change itself (T3). The first correction
+// stays where the second one is small, and beyond the theory unless the change turns out to lie below.
 std::optional<std::vector<FourierSeries>> second_order(Question& of, const CrankAngles& angles,
                                                        const std::vector<FourierSeries>& q,
-                                                       const std::vector<FourierSeries>& dq,
-                                                       const std::vector<double>& first, double first_error) {
+                                                       const std::vector<FourierSeries>& dq, double first_error) {
   double amplification = 0;
   for (const LinearRod& rod : of.rods)
     amplification = std::max(amplification, nearest_amplification(*rod.system, of.speed));
@@ -303,7 +302,8 @@ std::optional<std::vector<FourierSeries>> second_order(Question& of, const Crank
       if (!(largest_value((*change)[r]) <= theory_error_limit * largest_value(q[r]))) return std::nullopt;
     return change;
   }
-  if (!second_matters(of, dq, first)) return std::nullopt;
+  if (!second_matters(of, dq, amplification * first_error > amplified ? most_amplified : most_second))
+    return std::nullopt;
   auto change = repeated_corrections(of, angles, q, dq);
   return change ? change : change_by_newton(of.model, of.speed, q, first_error);
 }
@@ -347,9 +347,11 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     size.push_back(largest_value(*rods[r].q));
     first_error = std::max(first_error, ratio(change[r], size[r]));
   }
-  if (auto second = second_order(question, angles, q, dq, change, first_error)) {
+  if (auto second = second_order(question, angles, q, dq, first_error)) {
     dq = std::move(*second);
-    change = sizes(dq);
+    const std::vector<double> followed = sizes(dq);
+    for (std::size_t r = 0; r < rods.size(); ++r)
+      if (!(std::abs(followed[r] - change[r]) <= same_size * followed[r])) change[r] = followed[r];
   }
   for (std::size_t r = 0; r < rods.size(); ++r) {
     TheoryErrors::Rod& rod = errors.rods[r];

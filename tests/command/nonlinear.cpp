@@ -164,6 +164,16 @@ TEST_F(Nonlinear, CheckByIntegrationInTimeAgrees) {
   EXPECT_GT(found["seconds"]["harmonic_balance"], 0);
 }
 
+// Modes for 1e-10 of the deflection took the integration longer than its limit.
+TEST_F(Nonlinear, CheckWithAutomaticModesComesToAnEnd) {
+  const Json found = document("check " + scene("six_link") + " --rpm 300 --modes auto");
+  EXPECT_EQ(found["agrees"], true);
+  for (const char* rod : {"AB", "CD"}) {
+    EXPECT_EQ(found["rods"][rod]["agrees"], true) << rod;
+    EXPECT_LE(found["rods"][rod]["q_allowed"], 1e-7);
+  }
+}
+
 // Beyond the doubling near 1576 rpm.
 TEST_F(Nonlinear, MotionsOfTwoTurnsAreThoseOfTheIntegration) {
   const Json found = document("check " + scene("six_link") + " --rpm 1585 --modes 1 --period 2 --tol 1e-6");

@@ -113,6 +113,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       if (rod.stability) verdict = worst(verdict, rod.stability->verdict);
     json["verdict"] = to_string(verdict);
   }
+  if (result.theory && result.computed.stability) json["growth_theory_error"] = or_null(result.theory->growth);
   std::vector<std::string> warnings = model.scene.warnings;
   for (std::string& sentence : theory_warnings(model, result)) warnings.push_back(std::move(sentence));
   for (std::string& sentence : limit_warnings(model, result)) warnings.push_back(std::move(sentence));

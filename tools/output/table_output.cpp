@@ -91,6 +91,14 @@ void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size
         rough_share(*rod.axial_share));
 }
 
+std::string growth_theory_row(const SpeedResult& result, const OutputUnits& units) {
+  if (!result.theory || !result.theory->growth) return "";
+  double rate = -HUGE_VAL;
+  for (const RodResult& rod : result.rods) rate = std::max(rate, rod.stability->growth_rate);
+  return fmt::format("  theory error of its growth rate: {:.1e} {}{}\n", *result.theory->growth, units.rate,
+                     *result.theory->growth < std::abs(rate) ? "" : ", not less than the rate itself");
+}
+
 void add_stability(Text& text, const RodModel& model, const RodResult& rod, double speed, const Scene& scene,
                    bool multipliers) {
   const Stability& stability = *rod.stability;
@@ -188,6 +196,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     for (const std::string& warning : theory_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   for (const std::string& warning : limit_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   if (!verdict.empty()) add(text, "\nVerdict: {}\n", verdict);
+  add(text, "{}", growth_theory_row(result, units));
   return fmt::to_string(text);
 }
 

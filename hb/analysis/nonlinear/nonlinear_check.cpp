@@ -17,6 +17,9 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+// Of automatic modes: both paths take the same, and the highest ones, which decide neither, cost both the most time.
+constexpr double compared_cut = 1e-5;
+
 // Samples at N angles of a series with any number of harmonics.
 MatrixXd samples(const FourierSeries& series, Index N) {
   Index factor = 1;
@@ -90,7 +93,9 @@ NonlinearCheck nonlinear_check(const SceneModel& model, double speed, const Sett
   Settings series = settings;
   series.only = {true, settings.only.stability, false, false};
   Stopwatch watch;
-  check.series = nonlinear_steady(model, speed, series, options);
+  NonlinearOptions with_modes = options;
+  with_modes.least_cut = compared_cut;
+  check.series = nonlinear_steady(model, speed, series, with_modes);
   check.seconds_harmonic_balance = watch.seconds();
   check.shortfalls = check.series.shortfalls;
   if (check.series.search != MotionSearch::found) {

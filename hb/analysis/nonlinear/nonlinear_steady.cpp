@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 // With modes = "auto", of the error of the cut: that much above the motion's own.
-constexpr double least_cut_tolerance = 2e-8, motion_share = 0.05;
+constexpr double motion_share = 0.05;
 
 // f_k of the rod over T turns.
 RodCoefficients over_turns(const RodCoefficients& rod, int turns) {
@@ -223,13 +223,15 @@ void set_modes(SceneModel& model, std::size_t r, Index num_modes) {
 // the tolerance.
 NonlinearResult with_automatic_modes(SceneModel model, double speed, Settings settings,
                                      const NonlinearOptions& options) {
-  const double wanted = std::max(settings.tolerance, least_cut_tolerance);
+  const double asked = std::max(settings.tolerance, least_motion_tolerance),
+               wanted = std::max(settings.tolerance, options.least_cut);
   settings.tolerance = wanted;
   Settings deflection = settings;
   deflection.only = {.steady = true, .stability = false, .reactions = false, .shape = false};
   const SpeedResult linear = analyse(model, speed, deflection);
   for (std::size_t r = 0; r < model.rods.size(); ++r) set_modes(model, r, linear.rods[r].num_modes);
-  settings.tolerance = deflection.tolerance = motion_share * wanted;
+  deflection.tolerance = motion_share * wanted;
+  settings.tolerance = std::min(asked, deflection.tolerance);
 
   NonlinearResult result = at_given_modes(model, speed, deflection, options, nullptr);
   std::vector<OtherMotion> others = std::move(result.others);

@@ -17,6 +17,7 @@ namespace hb {
 struct NonlinearOptions {
   int turns = 1;  // T: motions of period 2 pi T/Omega
   std::function<bool()> stop = {};  // true ends the work with what is there
+  double least_cut = 2e-8;  // with automatic modes: the error of the cut wanted, where the tolerance is below this
 };
 
 struct NonlinearRod {

@@ -187,6 +187,12 @@ class Steady:
         return self._doc.get("torque_theory_error")
 
     @property
+    def growth_theory_error(self) -> Optional[float]:
+        """What the first nonlinear correction changes of the mechanism's growth rate, per unit time; None: no value, or
+        not judged."""
+        return self._doc.get("growth_theory_error")
+
+    @property
     def bands(self) -> list[dict[str, Any]]:
         """With band=...: of each what hb steady --json has, `parameter`, `from`, `to`, verdicts at both ends and
         `quantities` (in mm, N, N m, MPa, Hz) there and as given, with errors and slopes; else empty."""
