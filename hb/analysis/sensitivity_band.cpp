@@ -56,12 +56,25 @@ Metric metric_of(MetricKind kind, std::string name, const char* word) {
   return metric;
 }
 
+SectionHeights heights_of(const SceneModel& model) {
+  SectionHeights heights;
+  if (!model.linkage()) return heights;
+  for (const RodModel& rod : model.rods)
+    if (const double height = body_at(*model.linkage(), rod.link)->elastic->section_height; height > 0)
+      heights[rod.name] = height;
+  return heights;
+}
+
 std::vector<NamedMetric> metrics_of(const SteadyResult& result) {
   std::vector<NamedMetric> metrics;
   const bool linkage = result.model->linkage() != nullptr;
   if (linkage && result.computed.shape)
     for (const RodResult& rod : result.rods)
-      if (rod.reported) metrics.push_back({metric_of(MetricKind::deflection, rod.name, "deflection"), "deflection"});
+      if (rod.reported) {
+        metrics.push_back({metric_of(MetricKind::deflection, rod.name, "deflection"), "deflection"});
+        if (heights_of(*result.model).contains(rod.name))
+          metrics.push_back({metric_of(MetricKind::total_stress, rod.name, "total-stress"), "stress, together"});
+      }
   if (result.computed.stability) metrics.push_back({metric_of(MetricKind::margin, "", "stable"), "growth rate"});
   if (result.forces)
     for (const JointForce& joint : result.forces->joints)
@@ -75,14 +88,11 @@ std::vector<BandSlope> slopes_of(const Scene& scene, const SteadyResult& result,
   Settings settings = result.settings;
   if (is_auto(settings.modes)) settings.modes = most_modes(result.rods);
   const auto model = [&](double factor) { return make_model(scaled_scene(scene, parameter, factor), settings); };
-  const DesignFamily family{[&](const std::vector<double>& x) { return model(x[0]); },
-                            [](const SceneModel&) { return SectionHeights(); },
-                            {0.5},
-                            {2},
-                            settings};
+  const DesignFamily family{
+      [&](const std::vector<double>& x) { return model(x[0]); }, heights_of, {0.5}, {2}, settings};
   const SceneModel here = model(1);
   const Work work;
-  DesignAnalysis analysis(here, settings, {result.speed, result.speed, 1}, {}, work);
+  DesignAnalysis analysis(here, settings, {result.speed, result.speed, 1}, heights_of(here), work);
   for (const NamedMetric& each : metrics_of(result)) {
     const MetricValue value = analysis.value(each.metric);
     if (!std::isfinite(value.value) || value.value == 0) continue;
@@ -151,6 +161,18 @@ std::vector<SensitivityBand> sensitivity_bands(const Scene& scene, const Request
     found.push_back({band, steady(scaled_scene(scene, band.parameter, band.from), request),
                      steady(scaled_scene(scene, band.parameter, band.to), request),
                      slopes_of(scene, nominal, band.parameter)});
+  return found;
+}
+
+std::vector<SweepBand> sweep_bands(const Scene& scene, SweepRequest request, const std::vector<BandRequest>& bands,
+                                   Work& work) {
+  if (!is_speed(request.x.path))
+    throw RequestError("band", "beside a sweep along " + request.x.path, "with a sweep along the speed");
+  request.search = false;
+  std::vector<SweepBand> found;
+  for (const BandRequest& band : bands)
+    found.push_back({band, sweep(SceneFamily(scaled_scene(scene, band.parameter, band.from)), request, work),
+                     sweep(SceneFamily(scaled_scene(scene, band.parameter, band.to)), request, work)});
   return found;
 }
 

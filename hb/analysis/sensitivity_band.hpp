@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/analyses.hpp"
 #include "hb/analysis/steady.hpp"
 
 namespace hb {
@@ -40,5 +41,14 @@ struct SensitivityBand {
 // Throws RequestError.
 [[nodiscard]] std::vector<SensitivityBand> sensitivity_bands(const Scene& scene, const Request& request,
                                                              const std::vector<BandRequest>& bands);
+
+// The same at every point of a sweep along the speed, without slopes and without what lies between the points.
+struct SweepBand {
+  BandRequest asked;
+  Sweep low, high;
+};
+// Throws RequestError, also for a sweep along another number.
+[[nodiscard]] std::vector<SweepBand> sweep_bands(const Scene& scene, SweepRequest request,
+                                                 const std::vector<BandRequest>& bands, Work& work);
 
 }  // namespace hb

@@ -29,7 +29,8 @@ std::vector<ResponseSamples> response_samples(const std::vector<LinkResponse>& r
   return samples;
 }
 
-constexpr int force_group = 0, torque_group = 1;
+// Next to a resonance rigid forces are rounding beside elastic ones, and yet known: they have a group of their own.
+constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2;
 
 // Sum over both signs of the coefficients of one row beyond its length, twice. Of a row that has not decayed the last
 // eighth stands for what is missing.
@@ -46,7 +47,9 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
                          double tolerance) {
   const std::vector<JointRow> rows = joint_rows(linkage);
   const auto num_rows = static_cast<Eigen::Index>(rows.size());
-  std::vector<TurnComponent> components(static_cast<std::size_t>(4 * num_rows), TurnComponent{force_group, 1});
+  std::vector<TurnComponent> components;
+  for (Eigen::Index i = 0; i < num_rows; ++i)
+    for (const int group : {rigid_group, rigid_group, elastic_group, elastic_group}) components.push_back({group, 1});
   components.insert(components.end(), 2, TurnComponent{torque_group, 1});
 
   std::vector<BodyMotion> motion;

@@ -90,7 +90,8 @@ Index rows_of_a_turn(const NumberTable& table, Index angle_column, const std::ve
   if (two_turns) {
     fail(table, n - 1,
          fmt::format("found crank angles over two turns (to {}, a four-stroke cycle), allowed one turn of {:.6g}: what "
-                     "acts on the linkage must repeat with every turn of the crank",
+                     "acts on the linkage must repeat with every turn of the crank; the mean of both turns at each "
+                     "angle may stand for it, without what differs between them (half orders of the speed)",
                      angle(n - 1), per_turn));
   }
   fail(

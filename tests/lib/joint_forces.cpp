@@ -85,4 +85,23 @@ TEST(JointForces, ErrorOfSamplingCoversTheTrueOne) {
   }
 }
 
+// Beside responses of 1e14 times their size rigid forces counted as rounding, and were 0.
+TEST(JointForces, RigidOnesAreTheSameBesideAnyResponse) {
+  const Linkage linkage = six_link::linkage({.J = 45.0});
+  const double Omega = 31.4;
+  const JointForces alone = joint_forces(linkage, Omega, {});
+  std::vector<LinkResponse> huge;
+  for (const int link : elastic_links(linkage)) {
+    FourierSeries q(1, 1);
+    q.c(0, 1) = 1e18;
+    huge.push_back({link, q});
+  }
+  const JointForces beside = joint_forces(linkage, Omega, huge);
+  for (std::size_t j = 0; j < alone.joints.size(); ++j) {
+    const Eigen::MatrixXd expected = fourier::synthesise(alone.joints[j].rigid, 512),
+                          found = fourier::synthesise(beside.joints[j].rigid, 512);
+    EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), 1e-9 * expected.cwiseAbs().maxCoeff()) << alone.joints[j].name;
+  }
+}
+
 }  // namespace

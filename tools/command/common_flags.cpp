@@ -65,6 +65,30 @@ void allow_growth_alone(CLI::App& app, CommonFlags& flags) {
       "compute only these: steady,stability,reactions,shape, growth (of stability the growth rate alone), verdict");
 }
 
+void add_band_flag(CLI::App& app, std::vector<std::string>& bands) {
+  app.add_option("--band", bands,
+                 "how the answer moves with damping=0.5:2, E=0.9:1.1 or mass=0.9:1.1 of the elastic links (factors); "
+                 "repeatable")
+      ->type_name("NAME=A:B")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_label_flag(CLI::App& app, CommonFlags& flags, const char* axes) {
+  flags.label_axes = axes;
+  app.add_option("--label", flags.label, "name of an axis in pictures, as in x='height [mm]'; repeatable")
+      ->type_name("AXIS=TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_measured_flag(CLI::App& app, std::string& file, const char* where) {
+  app.add_option(
+         "--measured", file,
+         fmt::format("CSV of measured values {} for the pictures, columns by name: deflection AB, torque, ...", where))
+      ->type_name("FILE");
+}
+
 void add_analysis_flags(CLI::App& app, CommonFlags& flags, SpeedsTaken taken) {
   const auto add = [&](const char* name, std::string& text, const char* meaning, const char* type) {
     add_value(app, name, text, meaning, type);

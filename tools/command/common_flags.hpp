@@ -20,6 +20,8 @@ struct CommonFlags {
   std::string modes, tolerance, rods, only, rpm, omega, threads, steady_method, stability_method, bound;
   std::optional<std::string> out;
   std::vector<std::string> set;
+  std::vector<std::string> label;
+  std::string label_axes;  // that --label may name: "x", "xy"
   bool json = false, no_plots = false, no_titles = false, stats = false, html = false;
   bool growth_alone = false;  // the command takes --only growth and --only verdict
 };
@@ -31,6 +33,12 @@ enum class SpeedsTaken { one, range };
 void add_analysis_flags(CLI::App& app, CommonFlags& flags, SpeedsTaken speeds = SpeedsTaken::range);
 // --html: a page of the results beside the other files of --out.
 void add_html_flag(CLI::App& app, CommonFlags& flags);
+// --band: how the answer moves with damping, E or mass.
+void add_band_flag(CLI::App& app, std::vector<std::string>& bands);
+// --label: names of the axes of pictures; `axes`: "x" or "xy".
+void add_label_flag(CLI::App& app, CommonFlags& flags, const char* axes);
+// --measured: values that pictures show beside the computed ones.
+void add_measured_flag(CLI::App& app, std::string& file, const char* where);
 // --bound: for single speeds.
 void add_single_speed_flags(CLI::App& app, CommonFlags& flags);
 // --only growth and --only verdict are for this command.

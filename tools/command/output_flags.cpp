@@ -28,6 +28,14 @@ PictureStyle picture_style(const CommonFlags& flags) {
       if (std::ranges::find(style.kinds, kind) == style.kinds.end()) style.kinds.push_back(kind);
     }
   }
+  for (const std::string& label : flags.label) {
+    const bool y_too = flags.label_axes == "xy";
+    const std::string allowed = y_too ? "x=TEXT or y=TEXT, as in y='height [mm]'" : "x=TEXT, as in x='speed [rpm]'";
+    const std::string axis = label.substr(0, label.find('='));
+    if (label.size() < 3 || label[1] != '=' || !(axis == "x" || (y_too && axis == "y")))
+      refuse_flag("--label", label, allowed);
+    (axis == "x" ? style.x_label : style.y_label) = label.substr(2);
+  }
   if (!flags.size.empty()) {
     const std::string allowed =
         fmt::format("WIDTHxHEIGHT in points, each {} to {}, as in 640x400", smallest_side, largest_side);

@@ -14,8 +14,10 @@
 
 namespace hb::tools {
 
-std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder) {
+std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder,
+                                const MeasuredOverlay& measured) {
   std::vector<Figure> figures;
+  if (!measured.empty()) folder.write(measured.csv().name, csv_text(measured.csv()));
   const Only& only = result.computed;
   const CsvFile critical = critical_csv(scene, result);
   if (only.steady) folder.write(critical.name, csv_text(critical));
@@ -24,25 +26,29 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
     folder.write(bands.name, csv_text(bands));
     const CsvFile not_excluded = not_excluded_csv(scene, result);
     folder.write(not_excluded.name, csv_text(not_excluded));
+    const CsvFile verdicts = sweep_verdict_csv(scene, result);
+    folder.write(verdicts.name, csv_text(verdicts));
+    figures.push_back(sweep_verdict_figure(scene, result, verdicts));
   }
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     if (!result.rods[r].reported || !(only.steady || only.stability || only.shape)) continue;
     const CsvFile rod = sweep_rod_csv(scene, result, r);
     folder.write(rod.name, csv_text(rod));
     if (only.stability) {
-      figures.push_back(campbell_figure(scene, result, r, rod, critical.name));
-      figures.push_back(growth_figure(scene, result, r, rod));
+      figures.push_back(campbell_figure(scene, result, r, rod, critical.name, measured));
+      figures.push_back(growth_figure(scene, result, r, rod, measured));
     }
-    if (only.steady) figures.push_back(peaks_figure(scene, result, r, rod));
-    if (only.shape) figures.push_back(strain_figure(scene, result, r, rod));
+    if (only.steady) figures.push_back(peaks_figure(scene, result, r, rod, measured));
+    if (only.shape) figures.push_back(strain_figure(scene, result, r, rod, measured));
   }
   if (only.reactions) {
     const CsvFile forces = sweep_forces_csv(scene, result);
     folder.write(forces.name, csv_text(forces));
     const CsvFile machine = sweep_machine_csv(scene, result);
     folder.write(machine.name, csv_text(machine));
-    for (Figure& figure : sweep_force_figures(scene, result, forces)) figures.push_back(std::move(figure));
+    for (Figure& figure : sweep_force_figures(scene, result, forces, measured)) figures.push_back(std::move(figure));
   }
+  for (Figure& figure : figures) figure.x_label = quoted(axis_label(scene));
   return figures;
 }
 

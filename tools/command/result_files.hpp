@@ -9,11 +9,13 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/pictures/gnuplot.hpp"
 #include "tools/pictures/map_plot.hpp"
+#include "tools/pictures/measured.hpp"
 #include "tools/report/report_page.hpp"
 
 namespace hb::tools {
 
-[[nodiscard]] std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder);
+[[nodiscard]] std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& result, OutputFolder& folder,
+                                              const MeasuredOverlay& measured = {});
 // What `linear` has beside it without linearisation.
 [[nodiscard]] std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear,
                                                const NonlinearSweep& sweep, OutputFolder& folder);

@@ -50,9 +50,9 @@ SceneInput scene_input(const std::string& file) {
 }
 
 std::string command_line(const CLI::App& command) {
-  const std::set<std::string> neutral = {"--out",     "--html",   "--json",      "--no-plots",
-                                         "--format",  "--size",   "--no-titles", "--stats",
-                                         "--threads", "--resume", "--restart",   "--time-limit"};
+  const std::set<std::string> neutral = {"--out",    "--html",      "--json",      "--no-plots", "--format",
+                                         "--size",   "--no-titles", "--label",     "--stats",    "--threads",
+                                         "--resume", "--restart",   "--time-limit"};
   std::string line = "hb " + command.get_name();
   std::set<const CLI::Option*> seen;
   for (const CLI::Option* option : command.parse_order()) {

@@ -22,6 +22,7 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/output/table_output.hpp"
+#include "tools/pictures/band_figures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/shared_work.hpp"
@@ -32,11 +33,14 @@ namespace {
 struct SteadyFlags : CommonFlags {
   TheoryFlags theory;
   bool multipliers = false;
+  std::string measured;
   std::vector<std::string> bands;
 };
 
 // Motions of one turn have tables and pictures, longer ones the document alone.
 int run_nonlinear(const SteadyFlags& flags) {
+  if (!flags.measured.empty())
+    throw UsageError("--measured: found beside --theory nonlinear, allowed with the linear theory");
   if (!flags.bands.empty()) throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
   const SceneInput input = scene_input(flags.scene_file);
   const Scene scene = input.source.with(overrides(flags));
@@ -81,24 +85,35 @@ int run_steady(const SteadyFlags& flags) {
   Request request = asked_request(flags, scene);
   const Output out = output(flags);
   set_speed(request, first_speed(flags, scene));
+  if (!flags.measured.empty() && !out.folder)
+    refuse_flag("--measured", "no --out", "beside --out DIR, whose pictures show it");
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
   const SteadyResult result = steady(scene, request);
   const SceneModel& model = *result.model;
+  MeasuredOverlay measured;
+  if (!flags.measured.empty())
+    measured = read_measured(flags.measured, {"crank angle", "deg"}, measured_quantities(model, result));
   std::vector<BandRequest> asked;
   for (const std::string& text : flags.bands) asked.push_back(parse_band(text));
   nlohmann::ordered_json document = out.json || folder || !asked.empty()
                                         ? steady_json(model, result, result.settings, out.stats)
                                         : nlohmann::ordered_json();
-  if (!asked.empty()) document["bands"] = bands_json(document, sensitivity_bands(scene, request, asked));
+  const std::vector<SensitivityBand> bands = sensitivity_bands(scene, request, asked);
+  if (!asked.empty()) document["bands"] = bands_json(document, bands);
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : steady_table(model, result, result.settings, flags.multipliers);
   if (!out.json && !asked.empty()) delivery.printed += bands_table(document["bands"]);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return steady_files(model, result, true, place);
+    std::vector<Figure> figures = steady_files(model, result, true, place, measured);
+    for (const BandCurves& curves : band_responses(result, bands)) {
+      place.write(curves.csv.name, csv_text(curves.csv));
+      figures.push_back(band_figure(model.scene, curves, true));
+    }
+    return figures;
   };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
@@ -125,13 +140,8 @@ void add_steady_command(CLI::App& app, int& status) {
   allow_growth_alone(*command, *flags);
   add_theory_flags(*command, flags->theory);
   command->add_flag("--multipliers", flags->multipliers, "print Floquet multipliers too (JSON always has them)");
-  command
-      ->add_option("--band", flags->bands,
-                   "how the answer moves with damping=0.5:2, E=0.9:1.1 or mass=0.9:1.1 of the elastic links (factors); "
-                   "repeatable")
-      ->type_name("NAME=A:B")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_band_flag(*command, flags->bands);
+  add_measured_flag(*command, flags->measured, "over the crank angle");
   add_html_flag(*command, *flags);
   command->callback([flags, &status] { status = run_steady(*flags); });
 }

@@ -11,6 +11,7 @@
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/flag_values.hpp"
 #include "tools/command/output_flags.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
@@ -22,6 +23,8 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/table_output.hpp"
+#include "tools/pictures/band_figures.hpp"
+#include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/ranks.hpp"
@@ -34,9 +37,29 @@ namespace {
 struct SweepFlags : CommonFlags {
   std::string x;
   TheoryFlags theory;
-  std::vector<std::string> start;
+  std::vector<std::string> start, bands;
+  std::string measured;
   bool no_search = false, resume = false, restart = false;
 };
+
+std::vector<BandRequest> bands_of(const SweepFlags& flags, const SweepRequest& request, bool nonlinear) {
+  std::vector<BandRequest> bands;
+  for (const std::string& text : flags.bands) bands.push_back(parse_band(text));
+  if (!bands.empty() && !is_speed(request.x.path))
+    throw UsageError("--band: found beside --x, allowed: with a sweep along the speed");
+  if (!bands.empty() && nonlinear)
+    throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
+  return bands;
+}
+
+void add_bands(const nlohmann::ordered_json& document, const SweepScene& swept, OutputFolder& place,
+               std::vector<Figure>& figures) {
+  for (const BandCurves& curves : band_curves(document, document["bands"], axis_label(swept))) {
+    place.write(curves.csv.name, csv_text(curves.csv));
+    figures.push_back(band_figure(swept.scene(), curves, false));
+    figures.back().x_label = quoted(axis_label(swept));
+  }
+}
 
 int run_sweep_command(const SweepFlags& flags) {
   const SceneInput input = scene_input(flags.scene_file);
@@ -52,6 +75,8 @@ int run_sweep_command(const SweepFlags& flags) {
   if (!nonlinear && !flags.start.empty())
     throw UsageError(
         fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear", flags.start.front()));
+  if (!flags.measured.empty() && !out.folder)
+    refuse_flag("--measured", "no --out", "beside --out DIR, whose pictures show it");
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -63,8 +88,17 @@ int run_sweep_command(const SweepFlags& flags) {
     branches_asked.starts.push_back(motion_from_json(read_text_file(file), file, swept));
   if (nonlinear) require_nonlinear(swept, branches_asked);
   SweepResult result;
+  const std::vector<BandRequest> bands_asked = bands_of(flags, request, nonlinear);
+  MeasuredOverlay measured;
+  if (!flags.measured.empty())
+    measured = read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
   KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
+  std::vector<SweepBand> bands;
+  if (!bands_asked.empty()) {
+    SharedWork work(out.threads);
+    bands = sweep_bands(scene, request, bands_asked, work);
+  }
   std::optional<NonlinearSweep> branches;
   if (nonlinear) {
     const InterruptGuard guard(false);
@@ -72,7 +106,8 @@ int run_sweep_command(const SweepFlags& flags) {
     if (branches->stopped) say_time_limit(flags.time_limit, branches_asked.stop, branches->shortfalls);
   }
   nlohmann::ordered_json document =
-      out.json || folder ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
+      out.json || folder || !bands_asked.empty() ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
+  if (!bands_asked.empty()) document["bands"] = sweep_bands_json(document, bands);
   if (branches && !document.is_null()) add_branches(document, swept, *branches);
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : sweep_table(swept, result);
@@ -80,9 +115,11 @@ int run_sweep_command(const SweepFlags& flags) {
     delivery.printed = branches_verdict(swept, *branches) +
                        "\nBy the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
                        branches_table(swept, *branches);
+  if (!bands_asked.empty() && !out.json) delivery.printed += sweep_bands_table(document, document["bands"]);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
-    std::vector<Figure> figures = sweep_files(swept, result, place);
+    std::vector<Figure> figures = sweep_files(swept, result, place, measured);
+    if (!bands_asked.empty()) add_bands(document, swept, place, figures);
     if (branches)
       for (Figure& figure : branch_files(swept, result, *branches, place)) figures.push_back(std::move(figure));
     return figures;
@@ -113,6 +150,8 @@ void add_sweep_command(CLI::App& app, int& status) {
   add_analysis_flags(*command, *flags);
   allow_growth_alone(*command, *flags);
   command->add_flag("--no-search", flags->no_search, "the points alone: no bands, boundaries or peaks between them");
+  add_band_flag(*command, flags->bands);
+  add_label_flag(*command, *flags, "x");
   add_html_flag(*command, *flags);
   command
       ->add_option("--x", flags->x,
@@ -123,6 +162,7 @@ void add_sweep_command(CLI::App& app, int& status) {
       ->add_option("--start", flags->start,
                    "with --theory nonlinear: follow branches from this motion as well, a steady.json of hb steady")
       ->type_name("FILE");
+  add_measured_flag(*command, flags->measured, "along what is swept");
   command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
   command->add_flag("--restart", flags->restart, "throw away what an interrupted run into the same --out left");
   command->callback([flags, &status] { status = run_sweep_command(*flags); });

@@ -47,9 +47,11 @@ std::string rod_title(const SceneModel& model, const SpeedResult& result, const 
   std::string beyond;
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     if (&result.rods[r] == &rod) beyond = beyond_text(result, r);
+  constexpr std::size_t longest = 84;  // bytes that a picture is wide
+  const char* gap = shown.size() + beyond.size() + 2 > longest ? "\n" : "; ";
   return two_lines(
       short_name(model.scene) + subject + ", " + speed_text(result.speed, model.scene) + verdict_text(result),
-      shown + (beyond.empty() ? "" : "; " + beyond));
+      shown + (beyond.empty() ? "" : gap + beyond));
 }
 
 std::string scene_title(const SceneModel& model, const SpeedResult& result, const std::string& shown) {

@@ -22,17 +22,21 @@ std::string truncated_note(Eigen::Index num_modes) {
 
 }  // namespace
 
-Figure response_figure(const SceneModel& model, const SpeedResult& result, const RodResult& rod,
-                       const std::string& csv) {
+Figure response_figure(const SceneModel& model, const SpeedResult& result, const RodResult& rod, const std::string& csv,
+                       const MeasuredOverlay& measured) {
   const Eigen::Index I = rod.num_modes, panels = std::min(I, max_panels);
+  std::vector<std::string> names;
+  for (Eigen::Index i = 1; i <= panels; ++i) names.push_back(fmt::format("q_{} {}", i, rod.name));
   const std::string unit = bracketed(output_units(model.scene).response);
   Figure figure;
   figure.name = figure_name("response", rod.name);
   figure.height = static_cast<int>(140 + (panels == 1 ? 300 : 130 * panels));
   figure.commands = fmt::format(
-      "set multiplot layout {},1 title {} margins char 17, char 3, char 4, char 4.5 spacing char 0, char 1.4\n"
+      "set multiplot layout {},1 title {} margins char 17, char 3, char 4, char 5.5 spacing char 0, char 1.4\n"
       "unset key\n{}set format y '%g'\nset ytics autofreq\nset format x ''\n",
-      panels, rod_title(model, result, rod, amplitude_meaning(model) + ", periodic response" + truncated_note(I)),
+      panels,
+      rod_title(model, result, rod,
+                amplitude_meaning(model) + ", periodic response" + truncated_note(I) + measured.note(names)),
       turn_axis);
   for (Eigen::Index i = 1; i <= panels; ++i) {
     if (i == panels) figure.commands += std::string("set format x '%g'\n") + turn_label(model);
@@ -40,8 +44,8 @@ Figure response_figure(const SceneModel& model, const SpeedResult& result, const
         "set label 1 'q_{{{0}}}{1}' at screen 0.06, graph 0.5 center rotate\n"
         "stats '{2}' using {3} nooutput\n"
         "set ytics autofreq; r = STATS_max - STATS_min; if (r > 0) {{ set ytics nice(r/3) }}\n"
-        "plot '{2}' using 1:{3} with lines lt 1\n",
-        i, unit, csv, 1 + i);
+        "plot '{2}' using 1:{3} with lines lt 1{4}\n",
+        i, unit, csv, 1 + i, measured.layer(names[static_cast<std::size_t>(i) - 1]));
   }
   figure.commands +=
       "unset multiplot\nunset label\nset ytics autofreq\nunset xlabel\nset xtics autofreq\nset xrange [*:*]\nset key\n";

@@ -78,7 +78,8 @@ std::vector<Figure> polar_figures(const SceneModel& model, const SpeedResult& re
   return figures;
 }
 
-std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& result, const std::string& csv) {
+std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& result, const std::string& csv,
+                                  const MeasuredOverlay& measured) {
   std::vector<Figure> figures;
   for (const auto& [name, bodies] : groups_of(*model.linkage())) {
     std::string panels;
@@ -98,8 +99,9 @@ std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& re
               "r = (high > STATS_max ? high : STATS_max) - (low < STATS_min ? low : STATS_min); if (r > 0) {{ set "
               "ytics nice(r/3) }}\n"
               "set ylabel '{0} {1} [N]'\nplot '{2}' using 1:{3} with lines lt 1 title 'elastic', "
-              "'' using 1:{4} with lines lt 2 dashtype 2 title 'rigid'\nunset key\n",
-              literal(joint.name), component, csv, column + 2 * c, column + 2 * c + 1);
+              "'' using 1:{4} with lines lt 2 dashtype 2 title 'rigid'{5}\nunset key\n",
+              literal(joint.name), component, csv, column + 2 * c, column + 2 * c + 1,
+              measured.layer(joint.name + " " + component, true));
         }
         if (components == 1) panels += "set multiplot next\n";
       }
@@ -128,20 +130,21 @@ std::vector<Figure> force_figures(const SceneModel& model, const SpeedResult& re
   return figures;
 }
 
-Figure torque_figure(const SceneModel& model, const SpeedResult& result, const std::string& csv) {
+Figure torque_figure(const SceneModel& model, const SpeedResult& result, const std::string& csv,
+                     const MeasuredOverlay& measured) {
   Figure figure;
   figure.name = "torque";
   figure.commands = fmt::format(
       "set title {}\n{}{}set ytics autofreq\nset ylabel 'driving torque on the crank [N m]'\nset key outside right top "
       "Left reverse "
       "samplen 3\n"
-      "plot '{}' using 1:2 with lines lt 1 title 'elastic', '' using 1:3 with lines lt 2 dashtype 2 title 'rigid'\n"
+      "plot '{}' using 1:2 with lines lt 1 title 'elastic', '' using 1:3 with lines lt 2 dashtype 2 title 'rigid'{}\n"
       "unset title\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset xtics autofreq\nset key default\n",
       scene_title(model, result,
                   fmt::format("driving torque; elasticity changes it by {:.4g} N m at most",
                               largest_change(result.forces->torque, result.forces->torque_rigid) *
                                   output_units(model.scene).moment)),
-      turn_axis, turn_label(model), csv);
+      turn_axis, turn_label(model), csv, measured.layer("torque", true));
   return figure;
 }
 

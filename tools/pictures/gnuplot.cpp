@@ -203,6 +203,13 @@ class Child {
   std::optional<RunningChild> killed_on_signal_;
 };
 
+void rename_axis(std::string& commands, const char* set, const std::string& own, const std::string& given) {
+  if (own.empty() || given.empty()) return;
+  const std::string before = set + own, after = set + quoted(given);
+  for (std::size_t at = 0; (at = commands.find(before, at)) != std::string::npos; at += after.size())
+    commands.replace(at, before.size(), after);
+}
+
 }  // namespace
 
 std::string literal(const std::string& text) {
@@ -226,6 +233,9 @@ std::string plot_script(const std::vector<Figure>& figures, const PictureStyle& 
   std::string script = preamble;
   script += style.titles ? "heading(text) = text\n" : "heading(text) = ''\n";
   for (const Figure& figure : figures) {
+    std::string commands = figure.commands;
+    rename_axis(commands, "set xlabel ", figure.x_label, style.x_label);
+    rename_axis(commands, "set ylabel ", figure.y_label, style.y_label);
     script += fmt::format(
         "\ndo for [kind in '{4}'] {{\n"
         "eval (kind eq 'svg') ? svg({0}, {1}) : (kind eq 'png') ? png({0}, {1}) : (kind eq 'pdf') ? pdf({0}, {1}) : "
@@ -235,7 +245,7 @@ std::string plot_script(const std::vector<Figure>& figures, const PictureStyle& 
         "set output\n"
         "}}\n",
         style.size ? style.size->width : figure.width, style.size ? style.size->height : figure.height, figure.name,
-        figure.commands, fmt::join(style.kinds, " "));
+        commands, fmt::join(style.kinds, " "));
   }
   return script;
 }

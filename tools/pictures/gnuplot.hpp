@@ -15,6 +15,7 @@ struct Figure {
   std::string name;  // of the files, without extension
   int width = 900, height = 560;  // of the SVG in pixels; the PNG has twice as many
   std::string commands;  // gnuplot, after terminal and output are set
+  std::string x_label = {}, y_label = {};  // names of axes that may be given others, quoted
 };
 
 // Text as a quoted gnuplot string that shows literally (no subscripts, no escapes).
@@ -36,6 +37,7 @@ struct PictureStyle {
   };
   std::optional<Size> size = std::nullopt;  // of every figure, instead of its own
   bool titles = true;
+  std::string x_label = {}, y_label = {};  // instead of those of the figures; empty: their own
 };
 
 // The script that draws all figures when run in the folder of their CSV files.

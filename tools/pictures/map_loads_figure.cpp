@@ -44,6 +44,7 @@ Figure load_figure(const MapDocument& document, const MapFiles& files, const std
   const MapResult& r = document.result;
   Figure figure;
   figure.name = figure_name(name, rod);
+  name_axes(document, figure);
   figure.width = 1000;
   figure.height = 720;
   figure.commands = fmt::format(

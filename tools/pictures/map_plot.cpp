@@ -101,7 +101,7 @@ std::string line_labels(const MapResult& r) {
       const bool upward = longest->back()[1] >= longest->front()[1];
       const auto n = static_cast<std::size_t>((upward ? along : 1 - along) * static_cast<double>(longest->size() - 1));
       const double u = ((*longest)[n][0] - x0) / (x1 - x0), v = ((*longest)[n][1] - y0) / (y1 - y0);
-      const bool free = u > 0.03 && u < 0.95 && v > 0.03 && v < 0.97 &&
+      const bool free = u > 0.05 && u < 0.93 && v > 0.03 && v < 0.97 &&
                         std::none_of(taken.begin(), taken.end(), [&](const Placed& p) {
                           return std::abs(p.u - u) < 0.09 && std::abs(p.v - v) < 0.05;
                         });
@@ -116,6 +116,11 @@ std::string line_labels(const MapResult& r) {
 }
 
 }  // namespace
+
+void name_axes(const MapDocument& document, Figure& figure) {
+  figure.x_label = map_axis_label(document, document.result.x_axis);
+  figure.y_label = map_axis_label(document, document.result.y_axis);
+}
 
 std::string map_axes(const MapDocument& document) {
   const MapResult& r = document.result;
@@ -163,6 +168,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
   const double limit = std::asinh(c.largest / c.scale);
   Figure figure;
   figure.name = "map";
+  name_axes(document, figure);
   figure.width = 1000;
   figure.height = 720;
   const std::string rods = std::holds_alternative<Linkage>(document.scene.model)

@@ -16,6 +16,8 @@ struct MapFiles {
 
 [[nodiscard]] Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour colour);
 
+// Names of both axes, quoted.
+void name_axes(const MapDocument& document, Figure& figure);
 // What maps share: ranges and names of both axes, and the boundaries as layers of a plot.
 [[nodiscard]] std::string map_axes(const MapDocument& document);
 [[nodiscard]] std::vector<std::string> boundary_layers(const MapResult& result, const MapFiles& files);

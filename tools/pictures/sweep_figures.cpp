@@ -10,114 +10,16 @@
 
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/path_unit.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 #include "tools/pictures/figure_text.hpp"
+#include "tools/pictures/sweep_frame.hpp"
 #include "tools/pictures/sweep_range.hpp"
 
 namespace hb::tools {
 namespace {
-
-constexpr int max_curves = 6;
-
-constexpr const char* clean_up =
-    "unset object\nunset arrow\nunset label\nunset logscale\nset xrange [*:*]\nset yrange [*:*]\nset format '%g'\n"
-    "unset title\nunset xlabel\nunset ylabel\nset key default\nset rmargin -1\nset lmargin -1\n";
-
-constexpr const char* new_line = "'.\"\\n\".'";  // gnuplot reads \n only in double quotes
-
-// Breaks lines between sentences, at "; ", where they would be longer than the picture is wide.
-std::string wrapped(const std::string& shown) {
-  constexpr std::size_t longest = 78;
-  std::string text;
-  std::size_t length = 0;
-  for (std::size_t at = 0; at < shown.size();) {
-    const std::size_t line_end = shown.find(new_line, at), sentence_end = shown.find("; ", at);
-    const std::size_t end = std::min({line_end, sentence_end, shown.size()});
-    const std::string sentence = shown.substr(at, end - at);
-    if (length > 0) {
-      const bool fits = length + 2 + sentence.size() <= longest;
-      text += fits ? "; " : new_line;
-      length = fits ? length + 2 : 0;
-    }
-    text += sentence;
-    length += sentence.size();
-    if (end == shown.size()) break;
-    at = end + 2;
-    if (end != line_end) continue;
-    text += new_line;
-    length = 0;
-    at = end + std::string_view(new_line).size();
-  }
-  return text;
-}
-
-int count_lines(const std::string& text) {
-  int lines = 1;
-  for (std::size_t at = text.find(new_line); at != std::string::npos; at = text.find(new_line, at + 1)) ++lines;
-  return lines;
-}
-
-std::string title(const SweepScene& scene, const SweepResult& result, std::size_t rod, const std::string& shown) {
-  const std::string subject = scene.first().linkage() ? ", " + result.rods[rod].name : "";
-  std::string at;
-  if (scene.axis().kind == Axis::Kind::parameter) at = " at " + speed_text(result.points.front().speed, scene.scene());
-  const std::string verdict = sweep_title_verdict(result);
-  return "set title heading('{/:Bold " +
-         literal(short_name(scene.scene()) + subject + at + (verdict.empty() ? "" : ", " + verdict)) + "}" + new_line +
-         wrapped(shown) + "')\n";
-}
-
-std::string axis(const SweepScene& scene) {
-  const std::vector<double>& values = scene.axis().values;
-  return fmt::format("set xrange [{}:{}]\nset xlabel {}\n", values.front(), values.back(), quoted(axis_label(scene)));
-}
-
-std::string shaded(const SweepRod& rod, const char* colour = "#d55e00") {
-  std::string text;
-  for (const UnstableBand& band : rod.bands) {
-    text += fmt::format(
-        "set object rectangle from first {}, graph 0 to first {}, graph 1 fillcolor rgb '{}' fillstyle solid 0.18 "
-        "noborder behind\n",
-        band.from, band.to, colour);
-  }
-  return text;
-}
-
-// Bands of this rod, over those of the others: there the mechanism is unstable too.
-std::string shaded(const SweepResult& result, std::size_t r) {
-  std::string text;
-  for (std::size_t other = 0; other < result.rods.size(); ++other)
-    if (other != r) text += shaded(result.rods[other], "#777777");
-  return text + shaded(result.rods[r]);
-}
-
-std::string shaded_note(const SweepResult& result, std::size_t r) {
-  std::string others;
-  for (std::size_t other = 0; other < result.rods.size(); ++other)
-    if (other != r && !result.rods[other].bands.empty())
-      others += (others.empty() ? "" : ", ") + result.rods[other].name;
-  return (result.rods[r].bands.empty() ? std::string() : std::string("; shaded: unstable")) +
-         (others.empty() ? "" : "; shaded grey: unstable because of " + literal(others));
-}
-
-// A curve, grey and dashed where the answer is beyond the linear theory. `style`: what stands behind "with lines".
-std::string curve(const std::string& csv, int column, const SweepColumns& columns, const std::string& style,
-                  double width) {
-  if (columns.beyond == 0) return fmt::format("'{}' using 1:{} with lines {} linewidth {}", csv, column, style, width);
-  return fmt::format(
-      "'{0}' using 1:{1} with lines linecolor rgb '#999999' dashtype 2 linewidth {2} notitle, '{0}' using "
-      "1:(column({3}) > 0 ? NaN : column({1})) with lines {4} linewidth {5}",
-      csv, column, 0.7 * width, columns.beyond, style, width);
-}
-
-// Some of the picture is beyond.
-std::string beyond_note(const CsvFile& csv, const SweepColumns& columns) {
-  if (columns.beyond == 0) return "";
-  const bool some = (csv.rows.col(columns.beyond - 1).array() > 0).any();
-  return some ? "'.\"\\n\".'grey, dashed: beyond the linear theory or small deflections" : "";
-}
 
 // Of the order lines drawn: those at which a peak was found, and a few in any case.
 int highest_order(const SweepResult& result, std::size_t r) {
@@ -156,15 +58,17 @@ CampbellFrame campbell_frame(const SweepScene& scene, const SweepResult& result)
 
 // Title, axes, shaded bands and palette.
 std::string campbell_settings(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
-                              const CampbellFrame& frame, double scale) {
-  std::string notes =
-      (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") + shaded_note(result, r);
+                              const CampbellFrame& frame, double scale, const std::string& measured) {
+  std::string notes = (result.computed.steady && !result.critical.empty() ? "; dots: resonance peaks" : "") +
+                      frame_shaded_note(result, r) + measured;
   if (!notes.empty()) notes.erase(0, 2);
   const bool several = result.rods[r].num_modes > 1;
-  return title(scene, result, r,
-               "Campbell diagram; grey: nΩ, dashed: kΩ/2" + std::string(several ? ", dotted: (ω_i ± ω_j)/2" : "") +
-                   (notes.empty() ? "" : "'.\"\\n\".'" + notes) + beyond_note(csv, sweep_columns(scene, result, r))) +
-         axis(scene) + shaded(result, r) +
+  return frame_title(scene, result, r,
+                     "Campbell diagram; grey: nΩ, dashed: kΩ/2" +
+                         std::string(several ? ", dotted: (ω_i ± ω_j)/2" : "") +
+                         (notes.empty() ? "" : "'.\"\\n\".'" + notes) +
+                         frame_beyond_note(csv, sweep_columns(scene, result, r))) +
+         frame_axis(scene) + frame_shaded(result, r) +
          fmt::format("set yrange [0:{}]\nset ylabel 'frequency [{}]'\nunset key\nset rmargin 20\n", frame.top,
                      literal(frame.unit.name)) +
          fmt::format(
@@ -249,21 +153,23 @@ void add_mode(const CampbellFrame& frame, const CsvFile& csv, const SweepColumns
 }  // namespace
 
 Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
-                       const std::string& critical) {
+                       const std::string& critical, const MeasuredOverlay& measured) {
   const SweepRod& rod = result.rods[r];
   const SweepColumns columns = sweep_columns(scene, result, r);
   CampbellFrame frame = campbell_frame(scene, result);
-  // High enough for the two lowest modes and for two turns of the crank.
-  frame.top = 2 * frame.crank(frame.to);
+  // High enough for the two lowest modes, and for the half order at the last speed.
+  frame.top = 0.6 * frame.crank(frame.to);
   for (int mode = 0; mode < std::min(rod.num_modes, 2); ++mode)
-    frame.top = std::max(frame.top, 1.15 * largest(finite(csv, columns.first_frequency + 2 * mode)));
+    frame.top =
+        std::max(frame.top, (mode == 0 ? 1.4 : 1.15) * largest(finite(csv, columns.first_frequency + 2 * mode)));
   const double scale = std::max(4 * std::abs(median(where_stable(scene, result, csv, columns.growth))), 1e-300);
 
   Figure figure;
   figure.name = figure_name("campbell", rod.name);
   figure.width = 1060;
   figure.height = 640;
-  figure.commands = campbell_settings(scene, result, r, csv, frame, scale);
+  frame.top = std::max(frame.top, 1.05 * largest(measured.values("frequency " + rod.name)));
+  figure.commands = campbell_settings(scene, result, r, csv, frame, scale, measured.note({"frequency " + rod.name}));
   std::vector<std::string> curves;
   add_orders(frame, highest_order(result, r), curves, figure.commands);
   const int shown = std::min(rod.num_modes, max_curves);
@@ -275,24 +181,33 @@ Figure campbell_figure(const SweepScene& scene, const SweepResult& result, std::
         "'{}' using (column(1) == {} && column(6) > 0 ? column(2) : NaN):8 with points pointtype 7 pointsize "
         "0.7 linecolor rgb '#000000' notitle",
         critical, r + 1));
-  figure.commands += fmt::format("plot {}\nunset colorbox\nunset cblabel\n", fmt::join(curves, ", \\\n  ")) + clean_up;
+  figure.commands += fmt::format("plot {}{}\nunset colorbox\nunset cblabel\n", fmt::join(curves, ", \\\n  "),
+                                 measured.layer("frequency " + rod.name)) +
+                     frame_clean_up;
   return figure;
 }
 
-Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
+Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
+                    const MeasuredOverlay& measured) {
   const SweepRod& rod = result.rods[r];
   const SweepColumns columns = sweep_columns(scene, result, r);
   const int shown = std::min(rod.num_modes, max_curves);
   Figure figure;
   figure.name = figure_name("peaks", rod.name);
+  std::vector<std::string> names;
+  for (int i = 1; i <= shown; ++i) names.push_back(fmt::format("q_{} {}", i, rod.name));
   const std::string meaning = scene.first().linkage() ? "q_i: amplitude of sin(iπx/l)" : "q_i: unknowns of the system";
   std::string& text = figure.commands;
-  text += title(scene, result, r,
-                meaning + ", largest over the turn" + shaded_note(result, r) + beyond_note(csv, columns)) +
-          axis(scene) + shaded(result, r);
+  text += frame_title(scene, result, r,
+                      meaning + ", largest over the turn" + frame_shaded_note(result, r) + measured.note(names) +
+                          frame_beyond_note(csv, columns)) +
+          frame_axis(scene) + frame_shaded(result, r);
   double top = 0, bottom = HUGE_VAL;
   for (int i = 0; i < shown; ++i) {
-    for (const double value : where_stable(scene, result, csv, columns.first_peak + i)) {
+    std::vector<double> values = where_stable(scene, result, csv, columns.first_peak + i);
+    const std::vector<double> more = measured.values(names[static_cast<std::size_t>(i)]);
+    values.insert(values.end(), more.begin(), more.end());
+    for (const double value : values) {
       if (!(value > 0)) continue;
       top = std::max(top, value);
       bottom = std::min(bottom, value);
@@ -306,60 +221,79 @@ Figure peaks_figure(const SweepScene& scene, const SweepResult& result, std::siz
   text += fmt::format("set ylabel 'largest |q_i|{}'\nset key outside right top Left reverse samplen 2\nplot ",
                       bracketed(output_units(scene.scene()).response));
   for (int i = 0; i < shown; ++i) {
-    text += fmt::format("{}{} title 'q_{{{}}}'", i == 0 ? "" : ", ",
-                        curve(csv.name, columns.first_peak + i, columns, fmt::format("lt {}", i + 1), 1.8), i + 1);
+    text +=
+        fmt::format("{}{} title 'q_{{{}}}'", i == 0 ? "" : ", ",
+                    frame_curve(csv.name, columns.first_peak + i, columns, fmt::format("lt {}", i + 1), 1.8), i + 1);
   }
-  text += std::string("\n") + clean_up;
+  for (const std::string& name : names) text += measured.layer(name);
+  text += std::string("\n") + frame_clean_up;
   return figure;
 }
 
-Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
+Figure strain_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
+                     const MeasuredOverlay& measured) {
   const SweepRod& rod = result.rods[r];
   const SweepColumns columns = sweep_columns(scene, result, r);
+  struct Panel {
+    std::string quantity, label;
+    int column;
+  };
+  std::vector<Panel> panels = {
+      {"deflection " + rod.name, "deflection [" + output_units(scene.scene()).length + "]", columns.deflection},
+      {"bending moment " + rod.name, "bending moment [N m]", columns.bending_moment}};
+  std::vector<std::string> names = {panels[0].quantity, panels[1].quantity};
+  const auto stress = std::ranges::find(csv.columns, "stress [MPa]");
+  if (stress != csv.columns.end()) {
+    panels.push_back({"stress " + rod.name, "stress [MPa]", static_cast<int>(stress - csv.columns.begin()) + 1});
+    names.push_back(panels.back().quantity);
+  }
   Figure figure;
   figure.name = figure_name("sweep_deflection", rod.name);
-  figure.height = 640;
+  figure.height = 140 + 250 * static_cast<int>(panels.size());
   std::string& text = figure.commands;
-  std::string heading = title(
+  std::string heading = frame_title(
       scene, result, r,
-      "largest deflection and bending moment over rod and turn" + shaded_note(result, r) + beyond_note(csv, columns));
+      std::string("largest deflection") + (panels.size() > 2 ? ", bending moment and stress" : " and bending moment") +
+          " over rod and turn" + frame_shaded_note(result, r) + measured.note(names) + frame_beyond_note(csv, columns));
   heading.replace(0, 10, "");  // without "set title "
   heading.pop_back();
   text += fmt::format(
-      "set multiplot layout 2,1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n", heading,
-      1.5 + 1.5 * count_lines(heading));
-  text += axis(scene) + shaded(result, r);
-  const auto range = [&](int column) {
-    const std::vector<double> values = where_stable(scene, result, csv, column);
+      "set multiplot layout {},1 title {} margins char 14, char 3, char 4, char {} spacing char 0, char 1.5\n",
+      panels.size(), heading, 1.5 + 1.5 * frame_lines(heading));
+  text += frame_axis(scene) + frame_shaded(result, r) + "unset key\nset logscale y\nset format x ''\nunset xlabel\n";
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    const Panel& panel = panels[k];
+    std::vector<double> values = where_stable(scene, result, csv, panel.column);
+    const std::vector<double> more = measured.values(panel.quantity);
+    values.insert(values.end(), more.begin(), more.end());
     double low = HUGE_VAL;
     for (const double value : values)
       if (value > 0) low = std::min(low, value);
-    return std::isfinite(low) ? fmt::format("set yrange [{}:{}]\n", low / 2, 10 * largest(values)) : std::string();
-  };
-  text += fmt::format(
-      "unset key\nset logscale y\nset format x ''\nunset xlabel\nset ylabel 'deflection [{}]'\n{}"
-      "plot {}\n"
-      "set format x '%g'\nset xlabel {}\nset ylabel 'bending moment [N m]'\n{}"
-      "plot {}\nunset multiplot\n",
-      literal(output_units(scene.scene()).length), range(columns.deflection),
-      curve(csv.name, columns.deflection, columns, "lt 1", 1.8), quoted(axis_label(scene)),
-      range(columns.bending_moment), curve(csv.name, columns.bending_moment, columns, "lt 2", 1.8));
-  text += clean_up;
+    if (std::isfinite(low)) text += fmt::format("set yrange [{}:{}]\n", low / 2, 10 * largest(values));
+    if (k + 1 == panels.size()) text += fmt::format("set format x '%g'\nset xlabel {}\n", quoted(axis_label(scene)));
+    text += fmt::format("set ylabel '{}'\nplot {}{}\n", literal(panel.label),
+                        frame_curve(csv.name, panel.column, columns, fmt::format("lt {}", k + 1), 1.8),
+                        measured.layer(panel.quantity));
+  }
+  text += std::string("unset multiplot\n") + frame_clean_up;
   return figure;
 }
 
-Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv) {
+Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::size_t r, const CsvFile& csv,
+                     const MeasuredOverlay& measured) {
   const SweepRod& rod = result.rods[r];
   const SweepColumns columns = sweep_columns(scene, result, r);
   const OutputUnits units = output_units(scene.scene());
-  const std::vector<double> growth = finite(csv, columns.growth);
+  std::vector<double> growth = finite(csv, columns.growth);
+  const std::vector<double> more = measured.values("growth rate " + rod.name);
+  growth.insert(growth.end(), more.begin(), more.end());
   Figure figure;
   figure.name = figure_name("growth", rod.name);
   std::string& text = figure.commands;
-  text += title(scene, result, r,
-                "growth rate of disturbances: below zero they die out" + shaded_note(result, r) +
-                    beyond_note(csv, columns)) +
-          axis(scene) + shaded(result, r);
+  text += frame_title(scene, result, r,
+                      "growth rate of disturbances: below zero they die out" + frame_shaded_note(result, r) +
+                          measured.note({"growth rate " + rod.name}) + frame_beyond_note(csv, columns)) +
+          frame_axis(scene) + frame_shaded(result, r);
   // Around the leading rate: modes that decay far faster would hide it.
   const double low = growth.empty() ? -1 : *std::min_element(growth.begin(), growth.end());
   const double high = std::max(largest(growth), 0.0);
@@ -376,82 +310,12 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
     if (own.empty() || *std::max_element(own.begin(), own.end()) < low - 0.35 * span) continue;  // below the picture
     text += fmt::format(
         ", {} title 'mode {}'",
-        curve(csv.name, columns.first_frequency + 2 * mode + 1, columns, fmt::format("lt {}", mode + 1), 1.4),
+        frame_curve(csv.name, columns.first_frequency + 2 * mode + 1, columns, fmt::format("lt {}", mode + 1), 1.4),
         mode + 1);
   }
-  text += "\n";
-  text += clean_up;
+  text += measured.layer("growth rate " + rod.name) + "\n";
+  text += frame_clean_up;
   return figure;
-}
-
-std::vector<Figure> sweep_force_figures(const SweepScene& scene, const SweepResult& result, const CsvFile& csv) {
-  const Linkage& linkage = *scene.first().linkage();
-  std::vector<std::pair<std::string, std::vector<std::string>>> groups;
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
-    const std::string& coupler = linkage.dyads[d].coupler.name;
-    groups.push_back({coupler, {coupler, body_name(linkage, closing_index(static_cast<int>(d)))}});
-  }
-  const std::string& crank = linkage.crank.body.name;
-  groups.push_back({crank, {crank, "torque"}});
-  std::string bands;
-  for (const SweepRod& rod : result.rods) bands += shaded(rod);
-  const std::string verdict = sweep_title_verdict(result);
-
-  std::vector<Figure> figures;
-  for (const auto& [name, bodies] : groups) {
-    std::string panels;
-    int num_panels = 0;
-    bool cut = false;
-    std::vector<std::string> components = result.joint_components;
-    components.push_back("torque");
-    for (std::size_t c = 0; c < components.size(); ++c) {
-      const std::string body = components[c].substr(0, components[c].find('.'));
-      if (std::find(bodies.begin(), bodies.end(), body) == bodies.end()) continue;
-      const int column = 2 + 4 * static_cast<int>(c);
-      double low = 0, high = 0;
-      for (int k = 0; k < 4; ++k) {
-        const std::vector<double> all = where_stable(scene, result, csv, column + k), values = without_spikes(all);
-        cut = cut || values.size() < all.size();
-        if (values.empty()) continue;
-        low = std::min(low, *std::min_element(values.begin(), values.end()));
-        high = std::max(high, largest(values));
-        if (k < 2) continue;
-        const std::vector<double> rigid = finite(csv, column + k);  // over the whole sweep
-        low = std::min(low, *std::min_element(rigid.begin(), rigid.end()));
-        high = std::max(high, largest(rigid));
-      }
-      const double margin = 0.15 * (high - low);
-      const std::string range = high > low ? fmt::format("set yrange [{}:{}]\n", low - margin, high + margin) : "";
-      panels += fmt::format(
-          "{}set ylabel '{} [{}]'\nplot '{}' using 1:{}:{} with filledcurves fillcolor rgb '#b8b8b8' fillstyle solid "
-          "0.6 "
-          "notitle, '' using 1:{} with lines lt 1 title 'elastic', '' using 1:{} with lines lt 1 notitle, "
-          "'' using 1:{} with lines lt 2 dashtype 2 title 'rigid', '' using 1:{} with lines lt 2 dashtype 2 notitle\n"
-          "unset key\n",
-          range, literal(components[c]), components[c] == "torque" ? "N m" : "N", csv.name, column, column + 1, column,
-          column + 1, column + 2, column + 3);
-      ++num_panels;
-    }
-    if (num_panels == 0) continue;
-    const int rows = (num_panels + 1) / 2;
-    Figure figure;
-    figure.name = figure_name("sweep_forces", name);
-    figure.width = 1000;
-    figure.height = 130 + 230 * rows;
-    figure.commands = fmt::format(
-        "set multiplot layout {},2 title '{{/:Bold {}}}'.\"\\n\".'{}'\nset tmargin 2.2\nset key at graph 1, graph 1.02 "
-        "right bottom horizontal Left reverse samplen "
-        "3\nset format '%g'\n"
-        "set xtics autofreq\nset ytics autofreq\n{}{}{}unset multiplot\nset tmargin -1\nset xtics autofreq\nset ytics "
-        "autofreq\n",
-        rows, literal(short_name(scene.scene()) + ", joints of " + name + (verdict.empty() ? "" : ", " + verdict)),
-        wrapped(fmt::format("between smallest and largest force over the turn, elastic beside rigid{}{}",
-                            cut ? "; sharp peaks cut off" : "", bands.empty() ? "" : "; shaded orange: unstable")),
-        axis(scene), bands, panels);
-    figure.commands += clean_up;
-    figures.push_back(std::move(figure));
-  }
-  return figures;
 }
 
 }  // namespace hb::tools

@@ -1,0 +1,184 @@
+// Pictures for a design report: measured values, verdicts as a strip, bent links, bands, names of axes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+class DesignPictures : public CommandTest {
+ protected:
+  std::string sweep(const std::string& flags) const {
+    return "sweep " + scene("slider_crank_units") + " --rpm 1000:3000:500 --modes 2 --format svg --out out " + flags;
+  }
+  void measured(const std::string& text) const { std::ofstream(folder_ / "m.csv") << text; }
+  // Rows of a CSV file that hb wrote, without comments and names.
+  std::vector<std::vector<double>> rows(const std::string& file) const {
+    std::istringstream text(read(folder_ / file));
+    std::vector<std::vector<double>> found;
+    bool names = true;
+    for (std::string line; std::getline(text, line);) {
+      if (line.starts_with("#")) continue;
+      if (names) {
+        names = false;
+        continue;
+      }
+      std::istringstream fields(line);
+      found.emplace_back();
+      for (std::string field; std::getline(fields, field, ',');)
+        found.back().push_back(std::strtod(field.c_str(), nullptr));
+    }
+    return found;
+  }
+};
+
+TEST_F(DesignPictures, ShowMeasuredValuesInTheirUnits) {
+  measured("speed [Hz],deflection rod [um],torque [kN m],frequency rod [rpm]\n25,30,0.05,60000\n50,90,0.07,61000\n");
+  const CommandResult result = hb(sweep("--measured m.csv"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto values = rows("out/measured.csv");
+  ASSERT_EQ(values.size(), 2u);
+  EXPECT_DOUBLE_EQ(values[0][0], 1500);  // rpm
+  const Json units = Json::parse(read(folder_ / "out/sweep.json"))["units"];
+  EXPECT_NEAR(values[0][1], units["length"] == "mm" ? 0.03 : 3e-5, 1e-12);
+  EXPECT_NEAR(values[0][2], 50, 1e-9);
+  EXPECT_NEAR(values[0][3], 1000, 1e-9);
+  const std::string script = read(folder_ / "out/sweep.gp");
+  for (const char* column : {"'measured.csv' using 1:2", "'measured.csv' using 1:3", "'measured.csv' using 1:4"})
+    EXPECT_NE(script.find(column), std::string::npos) << column;
+  EXPECT_NE(read(folder_ / "out/sweep_deflection_rod.svg").find("circles: measured"), std::string::npos);
+
+  measured("crank angle,torque [N m],q_1 rod\n0,1,0\n90,2,0\n");
+  const CommandResult steady =
+      hb("steady " + scene("slider_crank_units") + " --rpm 1500 --modes 2 --format svg --measured m.csv --out turn");
+  ASSERT_EQ(steady.status, 0) << steady.err;
+  EXPECT_NE(read(folder_ / "turn/torque.svg").find("measured"), std::string::npos);
+  EXPECT_NE(read(folder_ / "turn/response_rod.svg").find("circles: measured"), std::string::npos);
+}
+
+TEST_F(DesignPictures, MeasuredValuesThatCannotBeShownAreRefused) {
+  const auto refusal = [&](const std::string& text) {
+    measured(text);
+    const CommandResult result = hb(sweep("--measured m.csv"));
+    EXPECT_EQ(result.status, 2) << text;
+    EXPECT_TRUE(result.out.empty());
+    return result.err;
+  };
+  EXPECT_NE(refusal("speed,deflection CD\n1,2\n").find("found the column \"deflection CD\", allowed: deflection rod"),
+            std::string::npos);
+  EXPECT_NE(refusal("speed,deflection rod [N]\n1,2\n").find("found the unit N of deflection rod"), std::string::npos);
+  EXPECT_NE(refusal("1,2\n3,4\n").find("found no header line"), std::string::npos);
+  EXPECT_NE(refusal("speed,torque\n1,x\n").find("m.csv:2"), std::string::npos);
+  EXPECT_NE(hb("sweep " + scene("slider_crank_units") + " --rpm 1000:2000:500 --measured m.csv").err.find("--out"),
+            std::string::npos);
+}
+
+// What is unstable is as long as the band was located, not as the points are apart.
+TEST_F(DesignPictures, VerdictsAlongASweepEndWhereTheBandsEnd) {
+  const CommandResult result = hb("sweep " + scene("mathieu") + " --omega 1.9:2.5:0.1 --out out --format svg");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json bands = Json::parse(read(folder_ / "out/sweep.json"))["unstable_bands"]["system"];
+  ASSERT_EQ(bands.size(), 1u);
+  double from = HUGE_VAL, to = -HUGE_VAL, stable_below = -HUGE_VAL, stable_above = HUGE_VAL;
+  for (const auto& row : rows("out/sweep_verdict.csv")) {
+    if (row[3] == 1) from = std::min(from, row[1]), to = std::max(to, row[2]);
+    if (row[3] == -1 && row[1] < 2) stable_below = std::max(stable_below, row[2]);
+    if (row[3] == -1 && row[2] > 2.4) stable_above = std::min(stable_above, row[1]);
+  }
+  EXPECT_DOUBLE_EQ(from, bands[0][0].get<double>());
+  EXPECT_DOUBLE_EQ(to, bands[0][1].get<double>());
+  EXPECT_LE(stable_below, from);
+  EXPECT_GE(stable_above, to);
+  EXPECT_GT(fs::file_size(folder_ / "out/sweep_verdict.svg"), 3000u);
+}
+
+TEST_F(DesignPictures, TheBentMechanismIsDrawnByAFactorThatItStates) {
+  const CommandResult result =
+      hb("steady " + scene("slider_crank_units") + " --rpm 2000 --modes 2 --format svg --out out --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json peak = Json::parse(result.out)["rods"]["rod"]["deflection"];
+  const std::string svg = read(folder_ / "out/bent_mechanism.svg"), csv = read(folder_ / "out/bent_mechanism.csv");
+  const std::size_t at = svg.find("deflections drawn ");
+  ASSERT_NE(at, std::string::npos);
+  const double factor = std::strtod(svg.c_str() + at + std::string("deflections drawn ").size(), nullptr);
+  EXPECT_GT(factor, 1);
+  // The drawn line is off its chord by factor times the deflection there: no more than factor times the largest.
+  double most = 0;
+  std::vector<std::vector<double>> chord;
+  for (const auto& row : rows("out/bent_mechanism.csv")) {
+    if (row.size() < 4 || std::isnan(row[0])) continue;
+    if (row[1] == 1) {
+      if (chord.size() == 2) chord.clear();
+      chord.push_back(row);
+    }
+    if (row[1] != 2 || chord.size() != 2) continue;
+    const double dx = chord[1][2] - chord[0][2], dy = chord[1][3] - chord[0][3], l = std::hypot(dx, dy);
+    most = std::max(most, std::abs((row[2] - chord[0][2]) * dy - (row[3] - chord[0][3]) * dx) / l);
+  }
+  EXPECT_LE(most, factor * peak["max_abs"].get<double>() * (1 + 1e-9));
+  EXPECT_GE(most, 0.3 * factor * peak["max_abs"].get<double>());
+}
+
+TEST_F(DesignPictures, AxesHaveTheNamesGiven) {
+  ASSERT_EQ(hb(sweep("--no-search --label x='crank [rev/min]'")).status, 0);
+  const std::string peaks = read(folder_ / "out/peaks_rod.svg");
+  EXPECT_NE(peaks.find("crank [rev/min]"), std::string::npos);
+  EXPECT_EQ(peaks.find("crank speed [rpm]"), std::string::npos);
+  ASSERT_EQ(hb("map " + scene("mathieu") +
+               " --x omega=1:3:8 --y hill.stiffness.1.cos.0.0=0.1:1:6 --label x=Omega --label y='depth q' --format svg "
+               "--out map")
+                .status,
+            0);
+  const std::string map = read(folder_ / "map/map.svg");
+  EXPECT_NE(map.find(">Omega<"), std::string::npos);
+  EXPECT_NE(map.find(">depth q<"), std::string::npos);
+  const CommandResult wrong = hb(sweep("--label y=deflection"));
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("--label: found \"y=deflection\", allowed: x=TEXT"), std::string::npos) << wrong.err;
+}
+
+TEST_F(DesignPictures, BandsAreComputedAtBothEnds) {
+  ASSERT_EQ(hb(sweep("--no-search --band damping=0.5:2 --json")).status, 0);
+  const Json found = Json::parse(read(folder_ / "out/sweep.json"));
+  ASSERT_EQ(found["bands"].size(), 1u);
+  const Json& band = found["bands"][0];
+  // More damping: disturbances die out faster, at every speed.
+  for (std::size_t k = 0; k < found["rpm"].size(); ++k) {
+    EXPECT_GT(band["at_from"]["rods"]["rod"]["growth_rate"][k], found["rods"]["rod"]["growth_rate"][k]);
+    EXPECT_LT(band["at_to"]["rods"]["rod"]["growth_rate"][k], found["rods"]["rod"]["growth_rate"][k]);
+  }
+  EXPECT_GT(fs::file_size(folder_ / "out/sweep_band_damping_rod.svg"), 3000u);
+  const CommandResult text =
+      hb("sweep " + scene("slider_crank_units") + " --rpm 1000:3000:500 --modes 2 --no-search --band E=0.9:1.1");
+  EXPECT_NE(text.out.find("E of the elastic links times 0.9 to 1.1"), std::string::npos) << text.out;
+  // At one speed: a picture of q_1, and the slope of the stress.
+  const CommandResult one = hb("steady " + scene("slider_crank_units") +
+                               " --rpm 2000 --modes 2 --band mass=0.9:1.1 --format svg --out one --json");
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_GT(fs::file_size(folder_ / "one/band_mass_rod.svg"), 3000u);
+  bool stress = false;
+  const Json document = Json::parse(one.out);
+  for (const Json& quantity : document["bands"][0]["quantities"])
+    if (quantity["name"] == "stress, together") {
+      stress = true;
+      // The power law between both ends.
+      const double slope =
+          std::log(quantity["to"].get<double>() / quantity["from"].get<double>()) / std::log(1.1 / 0.9);
+      EXPECT_NEAR(quantity["slope"].get<double>(), slope, 0.05 * std::abs(slope));
+    }
+  EXPECT_TRUE(stress);
+  EXPECT_EQ(
+      hb("sweep " + scene("slider_crank_units") + " --rpm 1000 --x piston.mass=0.4:0.5:0.1 --band E=0.9:1.1").status,
+      2);
+}
+
+}  // namespace
