@@ -62,6 +62,10 @@ TEST_F(Machine, TheDocumentHasBearingsFrameDriveAndSliders) {
   // The crank of the scene: a mass of 1.2 kg 8 mm off the pivot, without inertia of its own.
   EXPECT_NEAR(inertia, 1.2 * 64, 1e-9);
   EXPECT_NEAR(found["flywheel"]["speed_fluctuation"].get<double>(), energy / (inertia * omega * omega), 1e-12);
+  const Json many = document(scene("slider_crank") + " --rpm 2500 --modes 20");
+  EXPECT_LE(std::abs(many["flywheel"]["energy_fluctuation"].get<double>() - energy),
+            found["flywheel"]["energy_fluctuation_error"].get<double>());
+  EXPECT_LT(found["flywheel"]["energy_fluctuation_error"], 0.1 * energy);
   const Json heavy = document(scene("slider_crank") + crank_with_flywheel + " --set crank.inertia=5000");
   EXPECT_NEAR(heavy["flywheel"]["inertia"].get<double>(), 5076.8, 1e-6);
   EXPECT_NEAR(heavy["flywheel"]["energy_fluctuation"].get<double>(), energy, 1e-9 * energy);
@@ -182,6 +186,20 @@ TEST_F(Machine, TheErrorOfAStressAlongASweepCoversTheModesLeftOut) {
     EXPECT_LE(std::abs(few["fatigue_safety"][k].get<double>() - many["fatigue_safety"][k].get<double>()),
               few["fatigue_safety_error"][k].get<double>());
   }
+}
+
+TEST_F(Machine, EveryModeHasItsFrequencyInHertzAndItsDampingRatio) {
+  const Json found = document(scene("slider_crank_units") + " --rpm 2000 --modes 2"), rod = found["rods"]["rod"];
+  ASSERT_EQ(rod["damping_ratios"].size(), rod["exponents"].size());
+  for (std::size_t k = 0; k < rod["exponents"].size(); ++k) {
+    const double re = rod["exponents"][k][0], omega = rod["frequencies"][k], error = rod["exponent_errors"][k];
+    EXPECT_NEAR(rod["frequencies_hz"][k], omega / (2 * M_PI), 1e-12 * omega);
+    EXPECT_NEAR(rod["damping_ratios"][k], -re / std::hypot(re, omega), 1e-15);
+    EXPECT_DOUBLE_EQ(rod["frequencies_hz_errors"][k], error / (2 * M_PI));
+    EXPECT_DOUBLE_EQ(rod["damping_ratio_errors"][k], error / std::hypot(re, omega));
+  }
+  // damping_ratio = 0.005 of the first mode at rest.
+  EXPECT_NEAR(rod["damping_ratios"][0].get<double>(), 0.005, 0.001);
 }
 
 TEST_F(Machine, StrengthsThatCannotBeAreRefused) {

@@ -174,6 +174,35 @@ def test_bands_are_the_commands(compressor):
         compressor.steady(rpm=3000, theory="nonlinear", band="E=0.9:1.1")
 
 
+def test_bands_of_a_sweep_are_the_commands(compressor):
+    sw = compressor.sweep(rpm=(1000, 2000, 500), search=False, band={"E": (0.9, 1.1)})
+    document = command(
+        "sweep", SCENES / "slider_crank_units.toml", "--rpm", "1000:2000:500", *SETTING, "--no-search", "--band", "E=0.9:1.1"
+    )
+    assert sw.bands == document["bands"] and sw.to_dict() == document
+    with pytest.raises(hb.RequestError, match="band"):
+        compressor.sweep(rpm=1000, x="piston.mass=0.4:0.5:0.1", band="E=0.9:1.1")
+
+
+def test_stresses_of_a_map_are_arrays(compressor):
+    strong = compressor.with_(STRENGTH)
+    mp = strong.map(x="rpm=1000:3000:3", y="piston.mass=0.3:0.5:2", boundaries=False, stress=True)
+    s = strong.with_({"piston.mass": 0.5}).steady(rpm=2000)["rod"]
+    rod = mp["rod"]
+    assert rod.stress.max_abs.shape == rod.deflection.shape == rod.theory_error.shape == (2, 3)
+    assert rod.stress.fatigue_safety[1, 1] == pytest.approx(s.stress.fatigue_safety, rel=1e-6)
+    assert rod.stress.error[1, 1] < 0.05 * rod.stress.max_abs[1, 1]
+    assert compressor.map(x="rpm=1000:3000:3", y="piston.mass=0.3:0.5:2", boundaries=False)["rod"].stress is None
+
+
+def test_a_design_keeps_a_safety(compressor):
+    t = compressor.with_(STRENGTH).tune(
+        minimise="mass", vary={"rod.section.height": (0.01, 0.03)}, keep=["safety>=2"], over=(1000, 2000), speeds=4, analyses=30
+    )
+    assert t.conditions[0]["value"] >= 2 * (1 - 1e-6)
+    assert t.metrics[1]["after"]["against"] in ("yielding", "fatigue (Goodman)")
+
+
 def test_damping_comes_back_from_a_decay_and_a_peak():
     t = numpy.linspace(0, 0.3, 400)
     fit = hb.fit_decay(t, numpy.exp(-0.01 * 500 * t) * numpy.cos(500 * math.sqrt(1 - 1e-4) * t))

@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/json_parts.hpp"
@@ -46,7 +48,25 @@ void add_resonance(Json& json, const RodModel& model, const RodResult& rod, doub
   if (slow && !rod.max_abs.empty()) json["amplification"] = largest / *slow;
 }
 
-void add_stability(Json& json, const RodResult& rod, double speed) {
+// Of each exponent the frequency in Hz and the damping ratio -Re lambda/|Re lambda + i nu|, nu the frequency. What
+// bounds the error of lambda bounds both: by error/(2 pi), and by error/|Re lambda + i nu|.
+void add_mode_words(Json& json, const std::vector<Exponent>& exponents, const Units& units) {
+  Json hertz = Json::array(), hertz_errors = Json::array(), ratios = Json::array(), ratio_errors = Json::array();
+  for (const Exponent& exponent : exponents) {
+    const double per_second = 1 / (2 * std::numbers::pi * units.time_in_s);
+    const double size = std::hypot(exponent.value.real(), exponent.frequency);
+    hertz.push_back(number(exponent.frequency * per_second));
+    hertz_errors.push_back(number(exponent.error * per_second));
+    ratios.push_back(size > 0 ? number(-exponent.value.real() / size + 0.0) : Json(nullptr));
+    ratio_errors.push_back(size > 0 ? number(exponent.error / size) : Json(nullptr));
+  }
+  json["frequencies_hz"] = std::move(hertz);
+  json["frequencies_hz_errors"] = std::move(hertz_errors);
+  json["damping_ratios"] = std::move(ratios);
+  json["damping_ratio_errors"] = std::move(ratio_errors);
+}
+
+void add_stability(Json& json, const RodResult& rod, double speed, const Units& units) {
   json.update(stability_json(*rod.stability, rod.num_exponents));
   json["exponents_unresolved"] = unresolved_exponents(rod);
   Json frequencies = Json::array(), multipliers = Json::array();
@@ -55,6 +75,7 @@ void add_stability(Json& json, const RodResult& rod, double speed) {
     multipliers.push_back(pair(exponent.multiplier(speed)));
   }
   json["frequencies"] = std::move(frequencies);
+  add_mode_words(json, rod.stability->exponents, units);
   json["multipliers"] = std::move(multipliers);
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
@@ -138,7 +159,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       add_stress(entry, *rod.stress);
       add_stress_cycle(entry["stress"], model, result, r);
     }
-    if (rod.stability) add_stability(entry, rod, result.speed);
+    if (rod.stability) add_stability(entry, rod, result.speed, units);
   }
   if (result.forces) {
     json["joints"] = joints_json(*result.forces);

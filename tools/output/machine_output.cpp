@@ -11,6 +11,7 @@
 #include "hb/analysis/slider_motion.hpp"
 #include "hb/analysis/static_deflection.hpp"
 #include "hb/analysis/stress_cycle.hpp"
+#include "lib/constants.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/output_folder.hpp"
@@ -254,6 +255,14 @@ void add_machine(Json& document, const SceneModel& model, const SpeedResult& res
   document["bearings"] = bearings_json(loads->bearings, model.scene.units);
   document["frame"] = frame_json(*loads, result.force_errors.has_value(), model.scene.units);
   add_drive(document, loads->drive, loads->drive_rigid, loads->inertia, loads->speed_fluctuation);
+  if (result.force_errors) {
+    // An integral of T less its mean over the shorter of two ways round, at most pi, each wrong by no more than
+    // epsilon.
+    const Range torque = fourier::range(result.forces->torque, 0);
+    const double size = std::max(std::abs(torque.max.value), std::abs(torque.min.value));
+    document["flywheel"]["energy_fluctuation_error"] =
+        number(two_pi * (result.force_errors->torque + result.force_errors->torque_cut) * size);
+  }
   Json sliders = Json::object();
   for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed))
     sliders[slider.name] = {{"position", range_json(slider.position, 0)},

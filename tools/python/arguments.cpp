@@ -197,6 +197,13 @@ py::dict plain_speeds(const py::dict& arguments, const Units& units) {
   return plain;
 }
 
+std::vector<BandRequest> read_bands(const py::dict& arguments) {
+  std::vector<BandRequest> bands;
+  if (const auto asked = given(arguments, "band"))
+    for (const std::string& text : texts("band", *asked)) bands.push_back(parse_band(text));
+  return bands;
+}
+
 Request read_request(const py::dict& arguments) {
   Request request;
   if (const auto rpm = given(arguments, "rpm")) request.rpm = number("rpm", *rpm);

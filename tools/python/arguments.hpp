@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hb/analysis/request.hpp"
+#include "hb/analysis/sensitivity_band.hpp"
 #include "tools/command/range_units.hpp"
 #include "tools/python/bindings.hpp"
 
@@ -34,6 +35,7 @@ namespace hb::python {
 
 // rpm, omega, modes, tol, rods, only, steady_method, stability_method and bound of a call.
 [[nodiscard]] Request read_request(const py::dict& arguments);
+[[nodiscard]] std::vector<BandRequest> read_bands(const py::dict& arguments);
 [[nodiscard]] StabilityMethod stability_method(py::handle object);
 // Turns of a motion without linearisation; nothing with theory="linear", which knows no period.
 [[nodiscard]] std::optional<int> read_turns(const py::dict& arguments);

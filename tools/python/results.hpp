@@ -8,6 +8,7 @@
 
 #include "hb/analysis/analyses.hpp"
 #include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
+#include "hb/analysis/sensitivity_band.hpp"
 #include "hb/analysis/tune/tune_problem.hpp"
 
 namespace hb::python {
@@ -16,6 +17,7 @@ namespace hb::python {
 struct SweepCore {
   Sweep linear;
   std::optional<NonlinearSweep> branches;
+  std::vector<SweepBand> bands = {};
 };
 
 struct TuneCore {

@@ -150,16 +150,9 @@ std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& argumen
 }
 
 // "damping=0.5:2" each.
-std::vector<BandRequest> bands_of(const py::dict& arguments) {
-  std::vector<BandRequest> bands;
-  if (const auto asked = given(arguments, "band"))
-    for (const std::string& text : texts("band", *asked)) bands.push_back(parse_band(text));
-  return bands;
-}
-
 std::shared_ptr<Answer> answer_of(const SceneCore& core, const py::dict& written) {
   const py::dict arguments = plain_speeds(written, core.scene.units);
-  const std::vector<BandRequest> bands = bands_of(arguments);
+  const std::vector<BandRequest> bands = read_bands(arguments);
   if (const std::optional<int> turns = read_turns(arguments)) {
     if (!bands.empty()) throw RequestError("band", "beside theory = \"nonlinear\"", "band with the linear theory");
     return nonlinear(core, arguments, *turns);

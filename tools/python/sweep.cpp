@@ -4,6 +4,7 @@
 
 #include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/sweep_bands.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/python/arguments.hpp"
 #include "tools/python/python_work.hpp"
@@ -44,9 +45,18 @@ std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& written,
   static_cast<Request&>(request) = read_request(rest);
   request.x = axis_of(core, arguments, request);
   const std::optional<int> turns = read_turns(arguments);
+  const std::vector<BandRequest> bands = read_bands(arguments);
+  if (turns && !bands.empty())
+    throw RequestError("band", "beside theory = \"nonlinear\"", "band with the linear theory");
+  if (!bands.empty() && !is_speed(request.x.path))
+    throw RequestError("band", "beside a sweep along " + request.x.path, "with a sweep along the speed");
   PythonWork work(arguments, progress);
   return work.run([&] {
-    if (!turns) return std::make_shared<SweepCore>(SweepCore{sweep(core.source, request, work), std::nullopt});
+    if (!turns) {
+      auto answer = std::make_shared<SweepCore>(SweepCore{sweep(core.source, request, work), std::nullopt});
+      answer->bands = sweep_bands(core.scene, request, bands, work);
+      return answer;
+    }
     NonlinearSweepOptions options;
     options.turns = *turns;
     options.stop = work.stop();
@@ -59,12 +69,17 @@ std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& written,
 
 std::string json(const SweepCore& core) {
   nlohmann::ordered_json document = tools::sweep_json(*core.linear.scene, core.linear, false);
+  if (!core.bands.empty()) document["bands"] = tools::sweep_bands_json(document, core.bands);
   if (core.branches) tools::add_branches(document, *core.linear.scene, *core.branches);
   return tools::json_text(document);
 }
 
 std::string words(const SweepCore& core) {
   std::string table = tools::sweep_table(*core.linear.scene, core.linear);
+  if (!core.bands.empty()) {
+    const nlohmann::ordered_json document = tools::sweep_json(*core.linear.scene, core.linear, false);
+    table += tools::sweep_bands_table(document, tools::sweep_bands_json(document, core.bands));
+  }
   if (core.branches) table += tools::branches_table(*core.linear.scene, *core.branches);
   return table;
 }

@@ -148,6 +148,14 @@ class Rod:
     def multipliers(self) -> Any:
         """Floquet multiplier of each exponent, complex, read-only; None: not computed."""
     @property
+    def frequencies_hz(self) -> Any: ...
+    @property
+    def frequencies_hz_errors(self) -> Any: ...
+    @property
+    def damping_ratios(self) -> Any: ...
+    @property
+    def damping_ratio_errors(self) -> Any: ...
+    @property
     def strain(self) -> Optional[float]:
         """Largest strain, axial and bending added; None: not computed."""
     @property

@@ -149,6 +149,8 @@ class Flywheel:
     """(largest - smallest)/mean speed with the crank's inertia, a first estimate; None (NaN) without inertia."""
     inertia: Any = None
     """The crank's, about its pivot."""
+    energy_fluctuation_error: Any = None
+    """Of the energy; None of sweeps."""
 
 
 @dataclass(frozen=True)

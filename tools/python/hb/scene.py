@@ -178,6 +178,7 @@ class Scene:
         theory: str = "linear",
         period: Optional[int] = None,
         search: bool = True,
+        band: Any = None,
         steady_method: Optional[str] = None,
         stability_method: Optional[str] = None,
         threads: Union[int, str] = 1,
@@ -191,10 +192,13 @@ class Scene:
         branches of the motion without linearisation, of up to `period` turns. search: False leaves out what lies
         between the points (bands, resonance peaks), as only="growth" or "verdict" does for bands. threads: 1 or more, or
         "all"; the answer has the same bits. time_limit: seconds; the answer is then what is there, and `shortfalls` says
-        so. progress: True, or a function of (what, done, total).
+        so. band: as in steady(), of a sweep along the speed: `bands` of the answer. progress: True, or a function of
+        (what, done, total).
         """
         from .sweep import Sweep
 
+        if isinstance(band, Mapping):
+            band = [f"{name}={low!r}:{high!r}" for name, (low, high) in band.items()]
         arguments = {
             "rpm": rpm,
             "omega": omega,
@@ -206,6 +210,7 @@ class Scene:
             "theory": theory,
             "period": period,
             "search": search,
+            "band": band,
             "steady_method": steady_method,
             "stability_method": stability_method,
             "threads": threads,

@@ -406,6 +406,17 @@ def _frequencies(self: Rod) -> Any:
     return None if values is None else floats(values)
 
 
+def _list_of(key: str, doc: str) -> property:
+    def get(self: Rod) -> Any:
+        from .result import floats
+
+        values = _entry(self).get(key)
+        return None if values is None else floats(values)
+
+    get.__doc__ = doc
+    return property(get)
+
+
 def _multipliers(self: Rod) -> Any:
     """Floquet multiplier of each exponent, complex, read-only; None: not computed."""
     import numpy
@@ -435,6 +446,10 @@ for _key, _attribute in {
     "nearest_resonance": property(_nearest_resonance),
     "frequencies": property(_frequencies),
     "multipliers": property(_multipliers),
+    "frequencies_hz": _list_of("frequencies_hz", "Frequency of each exponent in Hz; None: not computed."),
+    "frequencies_hz_errors": _list_of("frequencies_hz_errors", "Their errors, Hz."),
+    "damping_ratios": _list_of("damping_ratios", "-Re/|exponent| of each exponent at its frequency; None: not computed."),
+    "damping_ratio_errors": _list_of("damping_ratio_errors", "Their errors."),
     "strain": _of_entry("strain", "Largest strain, axial and bending added; None: not computed."),
     "amplification": _of_entry("amplification", "Largest |q| against that of the same load applied slowly; None: no value."),
     "resonance_distance": _of_entry("resonance_distance", "Smallest singular value of the scaled balance: 0 at a resonance."),

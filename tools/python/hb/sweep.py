@@ -224,6 +224,12 @@ class Sweep(Result):
         return floats(self._document.get("critical_x", []))
 
     @property
+    def bands(self) -> list[dict[str, Any]]:
+        """With band=...: of each what hb sweep --json has, `parameter`, `from`, `to`, and `at_from`, `at_to` with verdicts
+        and the arrays of each rod; else empty."""
+        return list(self._document.get("bands", []))
+
+    @property
     def unstable_bands(self) -> dict[str, Optional[list[list[float]]]]:
         """[from, to] of each unstable band, by rod."""
         return {name: rod.unstable_bands for name, rod in self._rods.items()}

@@ -1,5 +1,5 @@
 // What hb tune changed: numbers, goal and conditions before and after, and both designs along the speed.
-const metricWords = {stress: "largest bending stress", stable: "stability margin", deflection: "largest deflection", mass: "mass of elastic links", theory: "theory error", torque: "largest driving torque", ripple: "torque ripple", force: "largest joint force"};
+const metricWords = {stress: "largest bending stress", "total-stress": "largest stress", safety: "least safety", stable: "stability margin", deflection: "largest deflection", mass: "mass of elastic links", theory: "theory error", torque: "largest driving torque", ripple: "torque ripple", force: "largest joint force"};
 const metricName = (metric) => {
   const [kind, ...rest] = metric.split(":");
   return metricWords[kind] ? [metricWords[kind], ...rest].join(" ") : metric;
