@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tools/setup.sh
-tools/build.sh release hb_command table_1
+tools/build.sh release hb_command table_1 march
 export PATH="$PWD/build/release/bin:$PATH"
 
 studies=("$@")

@@ -15,6 +15,9 @@ branches='branches_*.svg branches_*.csv bifurcations.csv'
 hb steady ../six_link/scene.toml --rpm 1900 --modes 1 --theory nonlinear --only steady,stability --json >motion_1900rpm.json
 "$run" six_link_1720-2400rpm "$branches" sweep ../six_link/scene.toml --rpm 1720:2400:20 --modes 1 --theory nonlinear \
   --only steady,stability --no-search --start motion_1900rpm.json
+# Marched over time from several starts, also where no stable motion is known.
+march ../six_link/scene.toml 1540 2400 20 >march.txt
+march ../six_link/scene.toml 3000 3000 1 >>march.txt
 "$run" six_link_1585rpm check.json check ../six_link/scene.toml --rpm 1585 --modes 1 --theory nonlinear --period 2 --tol 1e-7
 "$run" slider_crank check.json check slider_crank.toml --omega 150 --theory nonlinear
 "$run" four_bar "$branches" sweep ../four_bar/scene.toml --rpm 200:400:10 --modes 1 --theory nonlinear --only steady,stability

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tests/support/run_command.hpp"
 
@@ -242,6 +243,32 @@ TEST_F(Nonlinear, TimeLimitInTheLinearPartGivesTheSpeedsThatAreThere) {
   EXPECT_GT(answered, 0);
   EXPECT_LT(answered, static_cast<std::ptrdiff_t>(growth.size()));
   EXPECT_NE(found["notes"].dump().find("--time-limit 1"), std::string::npos) << found["notes"];
+}
+
+// Beyond its fold the branch of a lightly damped four-bar grows until the coupler stands across its chord.
+TEST_F(Nonlinear, ARodThatFoldsOnABranchIsSaidWithCrankAngleAndSpeed) {
+  std::ofstream(folder_ / "light.toml") << R"(
+gravity = 0
+[units]
+length = "mm"
+angle = "deg"
+[crank]
+pivot = [0, 0]
+length = 40
+[[dyad]]
+on = "crank"
+coupler = { name = "coupler", length = 160, mass = 0.04, elastic = { E = 21e7, area = 10, J = 8, damping_internal = 3e-4 } }
+rocker = { name = "rocker", pivot = [200, 0], length = 100, mass = 0.1, com = [50, 0], inertia_pivot = 400 }
+branch = 1
+)";
+  const Json found =
+      document("sweep light.toml --modes 1 --rpm 2000:9000:7000 --only steady --no-search --tol 1e-4", 3);
+  const std::string notes = found["notes"].dump();
+  EXPECT_NE(notes.find("branch 1 ends at rpm = 3049."), std::string::npos) << notes;
+  EXPECT_NE(notes.find("coupler is bent to a slope of 1 at crank angle 279."), std::string::npos) << notes;
+  // Largest q_1 where the slope pi q_1/l is 1.
+  const Json& branch = found["branches"][0]["rods"]["coupler"]["max_abs"];
+  EXPECT_NEAR(double(branch.back()[0]), 160 / std::numbers::pi, 0.1);
 }
 
 TEST_F(Nonlinear, BenchComparesWithIntegration) {
