@@ -113,16 +113,14 @@ TEST_F(DesignPictures, TheBentMechanismIsDrawnByAFactorThatItStates) {
   EXPECT_GT(factor, 1);
   // The drawn line is off its chord by factor times the deflection there: no more than factor times the largest.
   double most = 0;
-  std::vector<std::vector<double>> chord;
+  std::vector<double> chord;
   for (const auto& row : rows("out/bent_mechanism.csv")) {
-    if (row.size() < 4 || std::isnan(row[0])) continue;
-    if (row[1] == 1) {
-      if (chord.size() == 2) chord.clear();
-      chord.push_back(row);
-    }
-    if (row[1] != 2 || chord.size() != 2) continue;
-    const double dx = chord[1][2] - chord[0][2], dy = chord[1][3] - chord[0][3], l = std::hypot(dx, dy);
-    most = std::max(most, std::abs((row[2] - chord[0][2]) * dy - (row[3] - chord[0][3]) * dx) / l);
+    ASSERT_EQ(row.size(), 6u);
+    if (row[1] == 1) chord = row;
+    if (row[1] != 2) continue;
+    ASSERT_EQ(chord.size(), 6u);
+    const double dx = chord[4] - chord[2], dy = chord[5] - chord[3], l = std::hypot(dx, dy);
+    most = std::max(most, std::abs((row[4] - chord[2]) * dy - (row[5] - chord[3]) * dx) / l);
   }
   EXPECT_LE(most, factor * peak["max_abs"].get<double>() * (1 + 1e-9));
   EXPECT_GE(most, 0.3 * factor * peak["max_abs"].get<double>());

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <vector>
@@ -31,22 +32,25 @@ double round_factor(double most) {
   return ten * (digit >= 5 ? 5 : digit >= 2 ? 2 : 1);
 }
 
+// Straight pieces, of a point both ends alike.
 class BentRows {
  public:
   void line(int pose, BentPart part, const std::vector<Point2>& points) {
-    for (const Point2& p : points) rows_.push_back({double(pose), double(static_cast<int>(part)), p.real(), p.imag()});
-    rows_.push_back({nan, nan, nan, nan});
+    for (std::size_t k = 0; k < std::max<std::size_t>(1, points.size() - 1); ++k) {
+      const Point2 &from = points[k], &to = points[std::min(k + 1, points.size() - 1)];
+      rows_.push_back({double(pose), double(static_cast<int>(part)), from.real(), from.imag(), to.real(), to.imag()});
+    }
   }
   [[nodiscard]] Eigen::MatrixXd matrix() const {
-    Eigen::MatrixXd matrix(static_cast<Eigen::Index>(rows_.size()), 4);
+    Eigen::MatrixXd matrix(static_cast<Eigen::Index>(rows_.size()), 6);
     for (std::size_t k = 0; k < rows_.size(); ++k)
-      for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t c = 0; c < 6; ++c)
         matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(c)) = rows_[k][c];
     return matrix;
   }
 
  private:
-  std::vector<std::array<double, 4>> rows_;
+  std::vector<std::array<double, 6>> rows_;
 };
 
 // w of a rod at the poses, a column each.
@@ -128,19 +132,18 @@ std::optional<BentMechanism> bent_mechanism(const SceneModel& model, const Speed
       "pose: crank angle over " + fmt::format("{}", 360 / bent_poses) +
           " deg; part: 0 rigid link, 1 elastic link unbent, 2 bent, 3 pivot, 4 slider, 5 joint"};
   const std::string unit = bracketed(model.scene.units.length);
-  bent.csv.columns = {"pose", "part", "x" + unit, "y" + unit};
+  bent.csv.columns = {"pose", "part", "x from" + unit, "y from" + unit, "x to" + unit, "y to" + unit};
   bent.csv.rows = rows.matrix();
   return bent;
 }
 
 Figure bent_mechanism_figure(const SceneModel& model, const SpeedResult& result, const BentMechanism& bent) {
   double low_x = HUGE_VAL, high_x = -HUGE_VAL, low_y = HUGE_VAL, high_y = -HUGE_VAL, largest_w = 0;
-  for (Eigen::Index k = 0; k < bent.csv.rows.rows(); ++k) {
-    if (std::isnan(bent.csv.rows(k, 2))) continue;
-    low_x = std::min(low_x, bent.csv.rows(k, 2));
-    high_x = std::max(high_x, bent.csv.rows(k, 2));
-    low_y = std::min(low_y, bent.csv.rows(k, 3));
-    high_y = std::max(high_y, bent.csv.rows(k, 3));
+  for (const Eigen::Index column : {2, 4}) {
+    low_x = std::min(low_x, bent.csv.rows.col(column).minCoeff());
+    high_x = std::max(high_x, bent.csv.rows.col(column).maxCoeff());
+    low_y = std::min(low_y, bent.csv.rows.col(column + 1).minCoeff());
+    high_y = std::max(high_y, bent.csv.rows.col(column + 1).maxCoeff());
   }
   for (const RodResult& rod : result.rods)
     if (rod.shape) largest_w = std::max(largest_w, rod.shape->deflection.max_abs);
@@ -163,18 +166,19 @@ Figure bent_mechanism_figure(const SceneModel& model, const SpeedResult& result,
                               literal(output_units(model.scene).length))),
       low_x - margin, high_x + margin, low_y - margin, high_y + margin);
   const auto layer = [&](int pose, BentPart part, const char* style) {
-    return fmt::format("'{}' using ($1 == {} && $2 == {} ? $3 : NaN):4 with {}", bent.csv.name, pose,
-                       static_cast<int>(part), style);
+    const bool point = part == BentPart::fixed || part == BentPart::slider || part == BentPart::joint;
+    return fmt::format("'{}' using ($1 == {} && $2 == {} ? $3 : NaN):4{} {}", bent.csv.name, pose,
+                       static_cast<int>(part), point ? " with points" : ":($5-$3):($6-$4) with vectors nohead", style);
   };
   for (int pose = 0; pose < bent_poses; ++pose)
     figure.commands +=
         fmt::format("set title '{} deg' offset 0, -0.4\nplot {}, {}, {}, {}, {}, {}\n", 360 * pose / bent_poses,
-                    layer(pose, BentPart::rigid, "lines linewidth 2.6 linecolor '#333333'"),
-                    layer(pose, BentPart::chord, "lines linewidth 0.9 dashtype 2 linecolor '#888888'"),
-                    layer(pose, BentPart::bent, "lines linewidth 2.2 linecolor '#d55e00'"),
-                    layer(pose, BentPart::joint, "points pointtype 7 pointsize 0.6 linecolor '#222222'"),
-                    layer(pose, BentPart::fixed, "points pointtype 9 pointsize 1.4 linecolor '#222222'"),
-                    layer(pose, BentPart::slider, "points pointtype 5 pointsize 1.5 linecolor '#666666'"));
+                    layer(pose, BentPart::rigid, "linewidth 2.6 linecolor '#333333'"),
+                    layer(pose, BentPart::chord, "linewidth 0.9 dashtype 2 linecolor '#888888'"),
+                    layer(pose, BentPart::bent, "linewidth 2.2 linecolor '#d55e00'"),
+                    layer(pose, BentPart::joint, "pointtype 7 pointsize 0.6 linecolor '#222222'"),
+                    layer(pose, BentPart::fixed, "pointtype 9 pointsize 1.4 linecolor '#222222'"),
+                    layer(pose, BentPart::slider, "pointtype 5 pointsize 1.5 linecolor '#666666'"));
   figure.commands +=
       "unset multiplot\nunset title\nset border 3 linecolor '#444444'\nset tics nomirror textcolor '#222222'\nset "
       "xtics autofreq\nset ytics autofreq\nset grid\nset size noratio\nset margins -1, -1, -1, -1\nset xrange "

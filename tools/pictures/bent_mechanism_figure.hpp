@@ -14,7 +14,7 @@ inline constexpr int bent_poses = 6;
 
 struct BentMechanism {
   double factor = 1;  // deflections are drawn so many times larger: 1, 2 or 5 times a power of ten, at least 1
-  CsvFile csv;  // pose, part, x, y; a row of NaN between lines
+  CsvFile csv;  // pose, part, then both ends of a straight piece
 };
 // Empty without an elastic link whose shape is known, or where none bends.
 [[nodiscard]] std::optional<BentMechanism> bent_mechanism(const SceneModel& model, const SpeedResult& result);
