@@ -127,8 +127,8 @@ class RodRows {
     for (const int steps : steps_a_turn) {
       with_.done();
       if (4 * seconds_before > with_.time_limit)
-        return note(fmt::format("{} with {} steps a turn: would take about {:.0f} s, more than the time limit", name,
-                                steps, 4 * seconds_before));
+        return note(fmt::format("{} with {} steps a turn: would take about {:.0f} s, more than the limit for a case",
+                                name, steps, 4 * seconds_before));
       // The transient is followed well below the error of such steps, h^order or more.
       const double h = two_pi / steps;
       const double settled = std::max(0.1 * std::pow(h, order), 1e-12);

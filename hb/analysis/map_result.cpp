@@ -131,7 +131,12 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
   result.x_axis = x_axis;
   result.y_axis = y_axis;
   result.rods = plane.rods();
-  for (std::size_t r = 0; r < result.rods.size(); ++r) result.maps.push_back(rod_map(plane, r, x, y, search));
+  std::vector<StabilityMapSearch> searches;
+  for (std::size_t r = 0; r < result.rods.size(); ++r)
+    searches.emplace_back([&plane, r](double u, double v) { return plane.system(r, u, v); }, x, y, search);
+  for (StabilityMapSearch& one : searches) one.begin();
+  for (StabilityMapSearch& one : searches) one.finish();
+  for (StabilityMapSearch& one : searches) result.maps.push_back(one.result());
   result.worst = result.maps.front().points;
   for (std::size_t r = 1; r < result.maps.size(); ++r) {
     for (std::size_t p = 0; p < result.worst.size(); ++p) {

@@ -32,7 +32,7 @@ std::optional<NearestResonance> resonance_of(const HillSystem& system, double sp
 }  // namespace
 
 double frequency_ratio(const HillSystem& system, double speed) {
-  const double w2 = scale_system(system, speed).mean_diagonal().minCoeff();
+  const double w2 = scale_system(system, speed).squared_frequencies()(0);
   return w2 > 0 ? std::sqrt(w2) : 0.0;
 }
 

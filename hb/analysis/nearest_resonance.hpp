@@ -8,8 +8,8 @@
 
 namespace hb {
 
-// r = omega_1/Omega with omega_1 the lowest natural frequency of the system averaged over the turn at the speed Omega,
-// by the diagonal of its stiffness in scaled coordinates; 0 where that is not positive.
+// r = omega_1/Omega with omega_1 the lowest natural frequency of the undamped system averaged over the turn at the
+// speed Omega; 0 where its square is not positive.
 [[nodiscard]] double frequency_ratio(const HillSystem& system, double speed);
 
 struct NearestResonance {

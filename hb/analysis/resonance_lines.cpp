@@ -79,8 +79,7 @@ std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<dou
                                 y[0] + (y[1] - y[0]) * static_cast<double>(j) / (lattice - 1)};
       places.push_back(place);
       const std::optional<ScaledSystem> system = at(place[0], place[1]);
-      Eigen::VectorXd squares = system ? system->mean_diagonal() : Eigen::VectorXd();
-      std::sort(squares.begin(), squares.end());
+      const Eigen::VectorXd squares = system ? system->squared_frequencies() : Eigen::VectorXd();
       for (int m = 0; m < modes_with_lines; ++m) {
         w[static_cast<std::size_t>(m)].push_back(
             m < squares.size() && squares(m) >= 0 ? std::sqrt(squares(m)) : std::numeric_limits<double>::quiet_NaN());

@@ -171,7 +171,7 @@ class SweepRun {
     rod.bands = unstable_bands(samples, rod.boundaries);
     for (const StabilityBoundary& boundary : rod.boundaries) {
       if (boundary.converged) continue;
-      result_.notes.push_back(fmt::format("{}: a stability boundary near {} = {:.10g} is known to {:.1e} only",
+      result_.notes.push_back(fmt::format("{}: the stability boundary at {} = {:.9g} is known to +/- {:.1e} only",
                                           rod.name, scene_.axis().path, boundary.x, boundary.error));
     }
     return rod.boundaries.size();
@@ -255,20 +255,15 @@ class SweepRun {
     return point;
   }
 
-  // The mode whose frequency is met at the peak: that of the component.
+  // The mode whose frequency is met at the peak: that of the component, by the exponents there alone, so that no step
+  // of the sweep changes it.
   void name_mode(CriticalPoint& point) const {
     const double x = point.peak.x;
     const std::optional<StabilitySample> sample = stability_sample(
         [&](double at) { return along_[point.rod].system(at); }, x, boundary_options(settings_).stability);
     if (!sample) return;
-    const auto after = std::upper_bound(values_.begin(), values_.end(), x);
-    const std::size_t at = static_cast<std::size_t>(
-        std::clamp<std::ptrdiff_t>(after - values_.begin() - 1, 0, static_cast<std::ptrdiff_t>(intervals()) - 1));
-    const std::vector<std::vector<ModeState>>& modes = modes_[point.rod];
-    const std::vector<ModeState> there = modes_by_continuity(
-        sample->stability, sample->speed,
-        interpolated(modes[at], modes[at + 1], (x - values_[at]) / (values_[at + 1] - values_[at])));
-    const ModeState& state = there[static_cast<std::size_t>(point.component)];
+    const ModeState state =
+        modes_by_name(sample->stability, point.component + 1)[static_cast<std::size_t>(point.component)];
     if (const std::optional<int> order = order_met(state, point.speed)) {
       point.mode = point.component;
       point.frequency = state.frequency;

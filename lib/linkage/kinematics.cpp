@@ -238,19 +238,21 @@ std::string what_happens(const Dyad& dyad, const Joint& joint, bool dead_centre)
     if (dead_centre) return fmt::format("{} and {} stand in line", dyad.coupler.name, rocker->body.name);
     return r > (l + L) / 2 + std::abs(L - l) / 2
                ? fmt::format(
-                     "the distance {:.9g} from its driving joint to the pivot exceeds {:.9g}, the sum of the "
-                     "lengths",
+                     "the distance {:.6g} from its driving joint to the pivot exceeds {:.6g}, the sum of the "
+                     "lengths, in the scene's unit of length",
                      r, l + L)
                : fmt::format(
-                     "the distance {:.9g} from its driving joint to the pivot is below {:.9g}, the difference "
-                     "of the lengths",
+                     "the distance {:.6g} from its driving joint to the pivot is below {:.6g}, the difference "
+                     "of the lengths, in the scene's unit of length",
                      r, std::abs(L - l));
   }
   const Slider& slider = std::get<Slider>(dyad.closing);
   if (dead_centre) return fmt::format("{} stands at right angles to the guide of {}", dyad.coupler.name, slider.name);
   const double h = (std::polar(1.0, -slider.direction) * (joint.D - slider.guide)).imag();
-  return fmt::format("the distance {:.9g} from its driving joint to the guide exceeds {:.9g}, the coupler's length",
-                     std::abs(h), l);
+  return fmt::format(
+      "the distance {:.6g} from its driving joint to the guide exceeds {:.6g}, the coupler's length, in the "
+      "scene's unit of length",
+      std::abs(h), l);
 }
 
 }  // namespace

@@ -96,7 +96,95 @@ void remark_on_strength(const TableView& elastic, const Strength& strength, cons
   }
 }
 
+void remark_on_shear(const TableView& elastic, const Elastic& rod, const SceneContext& context) {
+  const auto shear = elastic.table("shear");
+  if (!shear || !rod.shear) return;
+  constexpr Window of_solids{0.01, 0.6}, share{0.05, 1};
+  const double E = in_si(rod.youngs_modulus, dimension::pressure, context.units);
+  const double G = in_si(rod.shear->modulus, dimension::pressure, context.units);
+  if (!of_solids.holds(G / E)) {
+    const std::initializer_list<const char*> shown = {"GPa", "MPa", "kPa", "Pa"};
+    remark(*shear, "G", Concern::material,
+           fmt::format("found {}{} (metals have 0.3 to 0.5 of E, here {}); taken as given", in_best_unit(G, shown),
+                       likely_slip(*shear, "G", {0.02 * E, 0.5 * E}, {"MPa", "GPa", "psi", "ksi", "kPa", "Pa"}, shown),
+                       in_best_unit(E, shown)),
+           context);
+  }
+  if (!share.holds(rod.shear->coefficient))
+    remark(*shear, "k", Concern::section,
+           fmt::format("found {:.4g} (the share of the section that carries the shear force is 0.05 to 1, of a "
+                       "rectangle 5/6); taken as given",
+                       rod.shear->coefficient),
+           context);
+}
+
+// zeta = alpha_c omega_1/2 with the frequency of a slender rod.
+void remark_on_damping(const TableView& elastic, const Body& body, const SceneContext& context) {
+  constexpr double most = 0.5;
+  const Elastic& rod = *body.elastic;
+  const double k = std::numbers::pi / body.length;
+  const double omega = k * k * std::sqrt(rod.youngs_modulus * rod.second_moment * body.length / body.mass);
+  const double ratio = rod.internal_damping * omega / 2;
+  if (!elastic.has("damping_internal") || ratio <= most) return;
+  remark(elastic, "damping_internal", Concern::material,
+         fmt::format("found {:.4g} {}, a damping ratio of {:.3g} of mode 1 (steel has 0.0005 to 0.01); taken as given; "
+                     "damping_ratio takes a ratio",
+                     rod.internal_damping, context.units.time, ratio),
+         context);
+}
+
+// A section whose own size is that of the rod's length: numbers in another unit than the length.
+bool remark_on_stoutness(const TableView& elastic, const Body& body, const SceneContext& context) {
+  constexpr double least_slenderness = 8;  // height = 0.43 length of a rectangle
+  const double F = body.elastic->area, J = body.elastic->second_moment, l = body.length;
+  const double slenderness = l / std::sqrt(J / F);
+  if (slenderness >= least_slenderness && F <= l * l / 4) return false;
+  const char* key = elastic.has("section") ? "section" : "J";
+  remark(elastic, key, Concern::size,
+         fmt::format("found length/sqrt(J/area) = {:.3g} and area = {:.3g} length^2: no rod; are section and length in "
+                     "their units? taken as given",
+                     slenderness, F / (l * l)),
+         context);
+  return true;
+}
+
+// A link or slider, the crank and its flywheel aside, much heavier than all others together.
+void remark_on_masses(const TableView& scene, const Linkage& linkage, const SceneContext& context) {
+  constexpr double most = 100;
+  std::vector<std::pair<std::string, double>> bodies;
+  for (const Dyad& dyad : linkage.dyads) {
+    bodies.emplace_back(dyad.coupler.name, dyad.coupler.mass);
+    if (const auto* slider = std::get_if<Slider>(&dyad.closing))
+      bodies.emplace_back(slider->name, slider->mass);
+    else
+      bodies.emplace_back(std::get<Rocker>(dyad.closing).body.name, std::get<Rocker>(dyad.closing).body.mass);
+  }
+  double all = linkage.crank.body.mass;
+  for (const auto& [name, mass] : bodies) all += mass;
+  for (const auto& [name, mass] : bodies) {
+    const double others = all - mass;
+    if (!(others > 0 && mass > most * others)) continue;
+    remark(
+        scene, "dyad", Concern::size,
+        fmt::format("found {} with {:.4g} kg, {:.3g} times all other bodies together; is its mass in its unit? taken "
+                    "as given",
+                    name, in_si(mass, dimension::mass, context.units), mass / others),
+        context);
+  }
+}
+
 }  // namespace
+
+void remark_on_bore(const TableView& pressure, double bore, const SceneContext& context) {
+  constexpr Window likely{1e-3, 2};
+  const double metres = in_si(bore, dimension::length, context.units);
+  if (likely.holds(metres)) return;
+  const std::initializer_list<const char*> shown = {"m", "mm", "um"};
+  remark(pressure, "bore", Concern::size,
+         fmt::format("found {}{}; taken as given", in_best_unit(metres, shown),
+                     likely_slip(pressure, "bore", {5e-3, 1}, {"mm", "m", "in", "cm"}, shown)),
+         context);
+}
 
 void remark_on_elastic(const TableView& link, const TableView& elastic, const Body& body, const SceneContext& context) {
   const Elastic& rod = *body.elastic;
@@ -111,6 +199,8 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
   }
   remark_on_density(link, elastic, body, context);
   remark_on_strength(elastic, rod.strength, context);
+  remark_on_shear(elastic, rod, context);
+  remark_on_damping(elastic, body, context);
 
   // A square has J/F^2 = 1/12, a strip on edge or flat h/b times as much or as little.
   constexpr Window solid{1.0 / 240, 4};
@@ -122,11 +212,13 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
                        J / (F * F)),
            context);
   }
+  const bool plausible = elastic.has("section") || solid.holds(J / (F * F));
+  if (!plausible || remark_on_stoutness(elastic, body, context)) return;
   // The static deflection in one half wave grows by E/(k G) pi^2 J/(F l^2), E/(k G) = 3.1 with Poisson's ratio 0.3 and
   // k = 5/6: by 1 %, and omega_1 falls by half of that, from here.
   constexpr double per_size = 3.1, most_left_out = 0.003;
   const double size = std::numbers::pi * std::numbers::pi * J / (F * body.length * body.length);
-  if (!rod.shear && !(size <= most_left_out) && (elastic.has("section") || solid.holds(J / (F * F)))) {
+  if (!rod.shear && !(size <= most_left_out)) {
     remark(
         elastic, elastic.has("J") ? "J" : "section", Concern::slenderness,
         fmt::format("found length/sqrt(J/area) = {:.3g}, a thick rod: shear, left out, would add about {:.2g} % to its "
@@ -138,6 +230,10 @@ void remark_on_elastic(const TableView& link, const TableView& elastic, const Bo
 
 void remark_on_linkage(const TableView& scene, const Linkage& linkage, const SceneContext& context) {
   const double g = std::abs(in_si(linkage.gravity, dimension::acceleration, context.units));
+  if (linkage.gravity < 0)
+    remark(scene, "gravity", Concern::gravity,
+           fmt::format("found {:.4g}, which points up: a positive number is along -y; taken as given", linkage.gravity),
+           context);
   if (scene.has("gravity") && g > 0 && !Window{1, 30}.holds(g)) {
     remark(scene, "gravity", Concern::gravity,
            fmt::format(
@@ -151,6 +247,7 @@ void remark_on_linkage(const TableView& scene, const Linkage& linkage, const Sce
     const Body* body = body_at(linkage, b);
     if (body && body->length > longest) longest = body->length, name = body->name;
   }
+  remark_on_masses(scene, linkage, context);
   const double metres = in_si(longest, dimension::length, context.units);
   if (Window{5e-4, 50}.holds(metres)) return;
   std::string slip;

@@ -287,15 +287,21 @@ SampleColumns columns_by_name(const NumberTable& table, Index size, bool matrix)
   return result;
 }
 
-// A column of angles where values should be: equally spaced over exactly one turn, its closing row or not.
-bool is_ramp_over_a_turn(const Eigen::Ref<const Eigen::VectorXd>& values) {
+// Equally spaced values: angles, times or row numbers where entries should be.
+bool is_even_ramp(const Eigen::Ref<const Eigen::VectorXd>& values) {
   const Index n = values.size();
-  if (n < 3) return false;
   const double step = (values(n - 1) - values(0)) / double(n - 1);
-  if (step == 0) return false;
+  if (n < 3 || step == 0) return false;
   for (Index j = 0; j < n; ++j) {
     if (!(std::abs(values(j) - values(0) - double(j) * step) <= even * std::abs(step))) return false;
   }
+  return true;
+}
+
+// Over exactly one turn, its closing row or not.
+bool spans_a_turn(const Eigen::Ref<const Eigen::VectorXd>& values) {
+  const Index n = values.size();
+  const double step = (values(n - 1) - values(0)) / double(n - 1);
   for (const double turn : {1.0, 2 * pi, 360.0}) {
     for (const Index cells : {n - 1, n}) {
       if (std::abs(std::abs(step) * double(cells) - turn) <= closing * turn / double(cells)) return true;
@@ -314,11 +320,15 @@ SampleColumns sample_columns(const NumberTable& table, Index size, bool matrix) 
   if (std::ranges::any_of(table.header, decides)) return columns_by_name(table, size, matrix);
 
   const Index columns = table.values.cols(), count = matrix ? size * size : size;
-  if (columns > 1 && is_ramp_over_a_turn(table.values.col(0))) {
-    fail(table, 0,
-         fmt::format("found angles in the first column, allowed columns named in a first line ({}), or all entries{} "
-                     "over one period without a column of angles",
-                     entry_words(size, matrix), matrix ? " row by row" : ""));
+  constexpr Index told_from_entries = 6;  // rows from which an even ramp is no coincidence
+  if (columns > 1 && is_even_ramp(table.values.col(0))) {
+    const bool angles = spans_a_turn(table.values.col(0));
+    if (angles || table.values.rows() >= told_from_entries)
+      fail(table, 0,
+           fmt::format("found {} in the first column, allowed columns named in a first line ({}), or all entries{} "
+                       "over one period without a column of angles",
+                       angles ? "angles" : "an even ramp (row numbers, times or angles)", entry_words(size, matrix),
+                       matrix ? " row by row" : ""));
   }
   if (columns != count) {
     fail(table, 0,

@@ -135,6 +135,7 @@ FourierSeries read_pressure(const TableView& slider, int branch, const SceneCont
   const auto table = slider.table("pressure");
   if (!table) return {};
   const double bore = table->need_number("bore", positive);
+  if (table->has("bore")) remark_on_bore(*table, bore, context);
   FourierSeries pressure = from_file(*table, {dimension::pressure}, "pressure", context);
   const auto mean = table->number("mean", any_number);
   if (pressure.num_components() == 0) return {};

@@ -157,7 +157,9 @@ const Key* find_key(const TableKind& kind, std::string_view name) {
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
   if (name.size() > 200) return "";
   std::string best;
-  std::size_t least = std::max<std::size_t>(2, name.size()) + 1;
+  // In halves of a letter: a third of the letters may differ, or two of a short name, but not half of them.
+  std::size_t least =
+      std::min(std::max<std::size_t>(4, 2 * name.size() / 3) + 1, std::max<std::size_t>(3, name.size()));
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {

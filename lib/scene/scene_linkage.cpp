@@ -34,14 +34,6 @@ class LinkageReader {
     linkage.gravity = scene_.number("gravity", any_number).value_or(9.80665 * metre_per_second2);
     if (const auto crank = scene_.need_table("crank")) linkage.crank = read_crank(*crank);
     read_dyads(linkage);
-    if (!small_inertias_.empty()) {
-      context_.remarks.push_back(
-          {Concern::note,
-           fmt::format(
-               "{}: found {} below mass * radius^2 of com, which no body has, allowed where a link turns about a "
-               "fixed pivot: there only inertia_pivot counts, taken as given",
-               small_inertia_place_, fmt::join(small_inertias_, ", "))});
-    }
     return linkage;
   }
 
@@ -153,9 +145,13 @@ class LinkageReader {
       table.problem("inertia_pivot",
                     fmt::format("found {}, allowed at least mass * radius^2 of com = {}", *about_joint, steiner));
     } else {
-      if (small_inertias_.empty()) small_inertia_place_ = problems_.place(*table.node("inertia_pivot"));
-      small_inertias_.push_back(
-          fmt::format("{} = {:.6g} ({:.6g})", table.path_of("inertia_pivot"), *about_joint, steiner));
+      const std::string unit = context_.units.mass + " " + context_.units.length + "^2";
+      context_.remarks.push_back(
+          {Concern::note,
+           fmt::format("{}: {}: found {:.6g} {}, below mass radius^2 of com = {:.6g} {}, which no body has; taken as "
+                       "given: the link turns about a fixed pivot, where inertia_pivot alone counts",
+                       problems_.place(*table.node("inertia_pivot")), table.path_of("inertia_pivot"), *about_joint,
+                       unit, steiner, unit)});
     }
   }
 
@@ -322,8 +318,6 @@ class LinkageReader {
   const SceneContext& context_;
   Problems& problems_;
   std::vector<Known> known_;
-  std::string small_inertia_place_;
-  std::vector<std::string> small_inertias_;  // "O2BC.inertia_pivot = 18300 (25620.2)"
 };
 
 }  // namespace

@@ -213,6 +213,11 @@ toml::table parse_value(const Override& change) {
       return toml::parse(text, label(change));
     }
   } catch (const toml::parse_error&) {
+    // "70 GPA": what is wrong is said where units are read.
+    const std::optional<NumberText> number = number_and_unit(change.value);
+    if (number && !number->unit.empty() && std::isalpha(static_cast<unsigned char>(number->unit[0])) &&
+        change.value.find_first_of("\"'\\") == std::string::npos)
+      return toml::parse("value = \"" + change.value + "\"", label(change));
   }
   const std::size_t comma = change.value.find(',');
   throw SceneError(

@@ -34,6 +34,19 @@ std::vector<std::string_view> fields_of(std::string_view line) {
   }
 }
 
+// "0,5" of a line whose fields stand between semicolons; empty: none.
+std::string_view decimal_comma(std::string_view line) {
+  if (line.find(';') == std::string_view::npos) return {};
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t at = line.find(','); at != std::string_view::npos; at = line.find(',', at + 1)) {
+    if (at == 0 || at + 1 == line.size() || !digit(line[at - 1]) || !digit(line[at + 1])) continue;
+    const std::size_t from = line.find_last_of(';', at), to = line.find(';', at);
+    const std::size_t begin = from == std::string_view::npos ? 0 : from + 1;
+    return trimmed(line.substr(begin, to == std::string_view::npos ? to : to - begin));
+  }
+  return {};
+}
+
 std::optional<double> number_of(std::string_view field) {
   if (field.size() > 1 && field[0] == '+' && field[1] != '-') field.remove_prefix(1);
   double value = 0;
@@ -116,6 +129,8 @@ NumberTable parse_table(const std::string& text, const std::string& name, Eigen:
       throw SceneError(fmt::format("{}:{}: found {}, allowed {}", name, lines.number(), found, allowed));
     };
     if (first && is_header(fields)) continue;
+    if (const std::string_view field = decimal_comma(line); !field.empty())
+      fail(fmt::format("\"{}\" between semicolons", printable(field, 40)), "a decimal point (0.5), not a comma");
     if (num_columns == 0) num_columns = static_cast<Eigen::Index>(fields.size());
     if (static_cast<Eigen::Index>(fields.size()) != num_columns) {
       fail(counted(static_cast<std::ptrdiff_t>(fields.size()), "field"),

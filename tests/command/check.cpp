@@ -132,7 +132,7 @@ TEST(CheckReport, WorstCaseIsTheOneThatUsesMostOfItsAllowance) {
 TEST_F(Check, TooLittleTimeIsSaidInWordsWithStatus3) {
   const CommandResult result = hb("check " + scene("six_link_4500") + " --rpm 300 --integrator bdf --case-limit 0.01");
   EXPECT_EQ(result.status, 3) << result.out << result.err;
-  EXPECT_NE(result.out.find("more than the time limit"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("more than the limit for a case"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("harmonic balance"), std::string::npos);
 }
 

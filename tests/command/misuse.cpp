@@ -50,6 +50,13 @@ TEST_P(Misused, IsToldInTheWordsOfWhatWasWritten) {
       << "[crank]\npivot = [0, 0]\nlength = \"50 mm\"\n[[dyad]]\non = \"crank\"\nbranch = 1\n"
       << "coupler = { name = \"rod\", length = \"0.3 m\", mass = 1 }\n"
       << "slider = { name = \"piston\", guide = [0, 0], force = { file = \"pressure.csv\" } }\n";
+  // Row numbers before the stiffnesses, and numbers as a European spreadsheet writes them.
+  std::ofstream rows(folder_ / "rows.csv"), commas(folder_ / "commas.csv");
+  for (int k = 1; k <= 36; ++k) rows << k << ",1,0.1,4\n", commas << "1,5;0,1;0,1;4,0\n";
+  for (const char* name : {"rows", "commas"})
+    std::ofstream(folder_ / (std::string(name) + ".toml"))
+        << "[hill]\nmass = [[1, 0], [0, 1]]\nstiffness = { file = \"" << name << ".csv\" }\n[analysis]\nomega = 1\n";
+  rows.close(), commas.close();
   const CommandResult result = hb(misuse.arguments);
   const std::string all = result.out + result.err;
   EXPECT_EQ(result.status, misuse.status) << all;
@@ -156,7 +163,48 @@ const std::vector<Misuse> misuses = {
      "steady scene.toml --rpm 300 --set 'AB.length=\"55 kg\"'",
      2,
      {"a mass", "\"55 mm\""}},
+    {"gravity_upward", {}, "scene scene.toml --set gravity=-9810", 0, {"WARNING", "points up"}},
+    {"section_as_large_as_the_rod",
+     {{"area = 10, J = 45", "section = { shape = \"rectangle\", width = 9, height = 500 }"}},
+     "scene scene.toml",
+     0,
+     {"WARNING", "no rod; are section and length in their units?"},
+     {"shear, left out"}},
+    {"shear_modulus_in_another_unit",
+     {{"area = 10, J = 45", "area = 10, J = 45, shear = { G = \"80 MPa\", k = 45 }"}},
+     "scene scene.toml",
+     0,
+     {"found 80 MPa; 80 GPa if the number was in GPa", "found 45 (the share of the section"}},
+    {"damping_ratio_as_damping_internal",
+     {{"damping_internal = 1e-4", "damping_internal = 0.01"}},
+     "scene scene.toml",
+     0,
+     {"WARNING", "a damping ratio of 2.8", "damping_ratio takes a ratio"}},
+    {"mass_in_gram", {{"mass = 1.84", "mass = 1840"}}, "scene scene.toml", 0, {"WARNING", "found O2BC with 1840 kg"}},
+    {"row_numbers_before_samples",
+     {},
+     "scene rows.toml",
+     2,
+     {"rows.csv:1", "an even ramp (row numbers, times or angles)"}},
+    {"decimal_commas_in_a_table",
+     {},
+     "scene commas.toml",
+     2,
+     {"commas.csv:1", "\"1,5\" between semicolons", "a decimal point"}},
+    {"unit_in_other_letters", {}, "scene scene.toml --set 'AB.E=70 GPA'", 2, {"unknown unit GPA (GPa meant?)"}},
     // Speeds and ranges
+    {"speed_twice", {}, "steady scene.toml --rpm 300 --rpm 400", 2, {"--rpm: found 2 times, allowed once"}},
+    {"flag_without_its_value", {}, "steady scene.toml --rpm", 2, {"--rpm: found nothing behind it"}},
+    {"flag_with_one_dash", {}, "steady scene.toml -rpm 300", 2, {"unknown flag -rpm (--rpm meant?)"}},
+    {"flag_that_is_like_no_other", {}, "steady scene.toml --verbose", 2, {"unknown flag --verbose"}, {"meant"}},
+    {"no_speeds_for_a_sweep", {}, "sweep scene.toml", 2, {"allowed: --rpm FROM:TO:STEP"}},
+    {"help_of_a_command", {}, "help steady", 0, {"Usage: hb steady"}},
+    {"limit_in_minutes", {}, "steady scene.toml --rpm 300 --modes 1 --time-limit '1 min'", 0, {"stable"}},
+    {"limit_in_another_unit",
+     {},
+     "steady scene.toml --rpm 300 --time-limit 3kg",
+     2,
+     {"seconds from 0.001", "\"2 min\""}},
     {"misspelt_flag", {}, "steady scene.toml --rmp 300", 2, {"unknown flag --rmp (--rpm meant?)", "--help"}},
     {"misspelt_long_flag", {}, "steady scene.toml --stabilty-method bound", 2, {"(--stability-method meant?)"}},
     {"range_for_one_speed", {}, "steady scene.toml --rpm 200:300:10", 2, {"one speed"}, {"FROM:TO"}},
@@ -250,6 +298,16 @@ const std::vector<Misuse> misuses = {
      "tune scene.toml --minimise mass --vary AB.J=20:90 --keep 'frequency<=100'",
      2,
      {"frequency is better large", "allowed: frequency>=100"}},
+    {"keep_with_an_equals_sign",
+     {},
+     "tune scene.toml --minimise mass --vary AB.J=20:90 --keep 'stable=5'",
+     2,
+     {"allowed: stable>=5"}},
+    {"misspelt_quantity",
+     {},
+     "tune scene.toml --minimise mass --vary AB.J=20:90 --keep 'stres<=2'",
+     2,
+     {"(stress meant?)"}},
     {"keep_with_less_instead_of_less_or_equal",
      {},
      "tune scene.toml --minimise mass --vary AB.J=20:90 --keep 'deflection<2'",

@@ -30,6 +30,37 @@ void expect(const std::string& text, const std::vector<const char*>& parts,
   for (const char* part : without) EXPECT_EQ(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+// Unequal damping kept the modes coupled, and omega_1 was taken from one coordinate alone.
+TEST_F(Words, ANearestResonanceIsThatOfTheLowestMode) {
+  std::ofstream(folder_ / "two.toml") << "[hill]\nmass = [[1, 0], [0, 1]]\ndamping = [[0.02, 0], [0, 0.04]]\n"
+                                         "stiffness = [{ harmonic = 0, cos = [[1, 0.3], [0.3, 2]] }, "
+                                         "{ harmonic = 1, cos = [[0.1, 0], [0, 0]] }]\n"
+                                         "load = [{ harmonic = 1, cos = [1.0, 0] }]\n[analysis]\nomega = 0.4\n";
+  const Json nearest = Json::parse(said("steady two.toml --json"))["rods"]["system"]["nearest_resonance"];
+  const double omega_1 = std::sqrt(1.5 - std::sqrt(0.25 + 0.09));
+  EXPECT_EQ(nearest["order"], 2);
+  EXPECT_NEAR(nearest["omega"], omega_1 / 2, 1e-9);
+}
+
+// A peak was named after the mode as followed from point to point: 3 Omega with a coarse step, 2 Omega with a fine one.
+TEST_F(Words, APeakIsNamedAlikeWithAnyStep) {
+  std::vector<Json> peaks;
+  for (const char* range : {"2600:2750:50", "2660:2700:5"}) {
+    const Json found = Json::parse(said("sweep " + scene("six_link") + " --modes 2 --rods AB --json --rpm " + range));
+    for (const Json& peak : found["critical"])
+      if (std::abs(peak["rpm"].get<double>() - 2682) < 2) peaks.push_back(peak);
+  }
+  ASSERT_EQ(peaks.size(), 2u);
+  EXPECT_EQ(peaks[0]["order"], 2);
+  EXPECT_EQ(peaks[1]["order"], 2);
+}
+
+// The middle between closed-form bounds was printed as the growth rate.
+TEST_F(Words, AGrowthRateOfBoundsIsAnUpperBound) {
+  const std::string table = said("sweep " + scene("six_link") + " --rpm 200:400:100 --modes 2 --only verdict");
+  expect(table, {"<= -16"}, {"e+03"});
+}
+
 // An unstable rod was said to grow "at half the crank's speed", as if its spectrum had one line.
 TEST_F(Words, PeriodDoublingNamesThePeriodAndTheStrongestLines) {
   const std::string text = said("steady " + scene("six_link") + " --rpm 3000 --modes 2");

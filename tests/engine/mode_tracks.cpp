@@ -59,12 +59,4 @@ TEST(ModeTracks, PlacesWithoutAnswerAreGapsThatTracksGoOnBeyond) {
   EXPECT_NEAR(tracks[2][0].frequency, 3.8, 1e-12);
 }
 
-TEST(ModeTracks, InterpolationIsLinearAndTakesTheKnownEnd) {
-  const std::vector<ModeState> a = {{2, -0.2, -0.4}, {NAN, NAN, NAN}}, b = {{4, -0.4, -0.4}, {7, -1, -2}};
-  const std::vector<ModeState> middle = interpolated(a, b, 0.25);
-  EXPECT_DOUBLE_EQ(middle[0].frequency, 2.5);
-  EXPECT_DOUBLE_EQ(middle[0].growth, -0.25);
-  EXPECT_DOUBLE_EQ(middle[1].frequency, 7);
-}
-
 }  // namespace

@@ -37,8 +37,7 @@ int run_bench(const BenchFlags& flags) {
   static_cast<Request&>(request) = asked_request(flags.common, scene);
   const Output out = output(flags.common);
   set_speed(request, first_speed(flags.common, scene));
-  if (!flags.case_limit.empty())
-    request.case_limit = number_flag("--case-limit", flags.case_limit, 1e-3, 1e6, "seconds from 0.001 to 1000000");
+  if (!flags.case_limit.empty()) request.case_limit = seconds_flag("--case-limit", flags.case_limit, 1e6);
   const bool nonlinear = is_nonlinear(flags.theory);
   std::optional<InterruptGuard> guard;
   if (nonlinear) guard.emplace(false);

@@ -40,8 +40,7 @@ CheckRequest asked_check(const CheckFlags& flags, const Scene& scene) {
   CheckRequest request;
   static_cast<Request&>(request) = asked_request(flags.common, scene);
   request.march = flags.march;
-  if (!flags.case_limit.empty())
-    request.case_limit = number_flag("--case-limit", flags.case_limit, 1e-3, 1e6, "seconds from 0.001 to 1000000");
+  if (!flags.case_limit.empty()) request.case_limit = seconds_flag("--case-limit", flags.case_limit, 1e6);
   const std::string& name = flags.integrator;
   if (name.empty() || name == "automatic")
     request.integrator = Integrator::automatic;

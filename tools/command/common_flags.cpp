@@ -21,7 +21,7 @@ void add_value(CLI::App& app, const char* name, std::string& text, const char* m
 
 void start_time_limit(const CommonFlags& flags) {
   if (flags.time_limit.empty()) return;
-  const double seconds = number_flag("--time-limit", flags.time_limit, 1e-3, 1e8, "seconds from 0.001 to 1e8");
+  const double seconds = seconds_flag("--time-limit", flags.time_limit, 1e8);
   const std::string note = fmt::format("the time limit of {:g} s was reached before there was an answer", seconds);
   end_after(seconds, exit_not_reached, fmt::format("hb: {}\n", note),
             flags.json ? fmt::format("{{\"status\":\"tolerance not reached\",\"notes\":[\"{}\"]}}\n", note) : "");

@@ -115,7 +115,19 @@ std::vector<Figure> along_files(const ComparedSide& a, const ComparedSide& b, Ou
   return figures;
 }
 
+// What a computation is asked for with says nothing of results that are there.
+void require_a_scene(const CompareFlags& flags) {
+  if (!is_document(flags.scene_file) || !is_document(flags.other)) return;
+  const std::pair<const char*, bool> given[] = {{"--set", !flags.set.empty()},     {"--rpm", !flags.rpm.empty()},
+                                                {"--omega", !flags.omega.empty()}, {"--tol", !flags.tolerance.empty()},
+                                                {"--modes", !flags.modes.empty()}, {"--rods", !flags.rods.empty()},
+                                                {"--only", !flags.only.empty()}};
+  for (const auto& [flag, there] : given)
+    if (there) throw UsageError(fmt::format("{}: found beside two folders of results, allowed: beside a scene", flag));
+}
+
 int run_compare(const CompareFlags& flags) {
+  require_a_scene(flags);
   const Output out = output(flags);
   const bool sweeps = asks_for_sweeps(flags);
   std::string texts;

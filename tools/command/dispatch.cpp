@@ -5,8 +5,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <exception>
 #include <new>
+#include <regex>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
@@ -36,13 +40,24 @@ std::string unknown_flags(const CLI::App& command, const std::vector<std::string
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   for (const std::string& found : words) {
-    if (!found.starts_with("--")) continue;
+    const bool single = found.size() > 2 && found[0] == '-' && std::isalpha(static_cast<unsigned char>(found[1]));
+    if (!single && !found.starts_with("--")) continue;
     const std::string flag = found.substr(0, found.find('='));
     if (std::ranges::find(names, flag) != names.end()) continue;
-    const std::string near = nearest_name(flag, names);
+    const std::string near = nearest_name((single ? "-" : "") + flag, names);
     sentences.push_back(fmt::format("found the unknown flag {}{}", flag, near.empty() ? "" : " (" + near + " meant?)"));
   }
   return fmt::format("{}", fmt::join(sentences, ", "));
+}
+
+// CLI11's sentences on a flag's number of values, in words that say what is allowed.
+std::string plain(const std::string& sentence) {
+  std::smatch part;
+  if (std::regex_match(sentence, part, std::regex("(\\S+): At Most 1 required but received (\\d+)")))
+    return fmt::format("{}: found {} times, allowed once", part[1].str(), part[2].str());
+  if (std::regex_match(sentence, part, std::regex("(\\S+): (\\d+) required (\\S+) missing")))
+    return fmt::format("{}: found nothing behind it, allowed {}", part[1].str(), part[3].str());
+  return sentence;
 }
 
 }  // namespace
@@ -81,7 +96,10 @@ int run(int argc, char** argv) {
     return exit_wrong_input;
   }
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (words.size() > 1 && (words[0] == "help" || words[0] == "--help")) words = {words[1], "--help"};
+    std::ranges::reverse(words);  // as CLI11 takes them
+    app.parse(std::move(words));
     return status;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
@@ -94,7 +112,7 @@ int run(int argc, char** argv) {
     std::string what = error.get_exit_code() == extras && !chosen.empty()
                            ? unknown_flags(*chosen.front(), {argv + 1, argv + argc})
                            : "";
-    if (what.empty()) what = error.what();
+    if (what.empty()) what = plain(error.what());
     fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
     return exit_wrong_input;
   } catch (const UnresolvedLinkage& error) {

@@ -43,7 +43,7 @@ const Body& fitted_link(const Scene& scene, const std::string& name) {
   const std::string wanted = name.empty() && names.size() == 1 ? names.front() : name;
   for (const int link : elastic_links(*linkage))
     if (body_at(*linkage, link)->name == wanted) return *body_at(*linkage, link);
-  refuse_flag("--rod", name.empty() ? "none" : name, fmt::format("{}", fmt::join(names, ", ")));
+  refuse_flag("--rod", name.empty() ? "nothing" : name, fmt::format("{}", fmt::join(names, ", ")));
 }
 
 // Size of the unit in the header in s or rad/s; without one `usual`.

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <charconv>
 
+#include "lib/scene/quantity.hpp"
 #include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
 
@@ -59,6 +60,18 @@ int integer_flag(const std::string& flag, const std::string& text, int lowest, i
   const std::optional<int> value = parse<int>(text);
   if (!value || *value < lowest || *value > highest) refuse_flag(flag, text, allowed);
   return *value;
+}
+
+double seconds_flag(const std::string& flag, const std::string& text, double highest) {
+  const std::string allowed = fmt::format("seconds from 0.001 to {:g}, or a time with a unit as in \"2 min\"", highest);
+  const std::optional<NumberText> number = number_and_unit(text);
+  if (!number || number->unit.empty()) return number_flag(flag, text, 1e-3, highest, allowed);
+  const UnitText unit = parse_unit(number->unit);
+  if (!unit.unit || unit.unit->dimension != dimension::time)
+    refuse_flag(flag, text, unit.problem.empty() ? allowed : allowed + "; " + unit.problem);
+  const double seconds = number->value * size_of(*unit.unit);
+  if (!(seconds >= 1e-3 && seconds <= highest)) refuse_flag(flag, text, allowed);
+  return seconds;
 }
 
 std::vector<std::string> split(const std::string& text, char mark) {

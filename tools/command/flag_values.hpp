@@ -28,6 +28,8 @@ inline constexpr double largest_number = std::numeric_limits<double>::max();
                                  const std::string& allowed);
 [[nodiscard]] int integer_flag(const std::string& flag, const std::string& text, int lowest, int highest,
                                const std::string& allowed);
+// Seconds from 0.001 to `highest`: a number, or one with a unit of time ("2 min").
+[[nodiscard]] double seconds_flag(const std::string& flag, const std::string& text, double highest);
 // The parts between the marks, empty ones too.
 [[nodiscard]] std::vector<std::string> split(const std::string& text, char mark);
 

@@ -57,8 +57,8 @@ SpeedRange speeds_of_flags(const CommonFlags& flags, const Scene& scene, bool si
   if (scene.analysis.rpm) return {*scene.analysis.rpm, true};
   if (scene.analysis.omega) return {*scene.analysis.omega, false};
   throw UsageError(fmt::format(
-      "--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm N, or --omega W (rad per {})",
-      scene.file.string(), scene.units.time));
+      "--rpm: no speed given, and {} has none under [analysis]; allowed: --rpm {}, or --omega the same (rad per {})",
+      scene.file.string(), single ? "N" : "FROM:TO:STEP", scene.units.time));
 }
 
 }  // namespace

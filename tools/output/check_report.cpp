@@ -27,7 +27,9 @@ void add_comparison(Text& text, const Comparison& c, const OutputUnits& units) {
 }
 
 std::string differs(const Comparison& c, const OutputUnits& units) {
-  return fmt::format("{} differs by {:.2e}, allowed {:.2e}", with_unit(c, units), c.difference, c.allowed);
+  const bool exponents = c.what == "exponents";
+  return fmt::format("{} {} by {:.2e}, allowed {:.2e}{}", c.what, exponents ? "differ" : "differs", c.difference,
+                     c.allowed, exponents ? " " + units.rate : "");
 }
 
 void add_rod(Text& text, const RodCheck& rod, const Settings& settings, bool stats, const OutputUnits& units) {

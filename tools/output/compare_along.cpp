@@ -151,7 +151,7 @@ std::vector<Wanted> of_machine(const Json& a, const ComparedFactors& f) {
   list.push_back({"drive", "torque, largest", "N m", f.moment, {"torque", "max"}, {}});
   list.push_back({"drive", "torque, rms", "N m", f.moment, {"torque", "rms"}, {}});
   list.push_back({"drive", "power, largest", "W", f.power, {"power", "max"}, {}});
-  list.push_back({"drive", "energy of a flywheel", "J", f.moment, {"flywheel", "energy_fluctuation"}, {}});
+  list.push_back({"drive", "energy of the flywheel", "J", f.moment, {"flywheel", "energy_fluctuation"}, {}});
   return list;
 }
 

@@ -27,7 +27,14 @@ std::vector<std::string> fit_warnings(const Measured& measured, const FittedDamp
         fmt::format("{}: one mode leaves {:.2g} % of the measurement over: more than one vibrates, or it is "
                     "not a {}",
                     measured.file, 100 * fitted.fit.residual, measured.is_peak ? "peak" : "decay"));
-  if (!(std::abs(frequency / fitted.scene_frequency - 1) <= other_mode))
+  const auto like_scene = [&](double f) { return std::abs(f / fitted.scene_frequency - 1) <= other_mode; };
+  if (like_scene(1000 * frequency) || like_scene(frequency / 1000))
+    warnings.push_back(
+        fmt::format("{}: {:.4g} Hz were measured, 1000 times {} than in the scene: is the file's first "
+                    "column in {}? (its first line may say \"{}\")",
+                    fitted.rod, frequency, like_scene(1000 * frequency) ? "less" : "more",
+                    measured.is_peak ? "another unit" : "ms", measured.is_peak ? "speed [kHz]" : "time [ms]"));
+  else if (!like_scene(frequency))
     warnings.push_back(
         fmt::format("{}: {:.4g} Hz were measured, the scene has mode {} at {:.4g} Hz: another mode, or another "
                     "support than pins at both ends?",
@@ -64,7 +71,7 @@ std::string fit_table(const Scene& scene, const Measured& measured, const Fitted
   text += fmt::format("  damping ratio     {}\n", with_bar(fitted.fit.ratio, fitted.fit.ratio_error));
   text += fmt::format("  left over         {:.2g} % of the measurement, root of the mean squares\n",
                       100 * fitted.fit.residual);
-  text += fmt::format("  in the scene      {} in the elastic table of {}, in place of damping_internal\n",
+  text += fmt::format("  in the scene      {} in the elastic table of {}, in place of its damping now\n",
                       key_text(fitted), fitted.rod);
   for (const std::string& warning : fit_warnings(measured, fitted)) text += fmt::format("WARNING: {}\n", warning);
   return text;

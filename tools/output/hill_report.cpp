@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "lib/dense.hpp"
+#include "lib/scene/scene_keys.hpp"
 #include "tools/output/json.hpp"
 
 namespace hb::tools {
@@ -107,8 +108,9 @@ std::string hill_table(const HillSystem& system, const Scene& scene) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
   const Index n = system.num_modes();
-  fmt::format_to(out, "linear periodic system of {} {}: stiffness with {} harmonics, load with {}\n", n,
-                 n == 1 ? "unknown" : "unknowns", highest_harmonic(system.stiffness), highest_harmonic(system.load));
+  fmt::format_to(out, "linear periodic system of {} {}: stiffness with {}, load with {}\n", n,
+                 n == 1 ? "unknown" : "unknowns", counted(highest_harmonic(system.stiffness), "harmonic"),
+                 counted(highest_harmonic(system.load), "harmonic"));
   constexpr const char* factors[] = {"", " (times Omega)", " (times Omega^2)"};
   for (std::size_t p = 0; p < 3; ++p) {
     const MatrixXd mean = mean_of(system, p);

@@ -383,7 +383,9 @@ std::string map_summary(const MapDocument& document) {
   text += fmt::format("  stable {:.4g} %, bounded {:.4g} %, unstable {:.4g} %, undecided {:.4g} %",
                       100 * static_cast<double>(n.stable) / all, 100 * static_cast<double>(n.bounded) / all,
                       100 * static_cast<double>(n.unstable) / all, 100 * static_cast<double>(n.undecided) / all);
-  if (n.missing > 0) text += fmt::format(", no system {:.4g} %", 100 * static_cast<double>(n.missing) / all);
+  if (n.missing > 0)
+    text += fmt::format(", {} {:.4g} %", document.complete ? "no system" : "not computed",
+                        100 * static_cast<double>(n.missing) / all);
   text += fmt::format(" of {} points", r.worst.size());
   if (n.interpolated > 0) text += fmt::format(" ({} of them interpolated)", n.interpolated);
   text += "\n";
@@ -399,6 +401,7 @@ std::string map_summary(const MapDocument& document) {
                     r.x()[place % r.x().size()], r.y_axis.path, r.y()[place / r.x().size()]);
   }
   for (const MissingPoints& m : r.missing) {
+    if (!document.complete) break;
     text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,
                         m.x, r.y_axis.path, m.y, m.message);
   }
@@ -418,7 +421,7 @@ std::string map_summary(const MapDocument& document) {
                                               [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.y < b.y; });
     text += fmt::format("    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", r.rods[r.boundaries[k].rod],
                         to_string(r.boundaries[k].curve.kind), points.size(),
-                        fmt::format("{:.8g} ... {:.8g}", x0->x, x1->x), fmt::format("{:.8g} ... {:.8g}", y0->y, y1->y));
+                        fmt::format("{:.6g} ... {:.6g}", x0->x, x1->x), fmt::format("{:.6g} ... {:.6g}", y0->y, y1->y));
   }
   if (r.boundaries.size() > most) text += fmt::format("    ... {} more (--json has all)\n", r.boundaries.size() - most);
   return text;

@@ -11,6 +11,17 @@ namespace {
 
 int first_error = 0;
 
+// Cells at the end of a row are filled with blanks.
+std::string without_trailing_blanks(const std::string& text) {
+  std::string kept;
+  kept.reserve(text.size());
+  for (const char c : text) {
+    if (c == '\n') kept.erase(kept.find_last_not_of(' ') + 1);
+    kept += c;
+  }
+  return kept;
+}
+
 }  // namespace
 
 void print_out(const std::string& text) {
@@ -21,7 +32,7 @@ void print_out(const std::string& text) {
   for (std::size_t from = 0; from < text.size() && written;) {
     std::size_t to = std::min(from + piece, text.size());
     while (to < text.size() && (static_cast<unsigned char>(text[to]) & 0xc0) == 0x80) ++to;
-    const std::string shown = printable(text.substr(from, to - from));
+    const std::string shown = without_trailing_blanks(printable(text.substr(from, to - from)));
     written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
     from = to;
   }

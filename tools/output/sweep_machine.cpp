@@ -227,7 +227,7 @@ std::string machine_rows(const SweepScene& scene, const SweepResult& result) {
       [](const MachinePoint& m) { return std::max(m.shaking_moment.max, -m.shaking_moment.min); });
   row("rms torque", units.moment, "N m", [](const MachinePoint& m) { return m.drive.rms; });
   row("power", watt, "W", [](const MachinePoint& m) { return m.drive.largest_power; });
-  row("energy of a flywheel", units.moment, "J", [](const MachinePoint& m) { return m.drive.energy_fluctuation; });
+  row("energy of the flywheel", units.moment, "J", [](const MachinePoint& m) { return m.drive.energy_fluctuation; });
   return text.empty() ? text : "\nLargest " + whose_largest(scene, result) + "\n" + text;
 }
 

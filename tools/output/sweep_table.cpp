@@ -41,6 +41,7 @@ std::string kind_words(BoundaryKind kind, bool linkage) {
 }
 
 std::string growth_digits(const Stability& stability) {
+  if (stability.method == StabilityMethod::bound) return fmt::format("<= {:.4g}", stability.growth_high + 0.0);
   return fmt::format("{:.{}g}", stability.growth_rate + 0.0,
                      std::min(6, trusted_digits(stability.growth_rate, stability.growth_error)));
 }
@@ -92,7 +93,8 @@ void add_not_excluded(Text& text, const SweepRod& rod, const std::string& unit) 
     std::ranges::sort(places);
   }
   for (const auto& [from, to] : places)
-    add(text, "    {:.12g} .. {:.12g}{}, width {:.2g}\n", from, to, unit, to - from);
+    add(text, "    {} .. {}{}, width {:.2g}\n", located(from, 0.1 * (to - from)), located(to, 0.1 * (to - from)), unit,
+        to - from);
   if (more > 0)
     add(text, "    and {} narrower places, together {:.2g}{} wide (--json and --out have all)\n", more, left_out, unit);
 }
@@ -103,9 +105,10 @@ void add_bands(Text& text, const SweepScene& scene, const SweepRod& rod) {
   const std::string unit = axis_unit(scene).empty() ? "" : " " + axis_unit(scene);
   add(text, "  {}\n", rod.bands.empty() ? "no unstable band" : "unstable bands");
   for (const UnstableBand& band : rod.bands) {
-    add(text, "    {} .. {}{}  fastest growth of its points {:.4g} {} at {:.6g}{}; begins {}, ends {}\n",
-        located(band.from, band.error_from), located(band.to, band.error_to), unit, band.fastest, units.rate,
-        band.fastest_x, unit, band.open_from ? "before the sweep" : kind_words(band.kind_from, linkage),
+    add(text, "    {} .. {}{} (+/- {:.1e})  fastest growth of its points {:.4g} {} at {:.6g}{}; begins {}, ends {}\n",
+        located(band.from, band.error_from), located(band.to, band.error_to), unit,
+        std::max(band.error_from, band.error_to), band.fastest, units.rate, band.fastest_x, unit,
+        band.open_from ? "before the sweep" : kind_words(band.kind_from, linkage),
         band.open_to ? "beyond the sweep" : kind_words(band.kind_to, linkage));
   }
   add_not_excluded(text, rod, unit);
@@ -122,7 +125,7 @@ void add_peaks(Text& text, const SweepScene& scene, const SweepResult& result, s
     if (point.rod != r) continue;
     const SweepPoint* there = refined_point(result, point.peak.x);
     const bool unbounded = std::isinf(point.peak.value);
-    add(text, "    {}{}  ", located(point.peak.x, point.peak.error), unit);
+    add(text, "    {}{} (+/- {:.1e})  ", located(point.peak.x, point.peak.error), unit, point.peak.error);
     if (unbounded)
       add(text, "|q_{}| unbounded in the linear theory: a multiplier passes +1", point.component + 1);
     else

@@ -195,7 +195,8 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   if (result.theory)
     for (const std::string& warning : theory_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   for (const std::string& warning : limit_warnings(model, result)) add(text, "WARNING: {}\n", warning);
-  if (!verdict.empty()) add(text, "\nVerdict: {}\n", verdict);
+  const bool parted = text.size() > 1 && text.data()[text.size() - 2] == '\n';
+  if (!verdict.empty()) add(text, "{}Verdict: {}\n", parted ? "" : "\n", verdict);
   add(text, "{}", growth_theory_row(result, units));
   return fmt::to_string(text);
 }

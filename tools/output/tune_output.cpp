@@ -88,7 +88,8 @@ std::string place(const TuneTask& task, const MetricValue& value, const Units& u
 // Digits as far as the error allows and two more; > or < where more speeds show another value.
 std::string worst_text(const MetricValue& value, bool confirmed, MetricKind kind) {
   const std::string mark = confirmed ? "" : better_large(kind) ? "<" : ">";
-  return mark + fmt::format("{:.{}g}", value.value, std::min(trusted_digits(value.value, value.error) + 2, 10));
+  const int digits = kind == MetricKind::theory ? 2 : trusted_digits(value.value, value.error);
+  return mark + fmt::format("{:.{}g}", value.value, digits);
 }
 
 std::string at_bound(const TuneVariable& variable, double x) {
@@ -220,7 +221,7 @@ std::string worst_cases_text(const TuneTask& task, const TuneResult& result, con
   }
   if (task.goal.weighted)
     text += fmt::format("{:<34}{:>17.7g}{:>17.{}g}{:>10.1e}\n", "goal", result.goal_before, result.goal_after,
-                        std::min(trusted_digits(result.goal_after, result.goal_error) + 2, 10), result.goal_error);
+                        trusted_digits(result.goal_after, result.goal_error), result.goal_error);
   if (!confirmed)
     text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
   if (std::ranges::any_of(result.rows, [](const TuneRow& row) { return row.metric.kind == MetricKind::stress; }))
@@ -280,8 +281,8 @@ std::string changes_of_goal_text(const TuneTask& task, const TuneResult& result)
     if (result.damping_sensitivity)
       text += fmt::format("{:<28}{:>+10.3g} %\n", "internal damping, all links", *result.damping_sensitivity);
     if (result.damping_sensitivity_of_best)
-      text +=
-          fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "", *result.damping_sensitivity_of_best);
+      text += fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "  the same",
+                          *result.damping_sensitivity_of_best);
   }
   return text;
 }

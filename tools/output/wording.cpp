@@ -24,7 +24,7 @@ std::string speed_text(double speed, const Scene& scene, int digits) {
 }
 
 std::string located(double x, double error) {
-  constexpr int most = 12, fewest = 3;
+  constexpr int most = 9, fewest = 3;
   const double known = error > 0 && x != 0 ? std::log10(std::abs(x) / error) : most;
   return fmt::format("{:.{}g}", x, std::clamp(static_cast<int>(known) + 1, fewest, most));
 }

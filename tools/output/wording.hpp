@@ -24,7 +24,7 @@ inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided
 [[nodiscard]] std::string growth_text(const Stability& stability);
 // "-16.045448 +/- 1.2e-11": digits as far as the error allows.
 [[nodiscard]] std::string with_error(double value, double error);
-// A place along an axis with no more digits than are known, 3 to 12.
+// A place along an axis with no more digits than are known, 3 to 9.
 [[nodiscard]] std::string located(double x, double error);
 // Significant digits of a value that an error leaves, 3 to 10.
 [[nodiscard]] int trusted_digits(double value, double error);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hb/analysis/request.hpp"
+#include "lib/scene/scene_keys.hpp"
 
 namespace hb {
 namespace {
@@ -13,6 +14,10 @@ namespace {
 constexpr const char* metric_words =
     "deflection[:ROD], stress[:ROD], total-stress[:ROD], safety[:ROD], force[:JOINT], torque-ripple, mass[:ROD], "
     "theory[:ROD], frequency[:ROD], stable, clearance[:N], speed-range";
+
+const std::vector<std::string> metric_names = {"deflection", "stress",        "total-stress", "safety",
+                                               "force",      "torque-ripple", "mass",         "theory",
+                                               "frequency",  "stable",        "clearance",    "speed-range"};
 
 constexpr const char* small_words =
     "deflection[:ROD], stress[:ROD], total-stress[:ROD], force[:JOINT], torque-ripple, mass[:ROD], theory[:ROD]";
@@ -90,7 +95,11 @@ Metric parse_metric(const char* field, const std::string& whole, const std::stri
       metric.name.clear();
     }
   } else {
-    refuse(field, whole, fmt::format("where \"{}\" is unknown", word), words_of(field));
+    {
+      const std::string near = nearest_name(word, metric_names);
+      refuse(field, whole, fmt::format("where \"{}\" is unknown{}", word, near.empty() ? "" : " (" + near + " meant?)"),
+             words_of(field));
+    }
   }
   if (!named && !metric.name.empty())
     refuse(field, whole, fmt::format("where \"{}\" stands behind {}", metric.name, word), words_of(field));
@@ -152,10 +161,13 @@ Keep parse_keep(const std::string& text) {
   const std::string dense = without_blanks(text);
   const std::size_t less = dense.find("<="), more = dense.find(">=");
   const std::size_t sign = std::min(less, more);
-  if (const std::size_t strict = dense.find_first_of("<>="); sign == std::string::npos && strict != sign)
-    refuse(
-        "keep", text, "with a sign that is not <= or >=",
-        fmt::format("{}{}{}", dense.substr(0, strict), dense[strict] == '>' ? ">=" : "<=", dense.substr(strict + 1)));
+  if (const std::size_t strict = dense.find_first_of("<>="); sign == std::string::npos && strict != sign) {
+    const std::string name = dense.substr(0, strict);
+    const bool least =
+        dense[strict] == '>' || (dense[strict] == '=' && better_large(parse_metric("keep", text, name).kind));
+    refuse("keep", text, "with a sign that is not <= or >=",
+           fmt::format("{}{}{}", name, least ? ">=" : "<=", dense.substr(dense.find_first_not_of("<>=", strict))));
+  }
   keep.metric = parse_metric("keep", text, dense.substr(0, sign));
   keep.at_least = more < less;
   if (sign == std::string::npos) {

@@ -155,8 +155,7 @@ double mass_of(const SceneModel& model, const std::string& name) {
 }
 
 double lowest_frequency(const HillSystem& system) {
-  // At rest only the part without speed is left: M^-1 mean(C_0), nearly diagonal; its lowest w^2 by its diagonal in
-  // scaled coordinates.
+  // At rest only the part without speed is left: M^-1 mean(C_0).
   HillSystem at_rest = system;
   at_rest.stiffness[1] = at_rest.stiffness[2] = FourierSeries();
   at_rest.load = {};

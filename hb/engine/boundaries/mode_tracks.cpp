@@ -132,21 +132,6 @@ std::vector<ModeState> modes_by_continuity(const Stability& stability, double sp
   return states;
 }
 
-std::vector<ModeState> interpolated(const std::vector<ModeState>& a, const std::vector<ModeState>& b, double fraction) {
-  std::vector<ModeState> result = a;
-  for (std::size_t m = 0; m < a.size() && m < b.size(); ++m) {
-    if (std::isnan(b[m].frequency)) continue;
-    if (std::isnan(a[m].frequency)) {
-      result[m] = b[m];
-      continue;
-    }
-    result[m].frequency += fraction * (b[m].frequency - a[m].frequency);
-    result[m].growth += fraction * (b[m].growth - a[m].growth);
-    result[m].growth_low += fraction * (b[m].growth_low - a[m].growth_low);
-  }
-  return result;
-}
-
 std::vector<std::vector<ModeState>> track_modes(const std::vector<TrackedPlace>& places, int num_modes) {
   const std::vector<ModeState> unknown(static_cast<std::size_t>(num_modes), ModeState{nan, nan, nan});
   std::vector<std::vector<ModeState>> tracks(places.size(), unknown);

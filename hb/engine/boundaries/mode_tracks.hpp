@@ -32,8 +32,4 @@ struct TrackedPlace {
 // crossings stay crossings. `places` in ascending order of x.
 [[nodiscard]] std::vector<std::vector<ModeState>> track_modes(const std::vector<TrackedPlace>& places, int num_modes);
 
-// Linear between two states of all modes.
-[[nodiscard]] std::vector<ModeState> interpolated(const std::vector<ModeState>& a, const std::vector<ModeState>& b,
-                                                  double fraction);
-
 }  // namespace hb

@@ -44,9 +44,11 @@ void visit_curve_point(Visit& visit, CurvePoint& point) {
   visit_as_number(visit, point.converged);
 }
 
-class MapSearch {
+}  // namespace
+
+class StabilityMapSearch::Implementation {
  public:
-  MapSearch(const MapSystemAt& at, MapAxis x, MapAxis y, bool every_value, const MapOptions& options)
+  Implementation(const MapSystemAt& at, MapAxis x, MapAxis y, bool every_value, const MapOptions& options)
       : at_(at), options_(options), grid_alone_(every_value && !options.boundaries), mesh_(std::move(x), std::move(y)) {
     along_edges_ = options.search;
     constexpr double rough_tolerance = 1e-9;
@@ -58,9 +60,11 @@ class MapSearch {
     along_curves_.stability.leading_only = true;
   }
 
-  void run() {
-    evaluate();
+  void begin() { evaluate_nodes(); }
+
+  void finish() {
     if (grid_alone_) return;
+    search_edges();
     growth_range();
     do refine();
     while (options_.boundaries && refine_curves());
@@ -114,8 +118,13 @@ class MapSearch {
 
   bool unstable(std::size_t node) const { return samples_[node] && is_unstable(*samples_[node]); }
 
-  // Samples at the nodes and crossings of the edges that are new.
+  // What is new after cells were halved.
   void evaluate() {
+    evaluate_nodes();
+    search_edges();
+  }
+
+  void evaluate_nodes() {
     using Sample = std::optional<StabilitySample>;
     const std::size_t known = samples_.size();
     std::vector<Sample> samples = results<Sample>(
@@ -125,8 +134,9 @@ class MapSearch {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
         });
     std::ranges::move(samples, std::back_inserter(samples_));
-    if (grid_alone_) return;
+  }
 
+  void search_edges() {
     using Found = std::optional<SearchedInterval>;
     const std::size_t first = searched_edges_;
     searched_edges_ = mesh_.num_edges();
@@ -461,8 +471,8 @@ class MapSearch {
     curves.push_back(std::move(piece));
   }
 
-  const MapSystemAt& at_;
-  const MapOptions& options_;
+  const MapSystemAt at_;
+  const MapOptions options_;
   const bool grid_alone_;  // every point evaluated, nothing between them
   SweepOptions along_edges_, along_curves_;  // along_curves_: the leading exponents suffice
   StabilityOptions at_nodes_;
@@ -478,18 +488,29 @@ class MapSearch {
   double range_ = 0;
 };
 
-}  // namespace
-
-StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
-                           const MapOptions& options) {
+StabilityMapSearch::StabilityMapSearch(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
+                                       const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
   MapAxis along_x = make_map_axis(std::move(x), every_value, "x"),
           along_y = make_map_axis(std::move(y), every_value, "y");
   // Nothing between the places that were given where every one is evaluated and no curve is asked for.
   if (every_value && !options.boundaries)
     for (MapAxis* axis : {&along_x, &along_y}) axis->base = axis->units;
-  MapSearch search(system, std::move(along_x), std::move(along_y), every_value, options);
-  search.run();
+  self_ = std::make_unique<Implementation>(system, std::move(along_x), std::move(along_y), every_value, options);
+}
+
+StabilityMapSearch::StabilityMapSearch(StabilityMapSearch&&) noexcept = default;
+StabilityMapSearch::~StabilityMapSearch() = default;
+
+void StabilityMapSearch::begin() { self_->begin(); }
+void StabilityMapSearch::finish() { self_->finish(); }
+StabilityMap StabilityMapSearch::result() { return self_->result(); }
+
+StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
+                           const MapOptions& options) {
+  StabilityMapSearch search(system, std::move(x), std::move(y), options);
+  search.begin();
+  search.finish();
   return search.result();
 }
 

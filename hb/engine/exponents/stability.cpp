@@ -41,7 +41,7 @@ Stability by_bound(const ScaledSystem& system) {
   result.method = StabilityMethod::bound;
   result.evidence = std::isfinite(high) ? "closed-form bounds on the growth rate; no exponent was computed"
                                         : "closed-form bounds on the growth rate do not exist here";
-  set_growth(result, Omega * (std::isfinite(high) ? (high + low) / 2 : low), Omega * low, Omega * high);
+  set_growth(result, Omega * (std::isfinite(high) ? high : low), Omega * low, Omega * high);
   result.converged = result.verdict == Verdict::stable;
   return result;
 }

@@ -25,7 +25,7 @@ struct StabilityOptions {
   StabilityMethod method = StabilityMethod::automatic;
   // Growth rate and verdict only: exponents that a bound shows to lie below the leading ones are not computed.
   bool leading_only = false;
-  // The verdict alone: where closed-form bounds prove stability, growth_rate +- growth_error is all that is known.
+  // The verdict alone: where closed-form bounds prove stability, growth_rate is the upper one of them.
   bool verdict_only = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};

@@ -1,5 +1,6 @@
 #include "hb/engine/system/scaled_system.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -105,6 +106,15 @@ Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& syste
 Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
 
 Eigen::VectorXd ScaledSystem::mean_diagonal() const { return mean_stiffness().diagonal(); }
+
+Eigen::VectorXd ScaledSystem::squared_frequencies() const {
+  const Eigen::MatrixXd K0 = mean_stiffness();
+  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
+  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
+  Eigen::VectorXd values = dense::eigenvalues(K0).real();
+  std::sort(values.begin(), values.end());
+  return values;
+}
 
 ScaledSystem scale_system(const HillSystem& system, double speed) {
   if (!(speed > 0 && std::isfinite(speed)))

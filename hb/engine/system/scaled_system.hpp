@@ -26,6 +26,9 @@ struct ScaledSystem {
   // Mean of K, an I x I matrix, and its diagonal w_i^2; diagonal b_i of G.
   Eigen::MatrixXd mean_stiffness() const;
   Eigen::VectorXd mean_diagonal() const;
+  // (omega_i/Omega)^2 of the undamped system averaged over the turn, ascending: the eigenvalues of the mean stiffness,
+  // of complex ones the real part.
+  Eigen::VectorXd squared_frequencies() const;
   Eigen::VectorXd damping_diagonal() const { return G.diagonal(); }
 };
 

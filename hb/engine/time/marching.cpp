@@ -52,7 +52,7 @@ bool worth_marching(ScaledMotion& motion, const FrozenSpectrum& spectrum, const 
     result.status = ShootingStatus::too_expensive;
     result.message = "marching would need about " + std::to_string(static_cast<long long>(std::min(predicted, 1e15))) +
                      " s (" + std::to_string(static_cast<long long>(std::min(turns, 1e15))) +
-                     " turns), more than the time limit";
+                     " turns), more than the limit for a case";
     return false;
   }
   return true;

@@ -283,7 +283,7 @@ ShootingResult solve_by_shooting(const TimeDomainSystem& system, const ShootingO
     result.status = ShootingStatus::too_expensive;
     result.message = std::string(to_string(plan.integrator)) + " would need about " +
                      std::to_string(static_cast<long long>(std::min(std::ceil(plan.predicted_seconds), 1e15))) +
-                     " s, more than the time limit";
+                     " s, more than the limit for a case";
   } else {
     solve_by(motion, plan, options, system.speed, deadline, result);
     // What CVODE cannot reach, collocation of order 17 usually can.
