@@ -24,6 +24,15 @@ function(hb_target_options target)
   endif()
 endfunction()
 
+# Words, files and pictures cost nothing beside the numbers: optimised lightly they compile in three quarters of the time.
+function(hb_lightly_optimised)
+  foreach(target IN LISTS ARGN)
+    if(TARGET ${target})
+      target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
+  endforeach()
+endfunction()
+
 # Reading Eigen and the standard library is half of the compile time: one precompiled set for the libraries, one with
 # JSON and text for the command, one with JSON and GoogleTest for the tests. Each belongs to a target without flags of
 # its own, since a set serves only those who define what it was made with.

@@ -68,7 +68,8 @@ FrameForces frame_forces(const Linkage& linkage, double speed, const std::vector
       for (const Samples& r : q)
         elastic -= about(elastic_load(linkage, motion, r.link, speed, r.q.col(j), r.q1.col(j), r.q2.col(j)),
                          motion[static_cast<std::size_t>(r.link)].z, origin);
-      samples.col(j) << rigid, elastic;
+      samples.col(j).head<3>() = rigid;
+      samples.col(j).tail<3>() = elastic;
     }
   };
   Index H = slider_force_harmonics(linkage);

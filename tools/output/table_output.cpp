@@ -95,7 +95,7 @@ std::string growth_theory_row(const SpeedResult& result, const OutputUnits& unit
   if (!result.theory || !result.theory->growth) return "";
   double rate = -HUGE_VAL;
   for (const RodResult& rod : result.rods) rate = std::max(rate, rod.stability->growth_rate);
-  return fmt::format("  theory error of its growth rate: {:.1e} {}{}\n", *result.theory->growth, units.rate,
+  return fmt::format("  theory error of the growth rate of all rods: {:.1e} {}{}\n", *result.theory->growth, units.rate,
                      *result.theory->growth < std::abs(rate) ? "" : ", not less than the rate itself");
 }
 
@@ -189,6 +189,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     add(text, "{}", machine_rows(model, result));
     if (unstable) add(text, "  The elastic values contain rods whose periodic state is unstable.\n");
   }
+  add(text, "{}", growth_theory_row(result, units));
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
   for (const std::string& sentence : result.notes) add(text, "NOTE: {}\n", sentence);
   for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
@@ -197,7 +198,6 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   for (const std::string& warning : limit_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   const bool parted = text.size() > 1 && text.data()[text.size() - 2] == '\n';
   if (!verdict.empty()) add(text, "{}Verdict: {}\n", parted ? "" : "\n", verdict);
-  add(text, "{}", growth_theory_row(result, units));
   return fmt::to_string(text);
 }
 
