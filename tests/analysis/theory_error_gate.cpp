@@ -1,4 +1,4 @@
-// The theory error beside the true change on held-out random linkages: within a tenth where the change is below 2 %.
+// The theory error beside the true change on random linkages: within a tenth where the change is below 2 %.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -95,7 +95,7 @@ void judge(RandomLinkage each, Without what, Growth growth, Quantities& found) {
   if (growth == Growth::wanted) judge_growth(answer, each, errors, *changes, found.growth);
 }
 
-// Held out: the thresholds of the second correction were chosen on other seeds.
+// The thresholds of the second correction were chosen on other seeds (hb/analysis/README.md has the counts).
 TEST(TheoryErrorGate, IsWithinATenthOfTheTrueChangeWhereThatIsBelowTwoPercent) {
   Quantities found;
   for (std::uint64_t seed = 0; seed < 16; ++seed)

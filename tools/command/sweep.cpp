@@ -11,12 +11,11 @@
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
-#include "tools/command/flag_values.hpp"
 #include "tools/command/output_flags.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
-#include "tools/command/theory_flags.hpp"
+#include "tools/command/sweep_flags.hpp"
 #include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/motion_input.hpp"
@@ -34,24 +33,6 @@
 namespace hb::tools {
 namespace {
 
-struct SweepFlags : CommonFlags {
-  std::string x;
-  TheoryFlags theory;
-  std::vector<std::string> start, bands;
-  std::string measured;
-  bool no_search = false, resume = false, restart = false;
-};
-
-std::vector<BandRequest> bands_of(const SweepFlags& flags, const SweepRequest& request, bool nonlinear) {
-  std::vector<BandRequest> bands;
-  for (const std::string& text : flags.bands) bands.push_back(parse_band(text));
-  if (!bands.empty() && !is_speed(request.x.path))
-    throw UsageError("--band: found beside --x, allowed: with a sweep along the speed");
-  if (!bands.empty() && nonlinear)
-    throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
-  return bands;
-}
-
 void add_bands(const nlohmann::ordered_json& document, const SweepScene& swept, OutputFolder& place,
                std::vector<Figure>& figures) {
   for (const BandCurves& curves : band_curves(document, document["bands"], axis_label(swept))) {
@@ -68,15 +49,8 @@ int run_sweep_command(const SweepFlags& flags) {
   SweepRequest request = asked_sweep(flags, flags.x, input.source, scene);
   request.search = !flags.no_search;
   const Output out = output(flags);
-  const bool nonlinear = is_nonlinear(flags.theory);
-  NonlinearSweepOptions branches_asked;
-  branches_asked.turns = turns_of(flags.theory);
-  branches_asked.stop = stop_of();
-  if (!nonlinear && !flags.start.empty())
-    throw UsageError(
-        fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear", flags.start.front()));
-  if (!flags.measured.empty() && !out.folder)
-    refuse_flag("--measured", "no --out", "beside --out DIR, whose pictures show it");
+  std::optional<NonlinearSweepOptions> branches_asked = branches_of(flags);
+  require_a_place_for_measured(flags);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -85,10 +59,10 @@ int run_sweep_command(const SweepFlags& flags) {
   const std::shared_ptr<const SweepScene> along = sweep_scene(SceneFamily(input.source, set), request);
   const SweepScene& swept = *along;
   for (const std::string& file : flags.start)
-    branches_asked.starts.push_back(motion_from_json(read_text_file(file), file, swept));
-  if (nonlinear) require_nonlinear(swept, branches_asked);
+    branches_asked->starts.push_back(motion_from_json(read_text_file(file), file, swept));
+  if (branches_asked) require_nonlinear(swept, *branches_asked);
   SweepResult result;
-  const std::vector<BandRequest> bands_asked = bands_of(flags, request, nonlinear);
+  const std::vector<BandRequest> bands_asked = bands_of(flags, request);
   MeasuredOverlay measured;
   if (!flags.measured.empty())
     measured = read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
@@ -100,10 +74,10 @@ int run_sweep_command(const SweepFlags& flags) {
     bands = sweep_bands(scene, request, bands_asked, work);
   }
   std::optional<NonlinearSweep> branches;
-  if (nonlinear) {
+  if (branches_asked) {
     const InterruptGuard guard(false);
-    branches = nonlinear_sweep(swept, branches_asked);
-    if (branches->stopped) say_time_limit(flags.time_limit, branches_asked.stop, branches->shortfalls);
+    branches = nonlinear_sweep(swept, *branches_asked);
+    if (branches->stopped) say_time_limit(flags.time_limit, branches_asked->stop, branches->shortfalls);
   }
   nlohmann::ordered_json document =
       out.json || folder || !bands_asked.empty() ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
@@ -146,25 +120,7 @@ void add_sweep_command(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "sweep", "along speeds or any other number: peaks, exponents, Campbell diagram, critical speeds, unstable bands");
   const auto flags = std::make_shared<SweepFlags>();
-  add_scene_flags(*command, *flags);
-  add_analysis_flags(*command, *flags);
-  allow_growth_alone(*command, *flags);
-  command->add_flag("--no-search", flags->no_search, "the points alone: no bands, boundaries or peaks between them");
-  add_band_flag(*command, flags->bands);
-  add_label_flag(*command, *flags, "x");
-  add_html_flag(*command, *flags);
-  command
-      ->add_option("--x", flags->x,
-                   "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
-      ->type_name("PATH=A:B:STEP|A:B:xN");
-  add_theory_flags(*command, flags->theory);
-  command
-      ->add_option("--start", flags->start,
-                   "with --theory nonlinear: follow branches from this motion as well, a steady.json of hb steady")
-      ->type_name("FILE");
-  add_measured_flag(*command, flags->measured, "along what is swept");
-  command->add_flag("--resume", flags->resume, "go on where an interrupted run into the same --out stopped");
-  command->add_flag("--restart", flags->restart, "throw away what an interrupted run into the same --out left");
+  add_sweep_flags(*command, *flags);
   command->callback([flags, &status] { status = run_sweep_command(*flags); });
 }
 

@@ -138,6 +138,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   std::vector<std::string> warnings = model.scene.warnings;
   for (std::string& sentence : theory_warnings(model, result)) warnings.push_back(std::move(sentence));
   for (std::string& sentence : limit_warnings(model, result)) warnings.push_back(std::move(sentence));
+  for (std::string& sentence : strength_warnings(model, result)) warnings.push_back(std::move(sentence));
   if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["units"] = units_json(units);
   Json& rods = json["rods"] = Json::object();

@@ -96,6 +96,21 @@ std::string stress_rows(const SceneModel& model, const SpeedResult& result, std:
   return text;
 }
 
+std::vector<std::string> strength_warnings(const SceneModel& model, const SpeedResult& result) {
+  std::vector<std::string> sentences;
+  const OutputUnits units = output_units(model.scene);
+  for (std::size_t r = 0; model.linkage() && r < result.rods.size(); ++r) {
+    const Strength& strength = body_at(*model.linkage(), result.rods[r].link)->elastic->strength;
+    if (!(strength.yield > 0)) continue;
+    const std::optional<StressCycle> cycle = cycle_of(model, result, r);
+    if (!cycle || !cycle->yield || !(cycle->yield->value < 1)) continue;
+    sentences.push_back(fmt::format("{}: it yields: {:.3g} MPa where it bears {:.4g} MPa; beyond this model",
+                                    result.rods[r].name, cycle->max_abs * units.megapascal,
+                                    strength.yield * units.megapascal));
+  }
+  return sentences;
+}
+
 void add_stress_cycle(Json& stress, const SceneModel& model, const SpeedResult& result, std::size_t rod) {
   const std::optional<StressCycle> cycle = cycle_of(model, result, rod);
   if (!cycle) return;

@@ -32,6 +32,8 @@ void add_drive(nlohmann::ordered_json& document, const Drive& drive, const Drive
 
 // Axial and bending stress together: the largest, and the widest cycle; empty without a section.
 [[nodiscard]] std::string stress_rows(const SceneModel& model, const SpeedResult& result, std::size_t rod);
+// Rods whose stress is above their yield strength.
+[[nodiscard]] std::vector<std::string> strength_warnings(const SceneModel& model, const SpeedResult& result);
 void add_stress_cycle(nlohmann::ordered_json& stress, const SceneModel& model, const SpeedResult& result,
                       std::size_t rod);
 

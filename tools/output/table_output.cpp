@@ -196,6 +196,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
   if (result.theory)
     for (const std::string& warning : theory_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   for (const std::string& warning : limit_warnings(model, result)) add(text, "WARNING: {}\n", warning);
+  for (const std::string& warning : strength_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   const bool parted = text.size() > 1 && text.data()[text.size() - 2] == '\n';
   if (!verdict.empty()) add(text, "{}Verdict: {}\n", parted ? "" : "\n", verdict);
   return fmt::to_string(text);

@@ -1,0 +1,63 @@
+#include "tools/command/sweep_flags.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+
+#include "hb/analysis/along.hpp"
+#include "tools/command/command.hpp"
+#include "tools/command/flag_values.hpp"
+#include "tools/command/output_flags.hpp"
+#include "tools/work/interrupts.hpp"
+
+namespace hb::tools {
+
+void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
+  add_scene_flags(command, flags);
+  add_analysis_flags(command, flags);
+  allow_growth_alone(command, flags);
+  command.add_flag("--no-search", flags.no_search, "the points alone: no bands, boundaries or peaks between them");
+  add_band_flag(command, flags.bands);
+  add_label_flag(command, flags, "x");
+  add_html_flag(command, flags);
+  command
+      .add_option("--x", flags.x,
+                  "sweep this scene number instead of the speed, as in AB.J=30:60:1 or AB.J=30:60:x31 (31 points)")
+      ->type_name("PATH=A:B:STEP|A:B:xN");
+  add_theory_flags(command, flags.theory);
+  command
+      .add_option("--start", flags.start,
+                  "with --theory nonlinear: follow branches from this motion as well, a steady.json of hb steady")
+      ->type_name("FILE");
+  add_measured_flag(command, flags.measured, "along what is swept");
+  command.add_flag("--resume", flags.resume, "go on where an interrupted run into the same --out stopped");
+  command.add_flag("--restart", flags.restart, "throw away what an interrupted run into the same --out left");
+}
+
+std::vector<BandRequest> bands_of(const SweepFlags& flags, const SweepRequest& request) {
+  std::vector<BandRequest> bands;
+  for (const std::string& text : flags.bands) bands.push_back(parse_band(text));
+  if (!bands.empty() && !is_speed(request.x.path))
+    throw UsageError("--band: found beside --x, allowed: with a sweep along the speed");
+  if (!bands.empty() && is_nonlinear(flags.theory))
+    throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
+  return bands;
+}
+
+std::optional<NonlinearSweepOptions> branches_of(const SweepFlags& flags) {
+  const bool nonlinear = is_nonlinear(flags.theory);
+  NonlinearSweepOptions asked;
+  asked.turns = turns_of(flags.theory);
+  asked.stop = stop_of();
+  if (!nonlinear && !flags.start.empty())
+    throw UsageError(
+        fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear", flags.start.front()));
+  return nonlinear ? std::optional(asked) : std::nullopt;
+}
+
+void require_a_place_for_measured(const SweepFlags& flags) {
+  if (!flags.measured.empty() && !flags.out)
+    refuse_flag("--measured", "no --out", "beside --out DIR, whose pictures show it");
+}
+
+}  // namespace hb::tools
