@@ -151,17 +151,25 @@ bool remark_on_stoutness(const TableView& elastic, const Body& body, const Scene
 // A link or slider, the crank and its flywheel aside, much heavier than all others together.
 void remark_on_masses(const TableView& scene, const Linkage& linkage, const SceneContext& context) {
   constexpr double most = 100;
-  std::vector<std::pair<std::string, double>> bodies;
+  struct BodyMass {
+    std::string name;
+    double mass;
+    bool elastic;
+  };
+  std::vector<BodyMass> bodies;
   for (const Dyad& dyad : linkage.dyads) {
-    bodies.emplace_back(dyad.coupler.name, dyad.coupler.mass);
-    if (const auto* slider = std::get_if<Slider>(&dyad.closing))
-      bodies.emplace_back(slider->name, slider->mass);
-    else
-      bodies.emplace_back(std::get<Rocker>(dyad.closing).body.name, std::get<Rocker>(dyad.closing).body.mass);
+    bodies.push_back({dyad.coupler.name, dyad.coupler.mass, dyad.coupler.elastic.has_value()});
+    if (const auto* slider = std::get_if<Slider>(&dyad.closing)) {
+      bodies.push_back({slider->name, slider->mass, false});
+    } else {
+      const Body& rocker = std::get<Rocker>(dyad.closing).body;
+      bodies.push_back({rocker.name, rocker.mass, rocker.elastic.has_value()});
+    }
   }
   double all = linkage.crank.body.mass;
-  for (const auto& [name, mass] : bodies) all += mass;
-  for (const auto& [name, mass] : bodies) {
+  for (const BodyMass& body : bodies) all += body.mass;
+  for (const auto& [name, mass, elastic] : bodies) {
+    if (elastic) continue;  // its density says more
     const double others = all - mass;
     if (!(others > 0 && mass > most * others)) continue;
     remark(

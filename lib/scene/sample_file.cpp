@@ -125,7 +125,8 @@ void remark_on_seam(const NumberTable& table, const std::vector<Index>& columns,
     if (!(seam > 3 * largest) || !(seam > same * value.head(n).cwiseAbs().maxCoeff())) continue;
     remark(
         fmt::format("{}: found a jump at the seam, {:.4g} from the last row back to the first in {} where others "
-                    "differ by {:.4g} at most, allowed; taken as it stands: do the rows span one turn?",
+                    "differ by {:.4g} at most, allowed; taken as it stands: do the rows span one turn, and is no "
+                    "column an angle, a time or a number of the row?",
                     place(table, n - 1), seam, column_text(table, column), largest));
     return;
   }
@@ -287,7 +288,7 @@ SampleColumns columns_by_name(const NumberTable& table, Index size, bool matrix)
   return result;
 }
 
-// Equally spaced values: angles, times or row numbers where entries should be.
+// Equally spaced values: angles or row numbers where entries should be.
 bool is_even_ramp(const Eigen::Ref<const Eigen::VectorXd>& values) {
   const Index n = values.size();
   const double step = (values(n - 1) - values(0)) / double(n - 1);
@@ -320,15 +321,17 @@ SampleColumns sample_columns(const NumberTable& table, Index size, bool matrix) 
   if (std::ranges::any_of(table.header, decides)) return columns_by_name(table, size, matrix);
 
   const Index columns = table.values.cols(), count = matrix ? size * size : size;
-  constexpr Index told_from_entries = 6;  // rows from which an even ramp is no coincidence
   if (columns > 1 && is_even_ramp(table.values.col(0))) {
     const bool angles = spans_a_turn(table.values.col(0));
-    if (angles || table.values.rows() >= told_from_entries)
+    const double first = table.values(0, 0);
+    constexpr Index no_coincidence = 12;  // rows
+    const bool numbers =
+        table.values.rows() >= no_coincidence && (first == 0 || first == 1) && table.values(1, 0) == first + 1;
+    if (angles || numbers)
       fail(table, 0,
            fmt::format("found {} in the first column, allowed columns named in a first line ({}), or all entries{} "
                        "over one period without a column of angles",
-                       angles ? "angles" : "an even ramp (row numbers, times or angles)", entry_words(size, matrix),
-                       matrix ? " row by row" : ""));
+                       angles ? "angles" : "row numbers", entry_words(size, matrix), matrix ? " row by row" : ""));
   }
   if (columns != count) {
     fail(table, 0,

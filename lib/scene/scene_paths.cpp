@@ -215,8 +215,11 @@ toml::table parse_value(const Override& change) {
   } catch (const toml::parse_error&) {
     // "70 GPA": what is wrong is said where units are read.
     const std::optional<NumberText> number = number_and_unit(change.value);
-    if (number && !number->unit.empty() && std::isalpha(static_cast<unsigned char>(number->unit[0])) &&
-        change.value.find_first_of("\"'\\") == std::string::npos)
+    const bool letters =
+        number && !number->unit.empty() && std::ranges::all_of(number->unit, [](unsigned char c) {
+          return std::isalnum(c) || std::string_view("/^*- ").find(static_cast<char>(c)) != std::string_view::npos;
+        });
+    if (letters && std::isalpha(static_cast<unsigned char>(number->unit[0])))
       return toml::parse("value = \"" + change.value + "\"", label(change));
   }
   const std::size_t comma = change.value.find(',');

@@ -93,12 +93,16 @@ TEST(Scene, SixLinkSceneGivesThePapersData) {
   EXPECT_EQ(scene.analysis.rpm->from, 300);
   EXPECT_EQ(scene.analysis.rpm->step, 0);
   EXPECT_EQ(scene.analysis.tolerance, 1e-10);
-  // The paper's J_O are below m s^2: kept, and said once; it changes nothing.
+  // The paper's J_O are below m s^2: kept, and said of each; it changes nothing.
   EXPECT_TRUE(scene.warnings.empty());
-  ASSERT_EQ(scene.notes.size(), 1u);
-  EXPECT_NE(scene.notes[0].find("six_link.toml:15: found O2BC.inertia_pivot = 18300 (25620.2), O3D.inertia_pivot"),
-            std::string::npos)
+  ASSERT_EQ(scene.notes.size(), 2u);
+  EXPECT_NE(
+      scene.notes[0].find("six_link.toml:15: O2BC.inertia_pivot: found 18300 kg mm^2, below mass radius^2 of com = "
+                          "25620.2 kg mm^2"),
+      std::string::npos)
       << scene.notes[0];
+  EXPECT_NE(scene.notes[1].find("six_link.toml:21: O3D.inertia_pivot: found 11500 kg mm^2"), std::string::npos)
+      << scene.notes[1];
 }
 
 TEST(Scene, TheSceneAsPrintedDiffersInJAlone) {

@@ -145,7 +145,7 @@ TEST_F(SampleFiles, AnAngleColumnWithoutANameIsRefused) {
   EXPECT_NE(fields.find("k.csv:1: found 3 fields, allowed 4 numbers in a row (all entries row by row, no angle)"),
             std::string::npos)
       << fields;
-  // A ramp that is no turn is a stiffness like any other.
+  // A short ramp that is no turn is a stiffness like any other.
   EXPECT_EQ(message([&] { return hill("1,0,0,1\n2,0,0,1\n3,0,0,1\n4,0,0,1\n"); }), "");
   // One column is no table with an angle.
   std::ofstream(folder_ / "k.csv") << "0\n90\n180\n270\n";

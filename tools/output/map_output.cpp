@@ -358,9 +358,11 @@ std::string map_verdict(const MapDocument& document) {
                            : "");
   if (n.undecided > 0)
     return fmt::format("undecided at {:.3g} % of the points", 100 * static_cast<double>(n.undecided) / all);
-  return n.bounded == 0  ? "stable at all points"
-         : n.stable == 0 ? "bounded at all points"
-                         : "stable or bounded at all points";
+  const std::string which = n.missing == 0 ? "" : document.complete ? " that have a system" : " that were computed";
+  return (n.bounded == 0  ? "stable at all points"
+          : n.stable == 0 ? "bounded at all points"
+                          : "stable or bounded at all points") +
+         which;
 }
 
 std::string map_summary(const MapDocument& document) {
