@@ -48,13 +48,11 @@ std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& written,
   const std::vector<BandRequest> bands = read_bands(arguments);
   if (turns && !bands.empty())
     throw RequestError("band", "beside theory = \"nonlinear\"", "band with the linear theory");
-  if (!bands.empty() && !is_speed(request.x.path))
-    throw RequestError("band", "beside a sweep along " + request.x.path, "with a sweep along the speed");
   PythonWork work(arguments, progress);
   return work.run([&] {
     if (!turns) {
       auto answer = std::make_shared<SweepCore>(SweepCore{sweep(core.source, request, work), std::nullopt});
-      answer->bands = sweep_bands(core.scene, request, bands, work);
+      if (!bands.empty()) answer->bands = sweep_bands(core.scene, request, bands, work);
       return answer;
     }
     NonlinearSweepOptions options;
