@@ -133,10 +133,11 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
   result.rods = plane.rods();
   std::vector<StabilityMapSearch> searches;
   for (std::size_t r = 0; r < result.rods.size(); ++r)
-    searches.emplace_back([&plane, r](double u, double v) { return plane.system(r, u, v); }, x, y, search);
-  for (StabilityMapSearch& one : searches) one.begin();
-  for (StabilityMapSearch& one : searches) one.finish();
-  for (StabilityMapSearch& one : searches) result.maps.push_back(one.result());
+    searches.push_back(
+        stability_map_search([&plane, r](double u, double v) { return plane.system(r, u, v); }, x, y, search));
+  for (const StabilityMapSearch& one : searches) one.begin();
+  for (const StabilityMapSearch& one : searches) one.finish();
+  for (const StabilityMapSearch& one : searches) result.maps.push_back(one.result());
   result.worst = result.maps.front().points;
   for (std::size_t r = 1; r < result.maps.size(); ++r) {
     for (std::size_t p = 0; p < result.worst.size(); ++p) {

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -44,11 +45,9 @@ void visit_curve_point(Visit& visit, CurvePoint& point) {
   visit_as_number(visit, point.converged);
 }
 
-}  // namespace
-
-class StabilityMapSearch::Implementation {
+class MapSearch {
  public:
-  Implementation(const MapSystemAt& at, MapAxis x, MapAxis y, bool every_value, const MapOptions& options)
+  MapSearch(const MapSystemAt& at, MapAxis x, MapAxis y, bool every_value, const MapOptions& options)
       : at_(at), options_(options), grid_alone_(every_value && !options.boundaries), mesh_(std::move(x), std::move(y)) {
     along_edges_ = options.search;
     constexpr double rough_tolerance = 1e-9;
@@ -488,27 +487,23 @@ class StabilityMapSearch::Implementation {
   double range_ = 0;
 };
 
-StabilityMapSearch::StabilityMapSearch(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
-                                       const MapOptions& options) {
+}  // namespace
+
+StabilityMapSearch stability_map_search(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
+                                        const MapOptions& options) {
   const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
   MapAxis along_x = make_map_axis(std::move(x), every_value, "x"),
           along_y = make_map_axis(std::move(y), every_value, "y");
   // Nothing between the places that were given where every one is evaluated and no curve is asked for.
   if (every_value && !options.boundaries)
     for (MapAxis* axis : {&along_x, &along_y}) axis->base = axis->units;
-  self_ = std::make_unique<Implementation>(system, std::move(along_x), std::move(along_y), every_value, options);
+  const auto search = std::make_shared<MapSearch>(system, std::move(along_x), std::move(along_y), every_value, options);
+  return {[search] { search->begin(); }, [search] { search->finish(); }, [search] { return search->result(); }};
 }
-
-StabilityMapSearch::StabilityMapSearch(StabilityMapSearch&&) noexcept = default;
-StabilityMapSearch::~StabilityMapSearch() = default;
-
-void StabilityMapSearch::begin() { self_->begin(); }
-void StabilityMapSearch::finish() { self_->finish(); }
-StabilityMap StabilityMapSearch::result() { return self_->result(); }
 
 StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                            const MapOptions& options) {
-  StabilityMapSearch search(system, std::move(x), std::move(y), options);
+  const StabilityMapSearch search = stability_map_search(system, std::move(x), std::move(y), options);
   search.begin();
   search.finish();
   return search.result();

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -57,21 +56,15 @@ struct StabilityMap {
 
 // A map in two steps, so that several systems over one plane have their grids before any curve is followed. `system`
 // and options.parts are called until the end.
-class StabilityMapSearch {
- public:
-  // x and y ascending, at least two values each; throws std::invalid_argument otherwise.
-  StabilityMapSearch(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
-                     const MapOptions& options);
-  StabilityMapSearch(StabilityMapSearch&&) noexcept;
-  ~StabilityMapSearch();
-  void begin();  // the grid
-  void finish();  // crossings along the cells' edges, cells halved where they leave something open, curves
-  [[nodiscard]] StabilityMap result();
-
- private:
-  class Implementation;
-  std::unique_ptr<Implementation> self_;
+struct StabilityMapSearch {
+  std::function<void()> begin;  // the grid
+  std::function<void()>
+      finish;  // crossings along the cells' edges, cells halved where they leave something open, curves
+  std::function<StabilityMap()> result;
 };
+// x and y ascending, at least two values each; throws std::invalid_argument otherwise.
+[[nodiscard]] StabilityMapSearch stability_map_search(const MapSystemAt& system, std::vector<double> x,
+                                                      std::vector<double> y, const MapOptions& options);
 
 // Both steps; throws std::invalid_argument as above.
 [[nodiscard]] StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
