@@ -64,7 +64,7 @@ std::vector<std::vector<PlanePoint>> zero_lines(const std::vector<PlanePoint>& p
 std::string ResonanceLine::name(bool subscripts) const {
   const auto omega = [&](int mode) { return fmt::format("ω{}{}", subscripts ? "_" : "", mode + 1); };
   const std::string over = k == 1 ? "" : fmt::format("/{}", k);
-  if (i == j) return "2" + omega(i) + over;
+  if (i == j) return fmt::format("2{}{}", omega(i), over);
   const std::string pair = omega(j) + (sign > 0 ? "+" : "-") + omega(i);
   return k == 1 ? pair : fmt::format("({}){}", pair, over);
 }

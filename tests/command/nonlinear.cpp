@@ -135,7 +135,9 @@ TEST_F(Nonlinear, StressesOfABranchAreThoseOfItsMotions) {
     near(along["deflection"][at], one["deflection"]["max_abs"]);
     near(along["stress"]["axial"][at], one["stress"]["axial"]);
     near(along["stress"]["bending"][at], one["stress"]["bending"]);
-    if (between > 0) EXPECT_TRUE(along["stress"]["bending"][between].is_null());
+    if (between > 0) {
+      EXPECT_TRUE(along["stress"]["bending"][between].is_null());
+    }
   }
 }
 
