@@ -7,6 +7,8 @@
 #include "tools/output/map_loads_output.hpp"
 #include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/output/sweep_theory.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/pictures/branch_figure.hpp"
 #include "tools/pictures/figures.hpp"
 #include "tools/pictures/sweep_figures.hpp"
@@ -47,6 +49,10 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
     const CsvFile machine = sweep_machine_csv(scene, result);
     folder.write(machine.name, csv_text(machine));
     for (Figure& figure : sweep_force_figures(scene, result, forces, measured)) figures.push_back(std::move(figure));
+  }
+  if (has_theory(scene, result)) {
+    const CsvFile theory = sweep_theory_csv(scene, result);
+    folder.write(theory.name, csv_text(theory));
   }
   for (Figure& figure : figures) figure.x_label = quoted(axis_label(scene));
   return figures;

@@ -103,7 +103,14 @@ Json single_json(const SceneModel& model, const SpeedCheck& check, const Setting
   json["rods"] = Json::object();
   for (const RodCheck& rod : check.rods) {
     Json& entry = json["rods"][rod.name] = rod_json(rod, settings.tolerance);
-    if (model.linkage()) entry["theory_error"] = rod.theory_error ? number(*rod.theory_error) : Json();
+    if (model.linkage()) entry["theory_error"] = number(rod.theory_error);
+  }
+  if (check.theory) {
+    if (check.joints) {
+      json["joints_theory_error"] = number(check.theory->force);
+      json["torque_theory_error"] = number(check.theory->torque);
+    }
+    if (!check.verdicts.empty()) json["growth_theory_error"] = number(check.theory->growth);
   }
   if (check.joints) {
     const auto compared = [](const Comparison& c) {
@@ -135,9 +142,14 @@ Json speeds_json(const SceneModel& model, const std::vector<SpeedCheck>& checks)
       entry["exponent_allowed"].push_back(allowed(rod, rod.exponents));
       entry["verdict"].push_back(to_string(rod.shooting.verdict));
       entry["agrees"].push_back(agrees(rod));
-      if (model.linkage()) entry["theory_error"].push_back(rod.theory_error ? number(*rod.theory_error) : Json());
+      if (model.linkage()) entry["theory_error"].push_back(number(rod.theory_error));
     }
     const bool joints = check.joints.has_value();
+    if (check.theory) {
+      json["joints_theory_error"].push_back(number(check.theory->force));
+      json["torque_theory_error"].push_back(number(check.theory->torque));
+      json["growth_theory_error"].push_back(number(check.theory->growth));
+    }
     json["joints_difference"].push_back(joints ? number(check.joints->forces.difference) : Json());
     json["torque_difference"].push_back(joints ? number(check.joints->torque.difference) : Json());
   }

@@ -115,6 +115,15 @@ std::string verdict_line(const SceneModel& model, const std::vector<SpeedCheck>&
                      verdict.empty() ? "" : "; ", agreement(checks).brief);
 }
 
+// What both paths leave out of what belongs to the whole mechanism.
+void add_theory_errors(Text& text, const TheoryErrors& theory, const OutputUnits& units) {
+  std::vector<std::string> parts;
+  if (theory.force) parts.push_back(fmt::format("joint forces {:.2g} of the largest", *theory.force));
+  if (theory.torque) parts.push_back(fmt::format("torque {:.2g}", *theory.torque));
+  if (theory.growth) parts.push_back(fmt::format("growth rate {:.2g} {}", *theory.growth, units.rate));
+  if (!parts.empty()) add(text, "\nlinear theory off by: {}\n", fmt::join(parts, ", "));
+}
+
 void add_single(Text& text, const SceneModel& model, const SpeedCheck& check, const Settings& settings, bool stats) {
   const OutputUnits units = output_units(model.scene);
   for (const RodCheck& rod : check.rods) add_rod(text, rod, settings, stats, units);
@@ -124,6 +133,7 @@ void add_single(Text& text, const SceneModel& model, const SpeedCheck& check, co
     add_comparison(text, check.joints->torque, units);
     add(text, "  nearest to its allowance {}\n", check.joints->worst);
   }
+  if (check.theory) add_theory_errors(text, *check.theory, units);
   add(text, "\n");
 }
 

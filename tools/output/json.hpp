@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace hb::tools {
 
@@ -10,5 +11,6 @@ using Json = nlohmann::ordered_json;
 
 // null where it is not finite.
 [[nodiscard]] inline Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+[[nodiscard]] inline Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
 }  // namespace hb::tools

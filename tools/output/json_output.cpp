@@ -80,13 +80,11 @@ void add_stability(Json& json, const RodResult& rod, double speed, const Units& 
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 void add_theory(Json& json, const std::optional<TheoryErrors>& errors, std::size_t r) {
   json["theory"] = !errors ? "not judged" : beyond_theory(errors->rods[r].q) ? "beyond" : "within";
-  json["theory_error"] = errors ? or_null(errors->rods[r].q) : Json(nullptr);
+  json["theory_error"] = errors ? number(errors->rods[r].q) : Json(nullptr);
   if (!errors) return;
-  json["deflection_theory_error"] = or_null(errors->rods[r].deflection);
+  json["deflection_theory_error"] = number(errors->rods[r].deflection);
   if (errors->rods[r].axial_share) json["theory_axial_share"] = *errors->rods[r].axial_share;
 }
 
@@ -134,7 +132,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       if (rod.stability) verdict = worst(verdict, rod.stability->verdict);
     json["verdict"] = to_string(verdict);
   }
-  if (result.theory && result.computed.stability) json["growth_theory_error"] = or_null(result.theory->growth);
+  if (result.theory && result.computed.stability) json["growth_theory_error"] = number(result.theory->growth);
   std::vector<std::string> warnings = model.scene.warnings;
   for (std::string& sentence : theory_warnings(model, result)) warnings.push_back(std::move(sentence));
   for (std::string& sentence : limit_warnings(model, result)) warnings.push_back(std::move(sentence));
@@ -173,8 +171,8 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
       json["torque_modes_error"] = errors->torque_cut;
     }
     if (result.theory) {
-      json["joints_theory_error"] = or_null(result.theory->force);
-      json["torque_theory_error"] = or_null(result.theory->torque);
+      json["joints_theory_error"] = number(result.theory->force);
+      json["torque_theory_error"] = number(result.theory->torque);
     }
     add_machine(json, model, result);
   } else if (!model.linkage() && settings.only.reactions) {

@@ -64,12 +64,10 @@ std::vector<const StressQuantity*> quantities_of(const std::vector<SweepPoint>& 
   return found;
 }
 
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json of_machine(const SweepResult& result, const MachineValue& value) {
   Json array = Json::array();
   for (const SweepPoint& point : result.points)
-    array.push_back(point.machine ? finite_or_null(value(*point.machine)) : Json(nullptr));
+    array.push_back(point.machine ? number(value(*point.machine)) : Json(nullptr));
   return array;
 }
 
@@ -159,7 +157,7 @@ void add_stress(Json& rod, std::size_t r, const std::vector<SweepPoint>& points)
     Json& array = rod["stress"][quantity->key] = Json::array();
     for (const SweepPoint& point : points) {
       const StressPoint* stress = stress_at(point, r);
-      array.push_back(stress ? finite_or_null(quantity->value(*stress)) : Json(nullptr));
+      array.push_back(stress ? number(quantity->value(*stress)) : Json(nullptr));
     }
   }
 }

@@ -15,6 +15,7 @@
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/sweep_machine.hpp"
+#include "tools/output/sweep_theory.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -57,14 +58,16 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
     json["resonance_distance"] = of_rod([](const RodPoint& rod) { return number(rod.resonance_distance); });
   }
   if (result.computed.shape) {
-    json["deflection"] = of_rod([](const RodPoint& rod) { return number(rod.deflection.value_or(nan)); });
-    json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment.value_or(nan)); });
-    json["buckling_share"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share.value_or(nan)); });
-    json["strain"] = of_rod([](const RodPoint& rod) { return number(rod.strain.value_or(nan)); });
+    json["deflection"] = of_rod([](const RodPoint& rod) { return number(rod.deflection); });
+    json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment); });
+    json["buckling_share"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share); });
+    json["strain"] = of_rod([](const RodPoint& rod) { return number(rod.strain); });
     add_stress(json, r, points);
   }
   if (scene.first().linkage())
-    json["theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.theory_error.value_or(nan)); });
+    json["theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.theory_error); });
+  if (has_theory(scene, result) && result.computed.shape)
+    json["deflection_theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.deflection_theory_error); });
   if (result.computed.stability) {
     json["growth_rate"] = of_rod([](const RodPoint& rod) { return number(rod.stability->stability.growth_rate); });
     Json& distances = json["distance_to_boundary"] = Json::array();
@@ -118,7 +121,7 @@ Json critical_json(const SweepResult& result, const CriticalPoint& point, const 
   json["unbounded"] = std::isinf(point.peak.value);
   json["prominence"] = point.prominence;
   if (const SweepPoint* there = refined_point(result, point.peak.x); there && has_theory(scene, result))
-    json["theory_error"] = number(there->rods[point.rod].theory_error.value_or(nan));
+    json["theory_error"] = number(there->rods[point.rod].theory_error);
   if (point.mode >= 0) {
     json["mode"] = point.mode + 1;
     json["order"] = point.order;
@@ -270,6 +273,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   if (result.searched_peaks) add_critical(json, scene, result);
   if (result.searched_bands) add_bands(json, result);
   if (result.computed.reactions) add_forces(json, result);
+  add_theory(json, scene, result);
   Json problems = Json::array();
   for (std::size_t k = 0; k < points.size(); ++k)
     if (!points[k].problem.empty())

@@ -12,6 +12,7 @@
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
+#include "tools/output/sweep_theory.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/text.hpp"
 #include "tools/output/theory_words.hpp"
@@ -189,6 +190,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
       add(text, "  resonance peaks between the points were not looked for\n");
   }
   if (result.computed.reactions) add(text, "{}", machine_rows(scene, result));
+  add(text, "{}", theory_rows(scene, result));
   const auto closed = static_cast<std::size_t>(std::count_if(
       result.points.begin(), result.points.end(), [](const SweepPoint& point) { return point.problem.empty(); }));
   if (closed < result.points.size()) {

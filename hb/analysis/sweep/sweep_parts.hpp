@@ -42,6 +42,9 @@ void visit_point(Visit& visit, SweepPoint& point) {
   visit(point.speed);
   visit_elements(visit, point.problem, [&](char& c) { visit_as_number(visit, c); });
   visit_elements(visit, point.theory_reason, [&](char& c) { visit_as_number(visit, c); });
+  visit_if_there(visit, point.force_theory_error, visit);
+  visit_if_there(visit, point.torque_theory_error, visit);
+  visit_if_there(visit, point.growth_theory_error, visit);
   visit_elements(visit, point.rods, [&](RodPoint& rod) {
     visit_if_there(visit, rod.steady, [&](SteadyStatus& status) { visit_as_number(visit, status); });
     visit_as_number(visit, rod.num_harmonics);
@@ -54,6 +57,7 @@ void visit_point(Visit& visit, SweepPoint& point) {
     visit_if_there(visit, rod.strain, visit);
     visit_if_there(visit, rod.stress, [&](StressPoint& stress) { visit_stress(visit, stress); });
     visit_if_there(visit, rod.theory_error, visit);
+    visit_if_there(visit, rod.deflection_theory_error, visit);
     visit_if_there(visit, rod.stability, [&](StabilitySample& sample) { visit_sample(visit, sample); });
   });
   visit_elements(visit, point.joints, [&](TurnRange& range) { visit_range(visit, range); });

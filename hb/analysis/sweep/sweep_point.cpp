@@ -8,6 +8,7 @@
 #include "hb/analysis/modes.hpp"
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/analysis/stress_cycle.hpp"
+#include "hb/analysis/theory_growth.hpp"
 
 namespace hb {
 namespace {
@@ -100,6 +101,38 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   return point;
 }
 
+JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::vector<FourierSeries>& q) {
+  std::vector<LinkResponse> responses;
+  for (std::size_t r = 0; r < q.size(); ++r) responses.push_back({model.rods[r].link, q[r]});
+  JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
+  for (const JointForce& joint : forces.joints) {
+    for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
+      point.joints.push_back(turn_range(joint.elastic, c));
+      point.joints_rigid.push_back(turn_range(joint.rigid, c));
+    }
+  }
+  point.torque = turn_range(forces.torque, 0);
+  point.torque_rigid = turn_range(forces.torque_rigid, 0);
+  point.machine = machine_point(machine_loads(*model.linkage(), point.speed, forces, responses, std::nullopt));
+  return forces;
+}
+
+// `forces` may be null.
+void add_theory(SweepPoint& point, const SceneModel& model, const std::vector<FourierSeries>& q,
+                const JointForces* forces, const Only& only) {
+  std::vector<LinearRod> linear;
+  for (std::size_t r = 0; r < q.size(); ++r) linear.push_back({&model.rods[r].system, &q[r]});
+  const TheoryErrors errors = theory_errors(*model.exact, point.speed, linear, forces);
+  for (std::size_t r = 0; r < q.size(); ++r) {
+    point.rods[r].theory_error = errors.rods[r].q;
+    if (only.shape) point.rods[r].deflection_theory_error = errors.rods[r].deflection;
+  }
+  point.theory_reason = errors.reason;
+  point.force_theory_error = errors.force;
+  point.torque_theory_error = errors.torque;
+  if (only.stability) point.growth_theory_error = growth_theory_error(*model.linkage(), point.speed, linear, errors);
+}
+
 }  // namespace
 
 SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) {
@@ -114,28 +147,10 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
   std::vector<FourierSeries> q(rods.size());
   for (std::size_t r = 0; r < rods.size(); ++r)
     point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only, q[r]));
-  const bool solved = std::ranges::none_of(q, [](const FourierSeries& series) { return series.c.size() == 0; });
-  if (place.model->exact) {
-    std::vector<LinearRod> linear;
-    for (std::size_t r = 0; r < rods.size(); ++r) linear.push_back({&rods[r].system, &q[r]});
-    const TheoryErrors errors = theory_errors(*place.model->exact, place.speed, linear);
-    for (std::size_t r = 0; r < rods.size(); ++r) point.rods[r].theory_error = errors.rods[r].q;
-    point.theory_reason = errors.reason;
-  }
-  if (only.reactions && solved) {
-    std::vector<LinkResponse> responses;
-    for (std::size_t r = 0; r < rods.size(); ++r) responses.push_back({rods[r].link, q[r]});
-    const JointForces forces = joint_forces(*place.model->linkage(), place.speed, responses);
-    for (const JointForce& joint : forces.joints) {
-      for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
-        point.joints.push_back(turn_range(joint.elastic, c));
-        point.joints_rigid.push_back(turn_range(joint.rigid, c));
-      }
-    }
-    point.torque = turn_range(forces.torque, 0);
-    point.torque_rigid = turn_range(forces.torque_rigid, 0);
-    point.machine = machine_point(machine_loads(*place.model->linkage(), place.speed, forces, responses, std::nullopt));
-  }
+  std::optional<JointForces> forces;
+  if (only.reactions && std::ranges::none_of(q, [](const FourierSeries& series) { return series.c.size() == 0; }))
+    forces = add_forces(point, *place.model, q);
+  if (place.model->exact) add_theory(point, *place.model, q, forces ? &*forces : nullptr, only);
   return point;
 }
 

@@ -41,7 +41,8 @@ struct RodPoint {
   std::optional<double> deflection, bending_moment;  // largest over rod and turn
   std::optional<double> buckling_share, strain;  // RodStress, beside them
   std::optional<StressPoint> stress;  // with a section
-  std::optional<double> theory_error;  // TheoryErrors::Rod::q; empty: beyond the linear theory, or q not asked for
+  // TheoryErrors::Rod::q and deflection; empty: beyond the linear theory, or not asked for.
+  std::optional<double> theory_error, deflection_theory_error;
   std::optional<StabilitySample> stability;
 };
 
@@ -50,6 +51,7 @@ struct SweepPoint {
   std::string problem;  // no linkage at this x: why; everything below is empty then
   std::vector<RodPoint> rods;
   std::string theory_reason;  // TheoryErrors::reason
+  std::optional<double> force_theory_error, torque_theory_error, growth_theory_error;  // TheoryErrors, where asked for
   std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
   std::optional<TurnRange> torque, torque_rigid;
   std::optional<MachinePoint> machine;

@@ -151,6 +151,21 @@ class Check(Result):
         return self._document.get("torque")
 
     @property
+    def joints_theory_error(self) -> Any:
+        """What both paths leave out of the joint forces, of the largest; at several speeds a list. None: not judged."""
+        return self._document.get("joints_theory_error")
+
+    @property
+    def torque_theory_error(self) -> Any:
+        """The same of the driving torque."""
+        return self._document.get("torque_theory_error")
+
+    @property
+    def growth_theory_error(self) -> Any:
+        """What the nonlinear correction changes of the mechanism's growth rate, 1/time."""
+        return self._document.get("growth_theory_error")
+
+    @property
     def shortfalls(self) -> list[str]:
         """What missed its tolerance, or could not be compared."""
         return list(self._missed)

@@ -69,6 +69,11 @@ class SweepRod:
         return floats(self._list("theory_error"))
 
     @cached_property
+    def deflection_theory_error(self) -> "NDArray[Any]":
+        """Relative error of the linear theory of the deflection, (points,)."""
+        return floats(self._list("deflection_theory_error"))
+
+    @cached_property
     def deflection(self) -> "NDArray[Any]":
         """Largest deflection over rod and turn, (points,)."""
         return floats(self._list("deflection"))
@@ -275,6 +280,24 @@ class Sweep(Result):
         from .machine_loads import Torque, made
 
         return made(Torque, self._document.get("torque"), floats)
+
+    def _theory(self, key: str) -> "NDArray[Any]":
+        return floats(self._document.get(key) or [None] * len(self))
+
+    @cached_property
+    def joints_theory_error(self) -> "NDArray[Any]":
+        """What the linear theory leaves out of the joint forces, of the largest, (points,); NaN: none, or not computed."""
+        return self._theory("joints_theory_error")
+
+    @cached_property
+    def torque_theory_error(self) -> "NDArray[Any]":
+        """The same of the driving torque, (points,)."""
+        return self._theory("torque_theory_error")
+
+    @cached_property
+    def growth_theory_error(self) -> "NDArray[Any]":
+        """What the nonlinear correction changes of the mechanism's growth rate, 1/time, (points,)."""
+        return self._theory("growth_theory_error")
 
     @cached_property
     def bearings(self) -> "dict[str, Bearing]":
