@@ -206,6 +206,17 @@ RodBench bench_rod(const RodModel& rod, const TimeDomainSystem& system, const Be
   return bench;
 }
 
+namespace {
+
+// Times of one run differ from those of the next by more: "17", "120".
+std::string in_two_digits(double ratio) {
+  if (!(ratio >= 100)) return fmt::format("{:.2g}", ratio);
+  const double unit = std::pow(10, std::floor(std::log10(ratio)) - 1);
+  return fmt::format("{:.0f}", unit * std::round(ratio / unit));
+}
+
+}  // namespace
+
 std::string ratio_sentence(const RodBench& bench, double error) {
   if (!(bench.reference_error < error))
     return fmt::format("at {:.0e}: not known, the reference itself has an error of {:.1e}", error,
@@ -214,13 +225,13 @@ std::string ratio_sentence(const RodBench& bench, double error) {
   const BenchRow* integration = quickest(bench, error, false);
   if (series == nullptr && integration == nullptr) return fmt::format("at {:.0e}: no method reaches it", error);
   if (series == nullptr)
-    return fmt::format("at {:.0e}: only {} reaches it, in {:.3g} s", error, integration->method, integration->seconds);
+    return fmt::format("at {:.0e}: only {} reaches it, in {:.2g} s", error, integration->method, integration->seconds);
   if (integration == nullptr)
-    return fmt::format("at {:.0e}: only harmonic balance reaches it, in {:.3g} s", error, series->seconds);
+    return fmt::format("at {:.0e}: only harmonic balance reaches it, in {:.2g} s", error, series->seconds);
   const double ratio = integration->seconds / series->seconds;
-  const std::string how =
-      ratio >= 1 ? fmt::format("{:.3g} times as long", ratio) : fmt::format("shorter by a factor of {:.3g}", 1 / ratio);
-  return fmt::format("at {:.0e}: harmonic balance {:.3g} s, the fastest integration ({}) {:.3g} s, {}", error,
+  const std::string how = ratio >= 1 ? fmt::format("{} times as long", in_two_digits(ratio))
+                                     : fmt::format("shorter by a factor of {}", in_two_digits(1 / ratio));
+  return fmt::format("at {:.0e}: harmonic balance {:.2g} s, the fastest integration ({}) {:.2g} s, {}", error,
                      series->seconds, integration->method, integration->seconds, how);
 }
 

@@ -32,7 +32,8 @@ const std::vector<Shape>& shapes() {
 
 // The shape that `section` names; of those of one name the one that shares a key with it.
 const Shape* shape_of(const TableView& section) {
-  const std::string name = section.need_text("shape");
+  constexpr const char* names = "rectangle, tube, round, I, box";
+  const std::string name = section.need_text("shape", names);
   const Shape* found = nullptr;
   for (const Shape& shape : shapes()) {
     if (shape.name != name) continue;
@@ -42,8 +43,7 @@ const Shape* shape_of(const TableView& section) {
     }
   }
   if (!found && section.has("shape") && section.node("shape")->is_string()) {
-    section.problem("shape",
-                    fmt::format("found {}, allowed rectangle, tube, round, I, box", describe(*section.node("shape"))));
+    section.problem("shape", fmt::format("found {}, allowed {}", describe(*section.node("shape")), names));
   }
   return found;
 }

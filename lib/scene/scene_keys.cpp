@@ -161,6 +161,7 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::size_t least =
       std::min(std::max<std::size_t>(4, 2 * name.size() / 3) + 1, std::max<std::size_t>(3, name.size()));
   for (const std::string& candidate : candidates) {
+    if (std::ranges::equal(name, candidate, {}, lower, lower)) return candidate;
     const std::size_t distance = edit_distance(name, candidate);
     if (distance < least) {
       least = distance;

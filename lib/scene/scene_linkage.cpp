@@ -205,7 +205,7 @@ class LinkageReader {
 
   Attachment read_attachment(const TableView& dyad, const Crank& crank, const std::vector<std::string>& all_names) {
     Attachment on;
-    on.name = dyad.need_text("on");
+    on.name = dyad.need_text("on", "a point of an earlier link: " + attachments());
     if (!dyad.has("on") || !dyad.node("on")->is_string()) return on;
     if (on.name == "crank" || on.name == crank.body.name) {
       on.point = crank.body.length;

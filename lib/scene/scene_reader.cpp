@@ -176,8 +176,8 @@ int TableView::need_integer(std::string_view key, int least, int most) const {
   return integer(key, least, most).value_or(least);
 }
 
-std::string TableView::need_text(std::string_view key) const {
-  if (!has(key)) missing(key, "text in quotes");
+std::string TableView::need_text(std::string_view key, std::string_view allowed) const {
+  if (!has(key)) missing(key, allowed);
   return text(key).value_or("");
 }
 

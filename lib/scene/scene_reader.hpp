@@ -93,7 +93,7 @@ class TableView {
 
   double need_number(std::string_view key, const Limits& limits) const;
   int need_integer(std::string_view key, int least, int most) const;
-  std::string need_text(std::string_view key) const;
+  std::string need_text(std::string_view key, std::string_view allowed = "text in quotes") const;
   std::string need_file(std::string_view key) const;  // a name that is not empty
   std::complex<double> need_pair(std::string_view key, const char* words) const;
   std::optional<TableView> need_table(std::string_view key) const;

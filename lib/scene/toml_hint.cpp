@@ -58,6 +58,8 @@ std::string toml_hint(std::string_view line, std::size_t column) {
     return fmt::format("a decimal comma? The decimal point is a point: {} = {}.{}", key, value.substr(0, whole),
                        value.substr(whole + 1, end - whole - 1));
   }
+  if (value[0] == '"' && std::ranges::count(value, '"') == 1 && column > line.find('"', equals))
+    return fmt::format("a quote at the end is missing: {} = {}\"", key, printable(value.substr(0, 60), 60));
   const std::string_view word = trimmed(value.substr(0, value.find_first_of(",}]#\"'")));
   if (word.empty()) return "";
   const auto number = number_and_unit(word);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "lib/scene/scene_keys.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 
@@ -62,7 +63,12 @@ NamedRange named_range(const std::string& flag, const std::string& text, const s
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
     refuse(flag, text, "which names no parameter or no range", allowed);
   }
-  return {text.substr(0, equals), text.substr(equals + 1)};
+  const std::string path = text.substr(0, equals);
+  // Numbers of links have a dot.
+  if (path.find('.') == std::string::npos)
+    if (const std::string speed = nearest_name(path, {"rpm", "omega"}); !speed.empty() && speed != path)
+      refuse(flag, text, fmt::format("which names {} ({} meant?)", path, speed), allowed);
+  return {path, text.substr(equals + 1)};
 }
 
 std::vector<double> range_by_step(const std::string& flag, double from, double to, double step) {

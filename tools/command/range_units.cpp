@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <vector>
 
@@ -30,6 +31,13 @@ std::string plain_range(const std::string& flag, const std::string& text, ThirdN
   std::erase(bare, '"');
   const std::vector<std::string> parts = split(bare, ':');
   const std::size_t measured = third == ThirdNumber::step ? 3 : 2;
+  if (const std::string& last = parts.back();
+      parts.size() == 3 && last.size() > 1 && (last.back() == 'x' || last.back() == 'X')) {
+    const std::string count = last.substr(0, last.size() - 1);
+    if (std::ranges::all_of(count, [](char c) { return c >= '0' && c <= '9'; }))
+      throw UsageError(fmt::format("{}: found \"{}\", where \"{}\" is no number (x{} meant, {} points?)", flag, text,
+                                   last, count, count));
+  }
   bool any = false;
   for (std::size_t k = 0; k < std::min(parts.size(), measured); ++k) any = any || has_unit(parts[k]);
   if (!any) return text;

@@ -31,6 +31,11 @@ std::string csv_name(std::string name) {
   return name;
 }
 
+// An error is told by the reference as far as that is known itself.
+std::string error_text(double error, double reference_error) {
+  return error < reference_error ? fmt::format("< {:.1e}", reference_error) : fmt::format("{:.1e}", error);
+}
+
 }  // namespace
 
 std::string bench_text(const Bench& found) {
@@ -51,9 +56,9 @@ std::string bench_text(const Bench& found) {
     fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10} {:>11} {:>11}\n", "method", "asked", "harm/steps", "error",
                    "min [s]", "median [s]");
     for (const BenchRow& row : bench.rows)
-      fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10.2e} {:>11.3e} {:>11.3e}\n", row.method,
-                     row.asked > 0 ? fmt::format("{:.0e}", row.asked) : "", row.size, row.error, row.seconds,
-                     row.median_seconds);
+      fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10} {:>11.1e} {:>11.1e}\n", row.method,
+                     row.asked > 0 ? fmt::format("{:.0e}", row.asked) : "", row.size,
+                     error_text(row.error, bench.reference_error), row.seconds, row.median_seconds);
     for (const std::string& sentence : bench.notes) fmt::format_to(out, "  left out: {}\n", sentence);
     if (bench.rows.empty()) continue;
     for (const double error : accuracies) fmt::format_to(out, "  {}\n", ratio_sentence(bench, error));

@@ -169,13 +169,17 @@ std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuat
   const double moment = output_units(scene).moment, W = watt(scene.units);
   const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / speed;
   const double error = size * std::max(1e-13, torque_error);
+  // The mean comes near its error where nothing but damping takes power; the others are as large as the torque.
   const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what its error hides
+  const int digits = std::min(6, trusted_digits(size, error)), of_mean = std::min(6, trusted_digits(mean, error));
   std::string text = fmt::format(
-      "  driving torque: mean {:.6g} N m, rms {:.6g} N m; power: mean {:.6g} W, rms {:.6g} W, {:.6g} .. {:.6g} W\n",
-      mean * moment, drive.rms * moment, speed * mean * W, drive.rms_power * W, drive.smallest_power * W,
-      drive.largest_power * W);
-  text += fmt::format("  energy that a flywheel takes up and gives back: {:.6g} J a turn",
-                      drive.energy_fluctuation * moment);
+      "  driving torque: mean {:.{}g} +/- {:.1e} N m, rms {:.{}g} N m; power: mean {:.{}g} +/- {:.1e} W, rms {:.{}g} "
+      "W, "
+      "{:.{}g} .. {:.{}g} W\n",
+      mean * moment, of_mean, error * moment, drive.rms * moment, digits, speed * mean * W, of_mean, speed * error * W,
+      drive.rms_power * W, digits, drive.smallest_power * W, digits, drive.largest_power * W, digits);
+  text += fmt::format("  energy that a flywheel takes up and gives back: {:.{}g} J a turn",
+                      drive.energy_fluctuation * moment, digits);
   if (fluctuation)
     text += fmt::format("; with the crank's inertia the speed would fluctuate by {:.3g} %{}", 100 * *fluctuation,
                         *fluctuation > 0.1 ? ", more than this estimate is good for" : "");

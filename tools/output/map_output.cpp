@@ -365,6 +365,17 @@ std::string map_verdict(const MapDocument& document) {
          which;
 }
 
+namespace {
+
+// " mm^4"; empty where the number has none, or its name is it.
+std::string unit_behind(const PlaneAxis& axis, const Units& units) {
+  if (axis.role == PlaneAxis::Role::rpm) return "";
+  const std::string unit = axis.role == PlaneAxis::Role::omega ? "rad/" + units.time : path_unit(axis.path, units);
+  return unit.empty() ? "" : " " + unit;
+}
+
+}  // namespace
+
 std::string map_summary(const MapDocument& document) {
   const MapResult& r = document.result;
   const NodeCounts n = counts(r.worst);
@@ -373,11 +384,12 @@ std::string map_summary(const MapDocument& document) {
   const bool linkage = std::holds_alternative<Linkage>(document.scene.model);
   std::string text = fmt::format("{}: {}\n", scene_name(document.scene), map_verdict(document));
   const auto axis = [&](const PlaneAxis& of, const std::vector<double>& values) {
-    const std::string unit = of.role == PlaneAxis::Role::rpm     ? ""
-                             : of.role == PlaneAxis::Role::omega ? " rad/" + units.time
-                                                                 : " " + path_unit(of.path, units);
     return fmt::format("{} = {:.10g} ... {:.10g}{}, {} values", of.path, values.front(), values.back(),
-                       unit == " " ? "" : unit, values.size());
+                       unit_behind(of, units), values.size());
+  };
+  const auto place_text = [&](double x, double y) {
+    return fmt::format("{} = {:.6g}{}, {} = {:.6g}{}", r.x_axis.path, x, unit_behind(r.x_axis, units), r.y_axis.path, y,
+                       unit_behind(r.y_axis, units));
   };
   text += fmt::format("  x  {}\n  y  {}\n", axis(r.x_axis, r.x()), axis(r.y_axis, r.y()));
   text += linkage ? fmt::format("  rods {}, {} each\n\n", fmt::join(r.rods, ", "), counted(document.num_modes, "mode"))
@@ -397,15 +409,13 @@ std::string map_summary(const MapDocument& document) {
   }
   if (fastest != nullptr) {
     const auto place = static_cast<std::size_t>(fastest - r.worst.data());
-    text +=
-        fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {} = {:.6g}, {} = {:.6g}\n", fastest->growth_rate,
-                    document.scene.units.time, growth_per_turn(*fastest), linkage ? "turn" : "period", r.x_axis.path,
-                    r.x()[place % r.x().size()], r.y_axis.path, r.y()[place / r.x().size()]);
+    text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {}\n", fastest->growth_rate,
+                        document.scene.units.time, growth_per_turn(*fastest), linkage ? "turn" : "period",
+                        place_text(r.x()[place % r.x().size()], r.y()[place / r.x().size()]));
   }
   for (const MissingPoints& m : r.missing) {
     if (!document.complete) break;
-    text += fmt::format("  no system at {} points, the first at {} = {:.6g}, {} = {:.6g}: {}\n", m.count, r.x_axis.path,
-                        m.x, r.y_axis.path, m.y, m.message);
+    text += fmt::format("  no system at {} points, the first at {}: {}\n", m.count, place_text(m.x, m.y), m.message);
   }
   text += loads_rows(document);
   for (const std::string& note : map_notes(document))

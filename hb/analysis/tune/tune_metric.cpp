@@ -185,7 +185,7 @@ Keep parse_keep(const std::string& text) {
   const std::optional<double> value = number(bound);
   const bool may_be_zero = is_margin(keep.metric) || keep.metric.kind == MetricKind::clearance;
   if (!value || !(may_be_zero ? *value >= 0 : *value > 0))
-    refuse("keep", text, fmt::format("where \"{}\" is no number {} 0", bound, may_be_zero ? ">=" : ">"), "a bound");
+    refuse("keep", text, fmt::format("with \"{}\"", bound), may_be_zero ? "a number >= 0" : "a number > 0");
   if (better_large(keep.metric.kind) != keep.at_least) {
     const std::string quantity = dense.substr(0, sign);
     const bool large = better_large(keep.metric.kind);
