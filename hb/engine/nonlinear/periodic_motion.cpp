@@ -58,9 +58,11 @@ PeriodicMotion solve_periodic_motion(const NonlinearSystem& system, double param
   const Index most = fixed ? options.num_harmonics : options.max_harmonics;
   nonlinear::Unknowns x{VectorXd::Zero(n), parameter};
   if (start.c.cols() > 0) x.u = nonlinear::to_unknowns(start, start.num_harmonics());
-  Index H = fixed ? options.num_harmonics
-                  : std::min(most, std::max(first_harmonics * options.turns,
-                                            nonlinear::harmonics_needed(x.u, n, truncation_share * options.tolerance)));
+  // One harmonic more than the start needed: a motion whose harmonics do not suffice is solved for again.
+  Index H =
+      fixed ? options.num_harmonics
+            : std::min(most, std::max(first_harmonics * options.turns,
+                                      1 + nonlinear::harmonics_needed(x.u, n, truncation_share * options.tolerance)));
   Index oversampling = 1;
   PeriodicMotion motion;
   motion.parameter = parameter;
