@@ -1,7 +1,7 @@
 """How long a page of hb report takes to follow its slider: python3 report_drag.py PAGE...
 
-A row for each page: its size, its speeds and places of the map; then, for one step of the slider with everything in
-sight drawn anew, milliseconds of processor time of the page's thread (script, style, layout, painting: a busy machine
+A row for each page and part of it in sight: the page's size, its speeds and places of the map; then, for one step of
+the slider with everything in sight drawn anew, milliseconds of processor time of the page's thread (script, style, layout, painting: a busy machine
 does not count), and milliseconds of script by the clock (median, 95 of 100).
 Headless Chromium without a graphics card; Debian: chromium, chromium-driver, python3-selenium."""
 
@@ -27,6 +27,7 @@ const drag = (k) => () => {
 requestAnimationFrame(drag(0));
 """
 STEPS = 150
+PARTS = ("mechanism-section", "rods", "forces", "speeds", "map-section")
 
 
 def at_share(values, share):
@@ -46,16 +47,19 @@ def main():
         version = window.driver.capabilities["browserVersion"]
         cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
         print(f"# {cpu}, Chromium {version} headless, window 1280 x 900, {STEPS} steps")
-        print("page,bytes,speeds,map places,processor [ms],script [ms],script 95 % [ms]")
+        print("page,bytes,speeds,map places,in sight,processor [ms],script [ms],script 95 % [ms]")
         for page in map(pathlib.Path, sys.argv[1:]):
             window.open(page.resolve(), "#play=0")
             window.settled()
-            window.driver.execute_async_script(DRAG, 20)  # warms up
             speeds, places = window.run("return [points.count, report.map ? report.map.x.values.length * report.map.y.values.length : 0]")
-            before = busy(window)
-            script = window.driver.execute_async_script(DRAG, STEPS)
-            each = 1000 * (busy(window) - before) / STEPS
-            print(f"{page.name},{page.stat().st_size},{speeds},{places},{each:.2f},{at_share(script, 0.5):.2f},{at_share(script, 0.95):.2f}", flush=True)
+            for part in PARTS:
+                window.run("document.getElementById(arguments[0]).scrollIntoView({behavior: 'instant'})", part)
+                window.settled()
+                window.driver.execute_async_script(DRAG, 20)  # warms up
+                before = busy(window)
+                script = window.driver.execute_async_script(DRAG, STEPS)
+                each = 1000 * (busy(window) - before) / STEPS
+                print(f"{page.name},{page.stat().st_size},{speeds},{places},{part},{each:.2f},{at_share(script, 0.5):.2f},{at_share(script, 0.95):.2f}", flush=True)
     finally:
         window.close()
 

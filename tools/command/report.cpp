@@ -17,8 +17,11 @@
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
+#include "tools/command/sweep_flags.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/sweep_bands.hpp"
+#include "tools/output/sweep_output.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/shared_work.hpp"
 
@@ -27,6 +30,7 @@ namespace {
 
 struct ReportFlags : CommonFlags {
   std::string x, y;
+  std::vector<std::string> bands;
   TheoryFlags theory;
 };
 
@@ -69,6 +73,7 @@ int run_report(const ReportFlags& flags) {
   branches_asked.stop = stop_of();
   const bool nonlinear = is_nonlinear(flags.theory);
   if (nonlinear) require_nonlinear(*along, branches_asked);
+  const std::vector<BandRequest> bands_asked = bands_of(flags.bands, request, flags.theory);
   OutputFile file(*out.folder, "report");
 
   // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
@@ -80,6 +85,11 @@ int run_report(const ReportFlags& flags) {
   const NonlinearSweep* branches = found ? &*found : nullptr;
   ReportData data(scene);
   data.add_sweep(*along, result, places_along(*along, work, branches), branches);
+  if (!bands_asked.empty()) {
+    nlohmann::ordered_json document = sweep_json(*along, result, false);
+    document["bands"] = sweep_bands_json(document, sweep_bands(scene, request, bands_asked, work));
+    data.add_sweep_bands(document);
+  }
   bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   std::optional<Map> map;
   if (task) {
@@ -112,6 +122,7 @@ void add_report_command(CLI::App& app, int& status) {
   command->remove_option(command->get_option("--json"));
   command->remove_option(command->get_option("--stats"));
   add_theory_flags(*command, flags->theory);
+  add_band_flag(*command, flags->bands);
   for (const char* name : {"--format", "--size", "--no-titles"}) command->remove_option(command->get_option(name));
   command->get_option("--no-plots")->description("no pictures for readers without JavaScript");
   command->add_option("--x", flags->x, "a map too: its first parameter, as in rpm=200:6000:100 (100 points)")

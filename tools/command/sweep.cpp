@@ -62,7 +62,7 @@ int run_sweep_command(const SweepFlags& flags) {
     branches_asked->starts.push_back(motion_from_json(read_text_file(file), file, swept));
   if (branches_asked) require_nonlinear(swept, *branches_asked);
   SweepResult result;
-  const std::vector<BandRequest> bands_asked = bands_of(flags, request);
+  const std::vector<BandRequest> bands_asked = bands_of(flags.bands, request, flags.theory);
   MeasuredOverlay measured;
   if (!flags.measured.empty())
     measured = read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
@@ -104,6 +104,7 @@ int run_sweep_command(const SweepFlags& flags) {
       ReportData data(swept.scene());
       const NonlinearSweep* along = branches ? &*branches : nullptr;
       data.add_sweep(swept, result, places_along(swept, SharedWork(out.threads), along), along);
+      if (!bands.empty()) data.add_sweep_bands(document);
       return data.page(page_text(origin, std::move(pictures)));
     };
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());

@@ -34,12 +34,13 @@ void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
   command.add_flag("--restart", flags.restart, "throw away what an interrupted run into the same --out left");
 }
 
-std::vector<BandRequest> bands_of(const SweepFlags& flags, const SweepRequest& request) {
+std::vector<BandRequest> bands_of(const std::vector<std::string>& texts, const SweepRequest& request,
+                                  const TheoryFlags& theory) {
   std::vector<BandRequest> bands;
-  for (const std::string& text : flags.bands) bands.push_back(parse_band(text));
+  for (const std::string& text : texts) bands.push_back(parse_band(text));
   if (!bands.empty() && !is_speed(request.x.path))
     throw UsageError("--band: found beside --x, allowed: with a sweep along the speed");
-  if (!bands.empty() && is_nonlinear(flags.theory))
+  if (!bands.empty() && is_nonlinear(theory))
     throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
   return bands;
 }

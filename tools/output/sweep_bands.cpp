@@ -77,8 +77,26 @@ Json sweep_bands_json(const Json& nominal, const std::vector<SweepBand>& bands) 
   return list;
 }
 
-std::string sweep_bands_table(const Json& nominal, const Json& bands) {
+std::vector<BandExtreme> band_extremes(const Json& nominal, const Json& band) {
   const ComparedFactors factors = compared_factors(nominal);
+  std::vector<BandExtreme> list;
+  for (const auto& [rod, own] : nominal.at("rods").items())
+    for (const BandQuantity& quantity : band_quantities) {
+      const Json *here = array_of(own, quantity), *low = array_of(band["at_from"]["rods"][rod], quantity),
+                 *high = array_of(band["at_to"]["rods"][rod], quantity);
+      if (!here || !low || !high) continue;
+      const double factor = quantity.factor ? factors.*quantity.factor : 1;
+      list.push_back({rod + " " + quantity.label + (quantity.factor ? "" : " [" + factors.rate_unit + "]"),
+                      factor * largest_of(low), factor * largest_of(here), factor * largest_of(high)});
+    }
+  const auto unstable = [](const Json& document) { return static_cast<double>(unstable_points(document)); };
+  if (nominal.contains("verdict"))
+    list.push_back({fmt::format("unstable points of {}", nominal["verdict"].size()), unstable(band["at_from"]),
+                    unstable(nominal), unstable(band["at_to"])});
+  return list;
+}
+
+std::string sweep_bands_table(const Json& nominal, const Json& bands) {
   std::string text;
   for (const Json& band : bands) {
     const std::string name = band["parameter"];
@@ -86,20 +104,9 @@ std::string sweep_bands_table(const Json& nominal, const Json& bands) {
     text += fmt::format(
         "\n{} of the elastic links times {:g} to {:g}, largest of all points\n  {:<34}  {:>12}  {:>12}  {:>12}\n", name,
         from, to, "", fmt::format("{:g} {}", from, name), "as given", fmt::format("{:g} {}", to, name));
-    for (const auto& [rod, own] : nominal.at("rods").items())
-      for (const BandQuantity& quantity : band_quantities) {
-        const Json *here = array_of(own, quantity), *low = array_of(band["at_from"]["rods"][rod], quantity),
-                   *high = array_of(band["at_to"]["rods"][rod], quantity);
-        if (!here || !low || !high) continue;
-        const double factor = quantity.factor ? factors.*quantity.factor : 1;
-        text += fmt::format("  {:<34}  {:>12.5g}  {:>12.5g}  {:>12.5g}\n",
-                            rod + " " + quantity.label + (quantity.factor ? "" : " [" + factors.rate_unit + "]"),
-                            factor * largest_of(low), factor * largest_of(here), factor * largest_of(high));
-      }
-    if (nominal.contains("verdict"))
-      text += fmt::format("  {:<34}  {:>12}  {:>12}  {:>12}\n",
-                          fmt::format("unstable points of {}", nominal["verdict"].size()),
-                          unstable_points(band["at_from"]), unstable_points(nominal), unstable_points(band["at_to"]));
+    for (const BandExtreme& extreme : band_extremes(nominal, band))
+      text += fmt::format("  {:<34}  {:>12.5g}  {:>12.5g}  {:>12.5g}\n", extreme.name, extreme.low, extreme.given,
+                          extreme.high);
   }
   return text;
 }

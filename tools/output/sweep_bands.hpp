@@ -13,6 +13,13 @@ namespace hb::tools {
 // `nominal`: the document of hb sweep at factor 1.
 [[nodiscard]] nlohmann::ordered_json sweep_bands_json(const nlohmann::ordered_json& nominal,
                                                       const std::vector<SweepBand>& bands);
+// The largest value of all points, as given and at both ends; how many points are unstable.
+struct BandExtreme {
+  std::string name;  // "AB deflection [mm]"
+  double low = 0, given = 0, high = 0;
+};
+[[nodiscard]] std::vector<BandExtreme> band_extremes(const nlohmann::ordered_json& nominal,
+                                                     const nlohmann::ordered_json& band);
 // From that list and the document.
 [[nodiscard]] std::string sweep_bands_table(const nlohmann::ordered_json& nominal, const nlohmann::ordered_json& bands);
 

@@ -5,6 +5,8 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/map_output.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/sweep_bands.hpp"
+#include "tools/output/sweep_output.hpp"
 #include "tools/output/tune_output.hpp"
 #include "tools/python/arguments.hpp"
 #include "tools/python/python_work.hpp"
@@ -52,6 +54,11 @@ void sweep_report(const SceneCore& core, const SweepCore& swept, const Map* map,
     ReportData data(sweep.scene->scene());
     const NonlinearSweep* branches = swept.branches ? &*swept.branches : nullptr;
     data.add_sweep(*sweep.scene, sweep, places_along(*sweep.scene, work, branches), branches);
+    if (!swept.bands.empty()) {
+      nlohmann::ordered_json table = sweep_json(*sweep.scene, sweep, false);
+      table["bands"] = sweep_bands_json(table, swept.bands);
+      data.add_sweep_bands(table);
+    }
     std::optional<MapDocument> document;
     if (map != nullptr) {
       document.emplace(document_of(*map));

@@ -7,6 +7,7 @@
 #include "tools/output/json.hpp"
 #include "tools/output/nonlinear_output.hpp"
 #include "tools/report/mechanism_motion.hpp"
+#include "tools/report/stress_field.hpp"
 
 namespace hb::tools {
 namespace {
@@ -63,8 +64,14 @@ Json place_curves(const ReportPlace& place, ByteBlock& block) {
     own["q"] = block.series(rod.steady->q);
     // Coefficients of the rod are series over one turn.
     const RodModel* model = rod_model(*place.model, rod.name);
-    if (place.model->linkage() && model && rod.shape && turns == 1)
+    if (place.model->linkage() && model && rod.shape && turns == 1) {
       own["moment"] = block.floats(moment_envelope(*place.model, *model, shown.speed, rod.steady->q, bent));
+      // The axial force of the bent motion is not that of the rigid mechanism.
+      if (!bent && rod.stress && rod.stress->height_known)
+        own["stress"] = stress_field(*body_at(*place.model->linkage(), rod.link),
+                                     place.model->coefficients.rods[static_cast<std::size_t>(model->coefficients)],
+                                     shown.speed, rod.steady->q, block);
+    }
     const auto linear = std::ranges::find(place.result.rods, rod.name, &RodResult::name);
     if (bent && linear != place.result.rods.end() && is_known(*linear)) own["linear"] = block.series(linear->steady->q);
     entry["rods"][rod.name] = std::move(own);

@@ -23,6 +23,7 @@
 #include "tools/report/page_values.hpp"
 #include "tools/report/place_curves.hpp"
 #include "tools/report/rigid_forces.hpp"
+#include "tools/report/sweep_band_data.hpp"
 
 namespace hb::tools {
 namespace {
@@ -86,7 +87,11 @@ void ReportData::add_rods(const SceneModel& model, const Scene& scene) {
   for (const RodModel& rod : model.rods) {
     if (!rod.reported) continue;
     Json entry = {{"name", rod.name}, {"modes", rod.num_modes}};
-    if (const auto* linkage = std::get_if<Linkage>(&scene.model)) entry["length"] = body_at(*linkage, rod.link)->length;
+    if (const auto* linkage = std::get_if<Linkage>(&scene.model)) {
+      const Body& body = *body_at(*linkage, rod.link);
+      entry["length"] = body.length;
+      entry["section"] = body.elastic->section_height > 0;
+    }
     rods_.push_back(rod.name);
     data_["rods"].push_back(std::move(entry));
   }
@@ -113,6 +118,8 @@ void ReportData::add_speed(const ReportPlace& place, const Settings& settings) {
 }
 
 void ReportData::add_bands(Json bands) { data_["bands"] = std::move(bands); }
+
+void ReportData::add_sweep_bands(const Json& sweep) { data_["sweep_bands"] = sweep_band_data(sweep, block_); }
 
 void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, const std::vector<ReportPlace>& places,
                            const NonlinearSweep* branches) {

@@ -25,6 +25,8 @@ class ReportData {
                  const NonlinearSweep* branches = nullptr);
   // How the answer of one speed moves, as bands_json has it.
   void add_bands(nlohmann::ordered_json bands);
+  // How a sweep does: `sweep` as sweep_json has it, with `bands`.
+  void add_sweep_bands(const nlohmann::ordered_json& sweep);
   // `map` as map_json has it; values of the scene's own numbers where they are known.
   void add_map(nlohmann::ordered_json map, const SceneSource& source);
 

@@ -17,6 +17,15 @@ const pace = (growth, verdict, omega) => {
   return `disturbances ${verdict === "stable" ? "are halved" : "grow tenfold"} in ${short(time, 3)} ${units.time} (${short(turnsOf, 3)} turns)`;
 };
 
+// What the linear theory leaves out of the growth rate of the whole mechanism, which is the largest of its links'.
+const growthTheoryRows = (numbers) => {
+  const error = numbers.growth_theory_error;
+  if (error === undefined || error === null) return [];
+  const rate = Math.max(...Object.values(numbers.rods).map((own) => (own.growth_rate === undefined ? -Infinity : own.growth_rate)));
+  return [element("tr", {}, element("td", {}, rods.length > 1 ? "growth rate of all links: error of linear theory" : "its error by linear theory, estimated"), cell(error, {unit: units.rate, digits: 2, path: "growth_theory_error"})),
+    ...(error < Math.abs(rate) ? [] : [element("tr", {class: "marked"}, element("td", {colspan: 2, class: "words"}, "Not less than the growth rate itself: the verdict is the linear model's."))])];
+};
+
 // Of all links together, where the motion is without linearisation.
 const systemRows = (numbers) => {
   if (numbers.theory !== "nonlinear") return [];
@@ -45,6 +54,8 @@ const rodRows = (rod, numbers) => {
     add("growth rate", cell(stability.growth_rate, {unit: units.rate, error: stability.exponent_error, path: path("growth_rate")}));
     const words = pace(stability.growth_rate, stability.verdict, numbers.omega);
     if (words) rows.push(element("tr", {}, element("td", {colspan: 2, class: "words error"}, words)));
+    // Once: at the link whose growth rate is the mechanism's.
+    if (!Object.values(numbers.rods).some((other) => other.growth_rate > own.growth_rate)) rows.push(...growthTheoryRows(numbers));
   }
   if (own.status && own.status !== "converged") add("periodic motion", element("td", {}, own.status === "singular" ? "none: a multiplier is +1" : own.status));
   const q = own.q && own.q.max_abs ? own.q.max_abs : own.max_abs;

@@ -35,7 +35,7 @@ class PlotArea {
   describe(text) { this.canvas.setAttribute("aria-label", text); }
 
   // Clears, and makes room for axes with these ranges. `equal`: same scale both ways.
-  begin({x, y, xLabel = "", yLabel = "", xTicks = null, equal = false, pad = 0.06}) {
+  begin({x, y, xLabel = "", yLabel = "", xTicks = null, equal = false, pad = 0.06, rightRoom = 12}) {
     const size = sizeOf(this.host);
     this.width = Math.max(80, size.width);
     this.height = Math.max(60, size.height);
@@ -49,7 +49,7 @@ class PlotArea {
     this.bottom = this.height - (xLabel ? 36 : 22);
     const rough = niceTicks(y0, y1, Math.max(4, Math.round((this.bottom - this.top) / 40)));
     this.left = Math.min(0.3 * this.width, 14 + Math.max(...rough.map((v) => pen.measureText(tickText(v, rough)).width)));
-    this.right = this.width - 12;
+    this.right = this.width - rightRoom;
     if (equal) {
       const scale = Math.min((this.right - this.left) / (x1 - x0), (this.bottom - this.top) / (y1 - y0));
       const cx = (x0 + x1) / 2, cy = (y0 + y1) / 2, w = (this.right - this.left) / scale / 2, h = (this.bottom - this.top) / scale / 2;
@@ -75,6 +75,7 @@ class PlotArea {
     if (xLabel) pen.fillText(xLabel, (this.left + this.right) / 2, this.height - 15);
     pen.textAlign = "left";
     if (yLabel) pen.fillText(yLabel, 2, 3);
+    this.labelEnd = yLabel ? 2 + pen.measureText(yLabel).width : 0;
     pen.strokeStyle = colours.muted;
     if (y0 < 0 && y1 > 0) this.rule([x0, x1], [0, 0], colours.muted, 0.6);
     pen.strokeStyle = colours.rule;
@@ -120,12 +121,13 @@ class PlotArea {
     pen.arc(this.x(x), this.y(y), size, 0, 2 * Math.PI);
     if (hollow) { pen.strokeStyle = colour; pen.lineWidth = 1.4; pen.stroke(); } else { pen.fillStyle = colour; pen.fill(); }
   }
-  // Above the frame, at its right.
-  note(text) {
-    const pen = this.pen;
+  // Above the frame, at its right; inside it where the axis' name leaves no room.
+  note(text, colour = colours.unstable) {
+    const pen = this.pen, wide = pen.measureText(text).width, above = this.right - wide > this.labelEnd + 8;
+    if (!above) { pen.fillStyle = colours.card; pen.globalAlpha = 0.8; pen.fillRect(this.right - wide - 8, this.top + 1, wide + 7, 18); pen.globalAlpha = 1; }
     pen.textAlign = "right"; pen.textBaseline = "top";
-    pen.fillStyle = colours.unstable;
-    pen.fillText(text, this.right, 3, 0.5 * this.width);
+    pen.fillStyle = colour;
+    pen.fillText(text, above ? this.right : this.right - 4, above ? 3 : this.top + 4);
   }
   words(text) {
     this.begin({x: [0, 1], y: [0, 1], xTicks: []});

@@ -115,6 +115,39 @@ const campbellChart = (host, rod, along, x) => {
     element("p", {class: "caption"}, criticalOf(rod.name).length ? "Dots: resonance peaks. " : "", element("span", {class: "hint"}, "Drag to zoom, double click to see all, click to go to that speed."), `${left > 0 ? ` ${left} ${left === 1 ? "mode lies" : "modes lie"} above the picture.` : ""}${still > 0 ? ` ${still} ${still === 1 ? "mode is" : "modes are"} so strongly damped that ${still === 1 ? "it does" : "they do"} not swing.` : ""}`));
 };
 
+// Growth rate less and more by what the linear theory leaves out, at points where this link's is the mechanism's (the
+// largest of all); null where that is not known.
+const theoryAround = (rod, rate, x) => {
+  if (nonlinear) return null;
+  const own = atPoints(x, rate), low = new Float64Array(points.count).fill(NaN), high = low.slice();
+  let known = false;
+  for (let k = 0; k < points.count; ++k) {
+    const here = place(k), numbers = here && here.numbers, error = numbers && numbers.growth_theory_error;
+    if (!Number.isFinite(error) || !Number.isFinite(own[k])) continue;
+    const mine = (numbers.rods[rod.name] || {}).growth_rate;
+    if (Object.values(numbers.rods).some((other) => other.growth_rate > mine)) continue;
+    low[k] = own[k] - error; high[k] = own[k] + error;
+    known = true;
+  }
+  return known ? {low, high} : null;
+};
+const drawTheory = (theory) => (pen, area, chart) => {
+  if (!theory) return;
+  pen.strokeStyle = colours.rigid; pen.lineWidth = 1; pen.setLineDash([5, 4]);
+  for (const values of [theory.low, theory.high]) {
+    pen.beginPath();
+    let down = false;
+    for (let k = 0; k < points.count; ++k) {
+      if (!Number.isFinite(values[k])) { down = down && !isKept(k); continue; }
+      const px = chart.toDomXCoord(points.x[k]), py = Math.max(area.y - 1e4, Math.min(area.y + area.h + 1e4, chart.toDomYCoord(values[k])));
+      if (down) pen.lineTo(px, py); else pen.moveTo(px, py);
+      down = true;
+    }
+    pen.stroke();
+  }
+  pen.setLineDash([]);
+};
+
 const growthChart = (host, rod, along, x) => {
   const rate = floats(along.growth_rate), error = floats(along.growth_error);
   const low = rate.map((v, k) => v - error[k]), high = rate.map((v, k) => v + error[k]);
@@ -123,6 +156,9 @@ const growthChart = (host, rod, along, x) => {
   const seen = error.some((e) => e > 0.004 * size);
   const branches = nonlinear ? growthBranches().filter((branch) => branch.y.length > 0) : [];
   for (const branch of branches) sorted.push(...Array.from(branch.y).filter(Number.isFinite));
+  sorted.sort((a, b) => a - b);
+  const around = bandsAround(rod, "growth_rate", x, [rate], ["c1"]), theory = theoryAround(rod, rate, x);
+  for (const bands of around) for (const {low: least, high: most} of bands) sorted.push(...[...least, ...most].filter(Number.isFinite));
   sorted.sort((a, b) => a - b);
   const columns = [{label: nonlinear ? "linear" : "growth", values: rate, colour: nonlinear ? "rigid" : "c1", width: nonlinear ? 1.4 : 2}];
   if (seen) columns.push({label: "lower end of the error", values: low, colour: "rigid", dash: [2, 3], width: 1}, {label: "upper end of the error", values: high, colour: "rigid", dash: [2, 3], width: 1});
@@ -133,10 +169,12 @@ const growthChart = (host, rod, along, x) => {
       const zero = chart.toDomYCoord(0);
       pen.strokeStyle = colours.unstable; pen.lineWidth = 1.2;
       pen.beginPath(); pen.moveTo(area.x, zero); pen.lineTo(area.x + area.w, zero); pen.stroke();
+      drawShownBand(around)(pen, area, chart);
+      drawTheory(theory)(pen, area, chart);
       drawBranches(branches)(pen, area, chart);
     },
   });
-  host.after(nonlinear ? legend([...branchLegend(), {text: "linear theory", colour: "rigid"}]) : "", element("p", {class: "caption"},
+  host.after(nonlinear ? legend([...branchLegend(), {text: "linear theory", colour: "rigid"}]) : legend([...(theory ? [{text: "± error of linear theory, estimated", colour: "rigid", dashed: true}] : []), ...bandLegend(around)]), element("p", {class: "caption"},
     `Above zero disturbances grow. ${nonlinear ? "Coloured: of all links together, along the motions without linearisation; grey: of this link alone, by the linear theory." : `Errors ${seen ? "are drawn" : "are below the line's width"}; the table has them.`}`));
 };
 
@@ -166,15 +204,16 @@ const responseChart = (host, rod, along, x) => {
   // A deflection beyond the link's own length says nothing any more.
   const top = Math.min(rod.length || Infinity, nonlinear ? 1.8 * Math.max(...bent, 0) || 1.6 * Math.max(...values) : Math.min(1.6 * Math.max(...values), fine.length ? 100 * Math.max(...fine) : Infinity));
   const bottom = Math.max(Math.min(...values, ...bent) / 1.6, (nonlinear ? 1e-4 : 1e-7) * top);
+  const around = nonlinear ? [] : bandsAround(rod, "max_abs", x, along.max_abs.slice(0, 3).map(floats), ["c1", "c2", "c3"]);
   const marks = nonlinear ? drawEvents((event) => (event.max_abs[rod.name] || [])[0]) : markCritical(rod.name, (peak) => (peak.max_abs === null ? NaN : peak.max_abs));
   new SpeedChart(host, {
     label: `Largest response of ${rod.name} along the speed${nonlinear ? `: ${branches.length} branches without linearisation over the linear answer, ${nonlinear.folds.length} folds` : ""}`,
     x: gappedX(x), columns: spread(columns), yLabel: withUnit(nonlinear ? "max |q₁|" : "max |q|", units.response), logscale: true, yRange: [bottom, top], bands: nonlinear ? [] : bandsOf(rod.name),
-    under: (pen, area, chart) => { drawBranches(branches)(pen, area, chart); marks(pen, area, chart); },
+    under: (pen, area, chart) => { drawShownBand(around)(pen, area, chart); drawBranches(branches)(pen, area, chart); marks(pen, area, chart); },
   });
   const beyond = columns.some((c) => c.dash);
   host.after(legend(nonlinear ? [...branchLegend(), {text: "linear theory", colour: "rigid"}]
-    : [...along.max_abs.slice(0, 3).map((_, i) => ({text: "max |q" + subscript(i + 1) + "|", colour: "c" + (1 + i)})), ...(beyond ? [{text: "beyond linear theory", colour: "rigid", dashed: true}] : [])]),
+    : [...along.max_abs.slice(0, 3).map((_, i) => ({text: "max |q" + subscript(i + 1) + "|", colour: "c" + (1 + i)})), ...(beyond ? [{text: "beyond linear theory", colour: "rigid", dashed: true}] : []), ...bandLegend(around)]),
   nonlinear ? element("p", {class: "caption"}, branchWords()) : "");
 };
 
@@ -187,6 +226,7 @@ const setUpCharts = () => {
     return;
   }
   const x = doubles(report.along.x);
+  setUpSweepBands();
   caption.textContent = (report.along.words || "") + (nonlinear ? " Frequencies, bands and forces along the speed are those of the linear theory." : "");
   for (const views of document.querySelectorAll("#speeds .rod-views")) {
     const rod = rods.find((r) => r.name === views.dataset.rod), along = rod && report.along.rods[rod.name];

@@ -186,14 +186,19 @@ const setUpRods = () => {
     const rod = rods.find((r) => r.name === views.dataset.rod);
     if (!rod) continue;
     for (const host of views.querySelectorAll(".plot")) {
-      if (!isLinkage && (host.dataset.view === "shape" || host.dataset.view === "moment")) { host.closest(".card").remove(); continue; }
-      switch (host.dataset.view) {
+      const view = host.dataset.view;
+      if ((!isLinkage && (view === "shape" || view === "moment")) || (view === "stress" && !rod.section)) { host.closest(".card").remove(); continue; }
+      switch (view) {
         case "response":
           new TurnPlot(host, {label: `Response of ${rod.name}`, yLabel: isLinkage ? "q, amplitude of sin(iπx/l)" : "q", unit: units.response, curves: responseCurves(rod)});
           host.after(legend(Array.from({length: Math.min(7, rod.modes)}, (_, i) => ({text: "q" + subscript(i + 1), colour: "c" + (1 + (i % 7))}))));
           break;
         case "shape": new ShapePlot(host, rod); break;
-        case "moment": new MomentPlot(host, rod); break;
+        case "moment":
+          new MomentPlot(host, rod);
+          if (!rod.section) host.after(element("p", {class: "caption"}, "Stress over the turn is drawn where a link's section is given."));
+          break;
+        case "stress": new StressMap(host, rod); break;
         case "exponents": new ExponentPlane(host, rod); break;
       }
     }

@@ -80,6 +80,8 @@ const speedTable = () => {
   const make = () => {
     const heads = [axisName()];
     for (const rod of rods) heads.push(`${rod.name}: verdict`, `growth rate [${units.rate}]`, withUnit("max |q₁|", units.response), "error of q", "error of modes", ...(report.has_theory ? ["error of theory"] : []));
+    const changes = [...Array(points.count).keys()].map((k) => { const here = place(k); return here && here.numbers ? here.numbers.growth_theory_error : undefined; });
+    if (changes.some(Number.isFinite)) heads.push(`growth rate of all: error of theory [${units.rate}]`);
     const rows = [];
     for (let k = 0; k < points.count; ++k) {
       const here = place(k), numbers = here && here.numbers;
@@ -93,6 +95,7 @@ const speedTable = () => {
         row.append(element("td", {}, verdictMark(verdictOf(rod.name, k))), cell(rate, {error}), cell(q, {digits: 6}), cell(own.error_bound === undefined ? null : own.error_bound, {digits: 2}), cell(own.modes_error === undefined ? null : own.modes_error, {digits: 2}));
         if (report.has_theory) row.append(own.theory_error === null || own.theory_error === undefined ? element("td", {}, own.theory === "beyond" ? "beyond" : "not judged") : cell(own.theory_error, {digits: 2}));
       }
+      if (changes.some(Number.isFinite)) row.append(cell(changes[k], {digits: 2}));
       rows.push(row);
     }
     return tableOf("Every computed speed", heads, rows);
@@ -110,6 +113,6 @@ const boundaryTable = () => {
 const setUpTables = () => {
   const host = document.getElementById("tables-views");
   host.className = "tables";
-  const all = [verdictTable(), bandTable(), notExcludedTable(), criticalTable(), branchTable(), foldTable(), jumpTable(), boundaryTable(), bandTables(), points.count > 0 ? speedTable() : null].filter(Boolean);
+  const all = [verdictTable(), bandTable(), notExcludedTable(), criticalTable(), branchTable(), foldTable(), jumpTable(), boundaryTable(), bandTables(), sweepBandTables(), points.count > 0 ? speedTable() : null].filter(Boolean);
   host.append(...(all.length ? all : [element("p", {class: "missing"}, "No tables: nothing was computed along the speed.")]));
 };

@@ -1,0 +1,235 @@
+"""What single views of a report show, and how hands, keys and paper reach them: python3 report_views.py HB."""
+
+import base64
+import csv
+import json
+import unittest
+
+import pages
+import scenes
+from pages import PageTest, answer, run
+
+CRANK = scenes.FOLDER / "slider_crank_units.toml"  # its rod has a section
+
+
+class ReportViews(PageTest):
+    SWEPT = ("--rpm", "1000:7000:500", "--modes", "3", "--no-plots")
+    BANDS = ("--band", "damping=0.5:2", "--band", "E=0.9:1.1")
+
+    def crank(self):
+        return self.page("crank", CRANK, *self.SWEPT, *self.BANDS, "--x", "rpm=1000:7000:7", "--y", "rod.section.height=15mm:25mm:3")
+
+    def focus(self, name):
+        self.browser.run("document.getElementById(arguments[0]).focus()", name)
+
+    def press(self, *keys):
+        from selenium.webdriver.common.action_chains import ActionChains
+        ActionChains(self.browser.driver).send_keys(*keys).perform()
+
+    # Stress
+
+    def test_stress_over_link_and_turn_is_that_of_the_files_of_steady(self):
+        arguments = ("steady", CRANK, "--rpm", 5000, "--modes", 3)
+        done = run(*arguments, "--out", self.folder / "stress", "--no-plots")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with open(self.folder / "stress" / "stress_rod.csv") as file:
+            rows = [list(map(float, row)) for row in csv.reader(line for line in file if line[0].isdigit())]
+        self.assertEqual(len(rows), 101)
+        self.browser.open(self.crank(), "#speed=8&play=0")
+        ranges = self.browser.run("""
+            const field = new StressField(seriesOf(place(8).curves.rods.rod.stress)), ranges = [];
+            for (let k = 0; k <= 20; ++k) for (const side of [1, -1]) {
+              const values = Array.from({length: field.n}, (_, j) => field.value(3 * k, j, side) * megapascal);
+              ranges.push([k, side, Math.min(...values), Math.max(...values)]);
+            }
+            return ranges""")
+        largest = answer(*arguments)["rods"]["rod"]["stress"]["max_abs"] * 1e-6
+        for place, side, low, high in ranges:
+            expected = rows[5 * place][1:3] if side == 1 else rows[5 * place][3:5]
+            self.assertAlmostEqual(low, expected[0], delta=5e-3 * largest)
+            self.assertAlmostEqual(high, expected[1], delta=5e-3 * largest)
+
+    def test_stress_map_marks_the_largest_reads_under_the_pointer_and_turns_the_crank(self):
+        from selenium.webdriver.common.action_chains import ActionChains
+        self.browser.open(self.crank(), "#speed=8&play=0")
+        canvas = self.browser.run("return document.querySelector('[data-view=stress] canvas')")
+        self.browser.run("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", canvas)
+        self.browser.settled()
+        stress = answer("steady", CRANK, "--rpm", 5000, "--modes", 3)["rods"]["rod"]["stress"]
+        side = "right fibre" if stress["side"] == 1 else "left fibre"
+        label = canvas.get_attribute("aria-label")
+        self.assertIn(side, label)
+        self.assertIn(f"largest {stress['max_abs'] * 1e-6:.4g} MPa", label)
+        ActionChains(self.browser.driver).move_to_element(canvas).click().perform()
+        self.browser.settled()
+        self.assertIn("MPa", self.browser.run("return document.querySelector('[data-view=stress] .hover').textContent"))
+        self.assertNotEqual(self.browser.run("return state.angle"), 0)
+        before = self.browser.run("return arguments[0].toDataURL()", canvas)
+        self.browser.run("const s = document.querySelector('[data-view=stress] ~ .toolbar select'); s.value = arguments[0]; s.dispatchEvent(new Event('change'))", str(-stress["side"]))
+        self.browser.settled()
+        self.assertNotEqual(self.browser.run("return arguments[0].toDataURL()", canvas), before)
+        self.assert_quiet()
+
+    def test_link_without_a_section_has_no_stress_map_and_says_why(self):
+        self.browser.open(self.six_link())
+        self.assertIsNone(self.browser.run("return document.querySelector('[data-view=stress]')"))
+        self.assertIn("where a link's section is given", self.browser.text("rods"))
+
+    # Bands and what the theory leaves out
+
+    def test_bands_of_a_sweep_are_what_the_three_curves_cover(self):
+        sweep = answer("sweep", CRANK, *self.SWEPT[:-1], *self.BANDS)
+        self.browser.open(self.crank(), "#play=0")
+        self.browser.settled()
+        for b, band in enumerate(sweep["bands"]):
+            for key, i in (("max_abs", 0), ("max_abs", 2), ("growth_rate", None)):
+                shown = self.browser.run("""
+                    const [key, i, b] = arguments, along = report.along.rods.rod, x = doubles(report.along.x);
+                    const columns = key === "growth_rate" ? [floats(along.growth_rate)] : along.max_abs.map(floats);
+                    const {low, high} = bandsAround({name: "rod"}, key, x, columns, ["c1", "c2", "c3"])[b][i || 0];
+                    return [[...low], [...high]]""", key, i, b)
+                for k in range(len(sweep["rpm"])):
+                    three = [side["rods"]["rod"][key][k] for side in (sweep, band["at_from"], band["at_to"])]
+                    three = three if i is None else [each[i] for each in three]
+                    for value, expected in ((shown[0][k], min(three)), (shown[1][k], max(three))):
+                        self.assertAlmostEqual(value, expected, delta=1e-6 * abs(expected))
+        picture = "return [...document.querySelectorAll('[data-chart=growth] canvas')].map((c) => c.toDataURL()).join()"
+        self.browser.run("document.querySelector('[data-chart=growth]').scrollIntoView({behavior: 'instant'})")
+        self.browser.settled()
+        before = self.browser.run(picture)
+        self.browser.run("const s = document.getElementById('shown-band'); s.value = '1'; s.dispatchEvent(new Event('change'))")
+        self.browser.settled()
+        self.assertNotEqual(self.browser.run(picture), before)
+        self.assert_quiet()
+
+    def test_tables_have_the_largest_values_at_both_ends_of_a_band(self):
+        sweep = answer("sweep", CRANK, *self.SWEPT[:-1], *self.BANDS)
+        self.browser.open(self.crank(), "#play=0")
+        shown = self.browser.run("return [...document.querySelectorAll('#sweep-bands table')].map((t) => [...t.querySelectorAll('tbody tr')]"
+                                 ".map((r) => [...r.cells].map((c) => c.dataset.value || c.textContent)))")
+        self.assertEqual(len(shown), 2)
+        for table, band in zip(shown, sweep["bands"]):
+            growth = next(row for row in table if "growth rate" in row[0])
+            self.assertEqual([float(v) for v in growth[1:]], [max(side["rods"]["rod"]["growth_rate"]) for side in (band["at_from"], sweep, band["at_to"])])
+            unstable = next(row for row in table if "unstable points" in row[0])
+            self.assertEqual([int(v) for v in unstable[1:]], [side["verdict"].count("unstable") for side in (band["at_from"], sweep, band["at_to"])])
+
+    def test_what_linear_theory_leaves_out_of_the_growth_rate_stands_beside_it(self):
+        steady = answer("steady", CRANK, "--rpm", 5000, "--modes", 3)
+        self.browser.open(self.crank(), "#speed=8&play=0")
+        self.browser.settled()
+        cell = self.browser.run("return document.querySelector(\"#numbers [data-path='growth_theory_error']\").dataset.value")
+        self.assertEqual(float(cell), steady["growth_theory_error"])
+        low, high = self.browser.run("const along = report.along.rods.rod, a = theoryAround(rods[0], floats(along.growth_rate), doubles(report.along.x)); return [a.low[8], a.high[8]]")
+        self.assertAlmostEqual(high - low, 2 * steady["growth_theory_error"], delta=1e-5 * abs(high))
+        self.browser.run("[...document.querySelectorAll('#tables details')].forEach((d) => { d.open = true })")
+        self.browser.settled()
+        self.assertIn("growth rate of all: error of theory", self.browser.text("tables"))
+
+    # Hands and keys
+
+    def test_cursors_of_the_charts_are_linked(self):
+        from selenium.webdriver.common.action_chains import ActionChains
+        self.browser.open(self.crank(), "#play=0")
+        chart = self.browser.element("campbell-rod")
+        self.browser.run("arguments[0].scrollIntoView({block: 'center', behavior: 'instant'})", chart)
+        self.browser.settled()
+        ActionChains(self.browser.driver).move_to_element(chart).perform()
+        self.browser.settled()
+        rows = self.browser.run("return charts.map((c) => c.x[c.chart.getSelection()])")
+        self.assertGreaterEqual(len(rows), 4)
+        self.assertLessEqual(max(rows) - min(rows), 500)  # the nearest row of each
+        told = self.browser.run("return document.querySelector('#campbell-rod .dygraph-legend').textContent")
+        self.assertIn("mode 1", told)
+
+    def test_zoom_of_one_chart_is_that_of_all_and_goes_into_the_address(self):
+        self.browser.open(self.crank(), "#play=0&zoom=2000:4000")
+        self.browser.settled()
+        windows = self.browser.run("return charts.map((c) => c.chart.xAxisRange())")
+        for low, high in windows:
+            self.assertAlmostEqual(low, 2000, delta=30)
+            self.assertAlmostEqual(high, 4000, delta=30)
+
+    def test_map_is_reached_and_moved_by_keys_alone(self):
+        from selenium.webdriver.common.keys import Keys
+        self.browser.open(self.crank(), "#speed=0&play=0")
+        self.browser.settled()
+        self.focus("map")
+        before = self.browser.run("return state.mapNode")
+        self.press(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT, Keys.ARROW_UP)
+        self.browser.settled()
+        after = self.browser.run("return state.mapNode")
+        self.assertEqual(after, [before[0] + 2, min(2, before[1] + 1)])
+        self.assertEqual(self.browser.text("rpm-value"), "3000.0")
+        self.assertIn("rod.section.height", self.browser.run("return document.querySelector('.map-reading').textContent"))
+
+    def test_every_control_is_reached_by_the_tab_key_and_has_a_name(self):
+        from selenium.webdriver.common.keys import Keys
+        self.browser.open(self.crank(), "#play=0")
+        self.browser.settled()
+        reached = []
+        for _ in range(60):
+            self.press(Keys.TAB)
+            one = self.browser.run("""
+                const e = document.activeElement, label = e.closest("label");
+                return [e.id || e.tagName + ":" + (e.textContent || "").slice(0, 30), e.getAttribute("aria-label") || (label && label.textContent.trim()) || e.textContent.trim() || e.title]""")
+            if one[0] in [name for name, _ in reached]:
+                break
+            reached.append(one)
+        names = [name for name, _ in reached]
+        for wanted in ("speed", "speed-down", "speed-up", "play", "angle", "magnification", "pace", "shown-band", "map", "scene-table"):
+            self.assertIn(wanted, names)
+        self.assertEqual([name for name, words in reached if not words and name != "scene-table"], [])
+
+    def test_keys_step_the_speed_and_play_from_anywhere_on_the_page(self):
+        from selenium.webdriver.common.keys import Keys
+        self.browser.open(self.crank(), "#speed=3&play=0")
+        self.browser.settled()
+        self.browser.run("document.activeElement.blur()")
+        self.press(Keys.ARROW_RIGHT)
+        self.assertEqual(self.browser.text("rpm-value"), "3000.0")
+        self.press(Keys.SPACE)
+        self.assertTrue(self.browser.run("return state.playing"))
+        self.press(Keys.SPACE)
+        self.assertFalse(self.browser.run("return state.playing"))
+
+    def test_address_carries_all_that_was_chosen(self):
+        self.browser.open(self.crank(), "#play=0")
+        self.browser.choose(5)
+        self.browser.run("""
+            const choose = (name, value) => { const e = document.getElementById(name); e.value = value; for (const kind of ["input", "change"]) e.dispatchEvent(new Event(kind, {bubbles: true})); };
+            choose("angle", "77");
+            choose("magnification", [...document.getElementById("magnification").options].at(-1).value);
+            choose("pace", [...document.getElementById("pace").options].at(-1).value);
+            const joint = document.querySelector("#forces select"); joint.value = "piston.guide"; joint.dispatchEvent(new Event("change"));""")
+        self.browser.driver.execute_async_script("setTimeout(arguments[0], 500)")
+        wanted = "const s = state; return [s.index, Math.round(s.angle * 180 / Math.PI), s.magnification, s.secondsPerTurn, s.joint, s.mapNode, location.hash]"
+        before = self.browser.run(wanted)
+        self.assertEqual(before[:2] + before[4:5], [5, 77, "piston.guide"])
+        self.browser.open(self.crank(), before[-1])
+        self.browser.settled()
+        self.assertEqual(self.browser.run(wanted)[:-1], before[:-1])
+        self.browser.open(self.crank(), "#speed=1e9&angle=x&zoom=9:1&map=77:-3&joint=<b>&magnification=-1&pace=NaN&play=7")
+        self.browser.settled()
+        self.assertEqual(self.browser.text("rpm-value"), "7000.0")
+        self.assert_quiet()
+
+    # Paper
+
+    def test_prints_every_part_without_controls(self):
+        self.browser.open(self.crank(), "#play=0")
+        self.browser.settled()
+        paper = base64.b64decode(self.browser.driver.execute_cdp_cmd("Page.printToPDF", {"printBackground": True})["data"])
+        self.assertTrue(paper.startswith(b"%PDF"))
+        self.assertGreaterEqual(paper.count(b"/Type /Page\n") + paper.count(b"/Type/Page\n"), 4)
+        self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        try:
+            shown = self.browser.run("return ['speed', 'play', 'speed-up', 'mechanism', 'campbell-rod', 'map', 'tables', 'scene'].map((n) => document.getElementById(n).getClientRects().length > 0)")
+        finally:
+            self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+        self.assertEqual(shown, [False, False, False, True, True, True, True, True])
+        self.assert_quiet()
+
+
+if __name__ == "__main__":
+    pages.main()
