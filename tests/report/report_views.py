@@ -202,10 +202,15 @@ class ReportViews(PageTest):
             choose("magnification", [...document.getElementById("magnification").options].at(-1).value);
             choose("pace", [...document.getElementById("pace").options].at(-1).value);
             const joint = document.querySelector("#forces select"); joint.value = "piston.guide"; joint.dispatchEvent(new Event("change"));""")
+        from selenium.webdriver.common.keys import Keys
+        own = self.browser.run("return state.mapNode[1]")
+        self.focus("map")
+        self.press(Keys.ARROW_DOWN)
         self.browser.driver.execute_async_script("setTimeout(arguments[0], 500)")
         wanted = "const s = state; return [s.index, Math.round(s.angle * 180 / Math.PI), s.magnification, s.secondsPerTurn, s.joint, s.mapNode, location.hash]"
         before = self.browser.run(wanted)
         self.assertEqual(before[:2] + before[4:5], [5, 77, "piston.guide"])
+        self.assertNotEqual(before[5][1], own, "the map's place lies off the scene's own height")
         self.browser.open(self.crank(), before[-1])
         self.browser.settled()
         self.assertEqual(self.browser.run(wanted)[:-1], before[:-1])

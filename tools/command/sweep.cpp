@@ -101,7 +101,7 @@ int run_sweep_command(const SweepFlags& flags) {
   delivery.committed = [&] { run.delivered(); };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
-      ReportData data(swept.scene());
+      ReportData data(scene);
       const NonlinearSweep* along = branches ? &*branches : nullptr;
       data.add_sweep(swept, result, places_along(swept, SharedWork(out.threads), along), along);
       if (!bands.empty()) data.add_sweep_bands(document);

@@ -51,7 +51,7 @@ void sweep_report(const SceneCore& core, const SweepCore& swept, const Map* map,
   const Sweep& sweep = swept.linear;
   PythonWork work(threads);
   write_page(file, work, [&] {
-    ReportData data(sweep.scene->scene());
+    ReportData data(core.scene);
     const NonlinearSweep* branches = swept.branches ? &*swept.branches : nullptr;
     data.add_sweep(*sweep.scene, sweep, places_along(*sweep.scene, work, branches), branches);
     if (!swept.bands.empty()) {

@@ -51,8 +51,13 @@ Json own_numbers(Json steady, const std::vector<std::string>& known_warnings) {
     if (!fresh.empty()) steady["warnings"] = std::move(fresh);
   }
   for (const char* key : {"title", "units", "tolerance", "stats"}) steady.erase(key);
-  for (auto& [name, rod] : steady["rods"].items())
+  for (auto& [name, rod] : steady["rods"].items()) {
     if (rod.contains("q")) rod["q"].erase("fourier");
+    // The exponents in other words.
+    for (const char* key : {"multipliers", "frequencies", "frequencies_hz", "frequencies_hz_errors", "damping_ratios",
+                            "damping_ratio_errors"})
+      rod.erase(key);
+  }
   return steady;
 }
 

@@ -64,10 +64,11 @@ const driveTable = (numbers) => {
   return rows.length ? tableOf("Frame, motor and sliders", ["", "over the turn"], rows) : null;
 };
 
-const machineTable = (numbers) => {
-  const parts = [numbers.bearings && Object.keys(numbers.bearings).length > 0 ? bearingTable(numbers) : null, driveTable(numbers)].filter(Boolean);
-  if (parts.length === 0) return null;
-  return element("details", {open: state.machineOpen, ontoggle: (event) => { state.machineOpen = event.target.open; }}, element("summary", {}, "Bearings, frame and motor"), ...parts);
+const machineTable = (numbers, heading) => {
+  const title = "Bearings, frame and motor", bearings = numbers.bearings && Object.keys(numbers.bearings).length > 0;
+  if (heading) return bearings || numbers.frame || numbers.power ? foldedTable("machineOpen", title, []) : null;
+  const parts = [bearings ? bearingTable(numbers) : null, driveTable(numbers)].filter(Boolean);
+  return parts.length > 0 ? foldedTable("machineOpen", title, parts) : null;
 };
 
 // How the answer moves with a number that is not known well (hb steady --band).

@@ -14,7 +14,7 @@ const showSpeed = () => {
     words.push(`${rod.name} ${verdict || "no verdict"}`);
   }
   slider.setAttribute("aria-valuetext", known ? `${short(points.rpm[state.index], 8)} rpm: ${words.join(", ")}` : "no speeds");
-  showNumbers();
+  numbersFollow();
 };
 
 slider.addEventListener("input", () => {
@@ -48,6 +48,7 @@ const start = () => {
     document.querySelector("#rods > h2").textContent = "The system at this speed";
     document.querySelector("nav a[href='#rods']").textContent = "System";
   }
+  if (points.count === 0) document.documentElement.classList.add("no-points");
   // The number that the slider goes by stands first.
   if (report.axis.kind !== "rpm") document.getElementById("controls").classList.add("by-axis");
   readFragment();
@@ -76,6 +77,7 @@ const start = () => {
     for (const more of document.querySelectorAll("#notes details")) more.open = on;
     recolour();
     for (const chart of charts) chart.onPaper(on);
+    showDueNumbers();
     drawNow();
   };
   window.addEventListener("beforeprint", () => onPaper(true));

@@ -29,7 +29,10 @@ class MapPlot {
     this.view = addView(canvas, () => this.draw());
     onSpeed.push(() => { this.followSpeed(); this.view.dirty = "all"; askFrame(); });
     this.cells = this.paint();
-    if (!state.mapNode) this.followSpeed();
+    // A place that the address gives is kept until another speed is chosen.
+    const [i, j] = state.mapNode || [-1, -1];
+    this.given = i >= 0 && i < this.x.length && j >= 0 && j < this.y.length;
+    if (!this.given) { state.mapNode = null; this.followSpeed(); }
     this.tell(state.mapNode);
   }
 
@@ -111,6 +114,7 @@ class MapPlot {
   }
   // The node nearest to the chosen speed, at the scene's own value of the other number.
   followSpeed() {
+    if (this.given) { this.given = false; return; }
     if (points.count === 0) { state.mapNode = state.mapNode || [Math.floor(this.x.length / 2), Math.floor(this.y.length / 2)]; return; }
     const kind = report.axis.kind, here = points.x[state.index], own = report.map.scene_values || {};
     const old = state.mapNode || [Math.floor(this.x.length / 2), Math.floor(this.y.length / 2)];
@@ -130,8 +134,13 @@ class MapPlot {
       (Number.isFinite(error) ? "" : ", not computed itself: it lies in a cell of one verdict");
   }
 
-  draw() {
-    const canvas = this.canvas, box = sizeOf(canvas), pen = cleanPen(canvas, box);
+  // All but the cross-hair; kept until the size, the window or the colours change.
+  ground(box) {
+    const key = [box.width, box.height, window.devicePixelRatio, colours.muted, ...this.box()].join();
+    if (this.groundKey === key) return this.kept;
+    this.groundKey = key;
+    this.kept = this.kept || element("canvas");
+    const pen = cleanPen(this.kept, box);
     const [x0, x1, y0, y1] = this.box();
     const xTicks = niceTicks(x0, x1, Math.max(3, Math.round(box.width / 120))), yTicks = niceTicks(y0, y1, 6);
     const narrow = box.width < 560;
@@ -152,12 +161,6 @@ class MapPlot {
     for (const range of this.map.damping_range || []) this.trace(pen, range.boundaries, (curve) => [kindColours[curve.kind], 1.1, [3, 3]]);
     this.trace(pen, this.map.boundaries, (curve) => [kindColours[curve.kind] || "#000000", 2, curve.kind === "-1" ? [] : curve.kind === "+1" ? [9, 3] : [2, 3]]);
     this.nameLines(pen);
-    if (state.mapNode) {
-      const [i, j] = state.mapNode, x = this.px(this.x[i]), y = this.py(this.y[j]);
-      pen.strokeStyle = "#ffffff"; pen.lineWidth = 3; this.cross(pen, x, y);
-      pen.strokeStyle = "#111111"; pen.lineWidth = 1; this.cross(pen, x, y);
-      pen.beginPath(); pen.arc(x, y, 5, 0, 2 * Math.PI); pen.fillStyle = "#fff"; pen.fill(); pen.lineWidth = 2; pen.stroke();
-    }
     pen.restore();
     pen.strokeStyle = colours.muted; pen.lineWidth = 1;
     pen.strokeRect(this.left + 0.5, this.top + 0.5, width, height);
@@ -170,6 +173,19 @@ class MapPlot {
     pen.textAlign = "left";
     pen.fillText(withUnit(this.map.y.label, this.map.y.unit), 2, 6);
     this.colourBar(pen, box, narrow);
+    return this.kept;
+  }
+  draw() {
+    const box = sizeOf(this.canvas), ground = this.ground(box), pen = cleanPen(this.canvas, box);
+    if (ground.width > 0 && ground.height > 0) pen.drawImage(ground, 0, 0, box.width, box.height);
+    if (!state.mapNode) return;
+    const [i, j] = state.mapNode, x = this.px(this.x[i]), y = this.py(this.y[j]);
+    pen.save();
+    pen.beginPath(); pen.rect(this.left, this.top, this.right - this.left, this.bottom - this.top); pen.clip();
+    pen.strokeStyle = "#ffffff"; pen.lineWidth = 3; this.cross(pen, x, y);
+    pen.strokeStyle = "#111111"; pen.lineWidth = 1; this.cross(pen, x, y);
+    pen.beginPath(); pen.arc(x, y, 5, 0, 2 * Math.PI); pen.fillStyle = "#fff"; pen.fill(); pen.lineWidth = 2; pen.stroke();
+    pen.restore();
   }
   cross(pen, x, y) { pen.beginPath(); pen.moveTo(this.left, y); pen.lineTo(this.right, y); pen.moveTo(x, this.top); pen.lineTo(x, this.bottom); pen.stroke(); }
   trace(pen, curves, style) {
@@ -210,11 +226,7 @@ class MapPlot {
   }
   colourBar(pen, box, narrow) {
     const left = this.right + 14, wide = 14, limit = Math.asinh(this.largest / this.scale), height = this.bottom - this.top;
-    for (let p = 0; p < height; ++p) {
-      const [r, g, b] = growthColour(1 - (2 * p) / height);
-      pen.fillStyle = `rgb(${r},${g},${b})`;
-      pen.fillRect(left, this.top + p, wide, 1.5);
-    }
+    growthBar(pen, left, this.top, wide, height);
     pen.fillStyle = colours.muted;
     pen.textAlign = "left"; pen.textBaseline = "middle";
     const taken = [];

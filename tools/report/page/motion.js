@@ -74,7 +74,7 @@ const isBeyond = (name) => isBeyondAt(state.index, name);
 
 // Why a plot of this speed is empty.
 const whyEmpty = (what) => {
-  if (points.count === 0) return `This page holds no single speeds: ${what} comes with hb report, sweep or steady.`;
+  if (points.count === 0) return `Without single speeds this page has no ${what}: hb report, sweep and steady compute them.`;
   const here = place(state.index);
   if (!isKept(state.index)) return `Left out here: of ${points.count} speeds the page keeps curves of every ${report.points.every}th. Verdict and growth rate are those of this speed.`;
   if (here && here.problem) return here.problem;

@@ -83,8 +83,13 @@ const rodRows = (rod, numbers) => {
   return rows;
 };
 
-const jointTable = (numbers) => {
+// Folded, or open as the reader left it; a heading alone is filled when it is opened.
+const foldedTable = (key, title, parts) => element("details", {open: state[key], ontoggle: (event) => { state[key] = event.target.open; if (event.target.open && event.target.children.length === 1) showNumbers(); }}, element("summary", {}, title), ...parts);
+
+const jointTable = (numbers, heading) => {
   if (!numbers.joints || Object.keys(numbers.joints).length === 0) return null;
+  const title = "Joint forces and torque";
+  if (heading) return foldedTable("jointsOpen", title, []);
   const f = units.force, rows = [];
   const row = (name, range, rigid, unit, path) => rows.push(element("tr", {}, element("td", {}, name),
     cell(range.min, {factor: unit.factor, digits: 5, path: path + ".min"}), cell(range.max, {factor: unit.factor, digits: 5, path: path + ".max"}),
@@ -93,11 +98,10 @@ const jointTable = (numbers) => {
     for (const c of Object.keys(components)) if (!c.endsWith("_rigid") && components[c] && "min" in components[c]) row(`${joint} ${c}`, components[c], components[c + "_rigid"], f, `joints.${joint}.${c}`);
   if (numbers.torque) row("torque", numbers.torque, numbers.torque.rigid, units.moment, "torque");
   const errors = numbers.joints_error === undefined ? "" : ` Relative errors: forces ${short(numbers.joints_error, 2)}, torque ${short(numbers.torque_error, 2)}; from the modes left out ${short(numbers.joints_modes_error, 2)} and ${short(numbers.torque_modes_error, 2)}.`;
-  return element("details", {open: state.jointsOpen, ontoggle: (event) => { state.jointsOpen = event.target.open; }},
-    element("summary", {}, "Joint forces and torque"),
+  return foldedTable("jointsOpen", title, [
     element("div", {class: "scroll"}, element("table", {},
       element("thead", {}, element("tr", {}, element("th", {}, "forces [N], torque [N m]"), element("th", {}, "min"), element("th", {}, "max"), element("th", {}, "rigid min"), element("th", {}, "rigid max"))),
-      element("tbody", {}, rows))), element("p", {class: "caption"}, `Smallest and largest over the turn.${errors}`));
+      element("tbody", {}, rows))), element("p", {class: "caption"}, `Smallest and largest over the turn.${errors}`)]);
 };
 
 // Of a speed that the page keeps without its document: what the sweep knows.
@@ -111,7 +115,8 @@ const sparseRows = () => {
   return rows;
 };
 
-const showNumbers = () => {
+// `lean`: without what is folded away.
+const showNumbers = (lean = false) => {
   const host = document.getElementById("numbers");
   clear(host);
   if (points.count === 0) { host.append(element("p", {class: "missing"}, whyEmpty("numbers"))); return; }
@@ -122,10 +127,23 @@ const showNumbers = () => {
   const tables = numbers ? [systemRows(numbers), ...rods.map((rod) => rodRows(rod, numbers))] : [sparseRows()];
   host.append(element("div", {class: "number-tables"}, tables.filter((rows) => rows.length > 0).map((rows) => element("div", {class: "scroll"}, element("table", {}, element("tbody", {}, rows))))));
   if (!numbers) { host.append(element("p", {class: "caption"}, whyEmpty("numbers"))); return; }
-  const joints = jointTable(numbers);
-  if (joints) host.append(joints);
-  const machine = machineTable(numbers);
-  if (machine) host.append(machine);
+  for (const table of [jointTable(numbers, lean && !state.jointsOpen), machineTable(numbers, lean && !state.machineOpen)]) if (table) host.append(table);
   const warned = [...(here.lacking ? [here.lacking] : []), ...(numbers.notes || []), ...(numbers.warnings || [])];
   if (warned.length) host.append(element("div", {class: "note warning"}, warned.map((w) => element("p", {}, w))));
+};
+
+// The tables at once while they are in sight; else when the slider rests, or when they come into sight. While it is
+// dragged, folded ones wait until it rests.
+const numbersCard = document.getElementById("numbers-card");
+const numbersView = {inSight: true, timer: 0, due: false, last: -Infinity};
+const showDueNumbers = () => { if (numbersView.due) { numbersView.due = false; showNumbers(); } };
+new IntersectionObserver(([entry]) => { numbersView.inSight = entry.isIntersecting; if (numbersView.inSight) showDueNumbers(); }, {rootMargin: "150px"}).observe(numbersCard);
+const numbersFollow = () => {
+  const now = performance.now(), dragged = now - numbersView.last < 100;
+  numbersView.last = now;
+  numbersView.due = true;
+  clearTimeout(numbersView.timer);
+  if (numbersView.inSight && !dragged) { showDueNumbers(); return; }
+  if (numbersView.inSight) showNumbers(true);
+  numbersView.timer = setTimeout(showDueNumbers, 150);
 };

@@ -21,3 +21,11 @@ const growthColour = (t) => {
   const a = diverging[k - 1], b = diverging[k], share = (v - a[0]) / (b[0] - a[0]);
   return [1, 2, 3].map((c) => Math.round(a[c] + share * (b[c] - a[c])));
 };
+
+// Of those colours a bar from 1 above to -1 below.
+const growthBar = (pen, left, top, width, height) => {
+  const fill = pen.createLinearGradient(0, top, 0, top + height);
+  for (const [at, r, g, b] of diverging) fill.addColorStop((1 - at) / 2, `rgb(${r},${g},${b})`);
+  pen.fillStyle = fill;
+  pen.fillRect(left, top, width, height);
+};

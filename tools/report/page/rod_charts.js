@@ -198,7 +198,7 @@ const responseChart = (host, rod, along, x) => {
   const branches = nonlinear ? peakBranches(rod.name, 0) : [];
   const positive = (lists) => lists.flatMap((list) => Array.from(list)).filter((v) => Number.isFinite(v) && v > 0);
   const values = positive(columns.map((c) => c.values)), bent = positive(branches.map((b) => b.y));
-  if (values.length === 0) { host.append(element("p", {class: "missing"}, "No response: it was not asked for, or there is none.")); return; }
+  if (values.length === 0) { noChart(host, "No response: it was not asked for, or there is none."); return; }
   // Resonance spikes would flatten all that is valid: the picture reaches well above the stable speeds.
   const fine = stableValues(rod.name, floats(along.max_abs[0]), x);
   // A deflection beyond the link's own length says nothing any more.
@@ -217,12 +217,13 @@ const responseChart = (host, rod, along, x) => {
   nonlinear ? element("p", {class: "caption"}, branchWords()) : "");
 };
 
+const noChart = (host, words) => { host.classList.add("blank"); host.append(element("p", {class: "missing"}, words)); };
+
 const setUpCharts = () => {
   const caption = document.getElementById("speeds-caption");
   if (!report.along || points.count < 2) {
     const section = document.getElementById("speeds");
-    for (const host of section.querySelectorAll("[data-chart]")) host.append(element("p", {class: "missing"}, points.count === 1 ? "One speed only: hb sweep or hb report computes more." : "This page holds no sweep."));
-    section.classList.add("empty");
+    for (const host of section.querySelectorAll("[data-chart]")) noChart(host, points.count === 1 ? "One speed only: hb sweep or hb report computes more." : "This page holds no sweep.");
     return;
   }
   const x = doubles(report.along.x);
@@ -233,9 +234,9 @@ const setUpCharts = () => {
     if (rods.length === 1 && !isLinkage) views.querySelector(".rod-title").hidden = true;
     for (const host of views.querySelectorAll("[data-chart]")) {
       const stability = along && along.growth_rate;
-      if (host.dataset.chart === "campbell") { if (stability && along.frequency) campbellChart(host, rod, along, x); else host.append(element("p", {class: "missing"}, "Stability was not asked for: no frequencies.")); }
-      if (host.dataset.chart === "growth") { if (stability) growthChart(host, rod, along, x); else host.append(element("p", {class: "missing"}, "Stability was not asked for.")); }
-      if (host.dataset.chart === "response") { if (along && along.max_abs) responseChart(host, rod, along, x); else host.append(element("p", {class: "missing"}, "The response was not asked for.")); }
+      if (host.dataset.chart === "campbell") { if (stability && along.frequency) campbellChart(host, rod, along, x); else noChart(host, "Stability was not asked for: no frequencies."); }
+      if (host.dataset.chart === "growth") { if (stability) growthChart(host, rod, along, x); else noChart(host, "Stability was not asked for."); }
+      if (host.dataset.chart === "response") { if (along && along.max_abs) responseChart(host, rod, along, x); else noChart(host, "The response was not asked for."); }
     }
   }
 };

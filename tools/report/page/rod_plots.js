@@ -181,6 +181,14 @@ class ExponentPlane {
   }
 }
 
+// Whether some point has what a view draws.
+const drawnKeys = {response: "q", shape: "q", moment: "moment", stress: "stress"};
+const everDrawn = (rod, view) => (report.places || []).some((entry, k) => {
+  if (view !== "exponents") return entry.curves && entry.curves.rods[rod.name] && entry.curves.rods[rod.name][drawnKeys[view]];
+  const here = place(report.points.kept ? report.points.kept[k] : k), own = here && here.numbers;
+  return own && ((own.rods[rod.name] || {}).exponents || (own.system || {}).exponents);
+});
+
 const setUpRods = () => {
   for (const views of document.querySelectorAll("#rods .rod-views")) {
     const rod = rods.find((r) => r.name === views.dataset.rod);
@@ -188,6 +196,7 @@ const setUpRods = () => {
     for (const host of views.querySelectorAll(".plot")) {
       const view = host.dataset.view;
       if ((!isLinkage && (view === "shape" || view === "moment")) || (view === "stress" && !rod.section)) { host.closest(".card").remove(); continue; }
+      host.classList.toggle("blank", !everDrawn(rod, view));
       switch (view) {
         case "response":
           new TurnPlot(host, {label: `Response of ${rod.name}`, yLabel: isLinkage ? "q, amplitude of sin(iπx/l)" : "q", unit: units.response, curves: responseCurves(rod)});

@@ -90,9 +90,9 @@ class StressMap {
     this.move();
   }
   bar(beyond) {
-    const area = this.area, pen = area.pen, left = area.right + 8, high = area.bottom - area.top, largest = this.field.largest * megapascal, table = stressColours();
+    const area = this.area, pen = area.pen, left = area.right + 8, high = area.bottom - area.top, largest = this.field.largest * megapascal;
     pen.globalAlpha = beyond ? 0.4 : 1;
-    for (let p = 0; p < high; ++p) { const [r, g, b] = table[Math.round(256 * (1 - p / high))]; pen.fillStyle = `rgb(${r},${g},${b})`; pen.fillRect(left, area.top + p, 10, 1.5); }
+    growthBar(pen, left, area.top, 10, high);
     pen.globalAlpha = 1;
     pen.fillStyle = colours.muted;
     pen.textAlign = "left"; pen.textBaseline = "middle";
