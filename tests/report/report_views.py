@@ -219,7 +219,16 @@ class ReportViews(PageTest):
         self.assertEqual(self.browser.text("rpm-value"), "7000.0")
         self.assert_quiet()
 
-    # Paper
+    # Phones and paper
+
+    def test_narrow_screen_needs_no_sideways_scrolling_with_bands_and_stress(self):
+        self.browser.resize(360, 800)
+        try:
+            self.browser.open(self.crank(), "#play=0")
+            self.browser.settled()
+            self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), 360)
+        finally:
+            self.browser.resize(1300, 900)
 
     def test_prints_every_part_without_controls(self):
         self.browser.open(self.crank(), "#play=0")
