@@ -100,6 +100,7 @@ class ReportViews(PageTest):
         self.browser.run("const s = document.getElementById('shown-band'); s.value = '1'; s.dispatchEvent(new Event('change'))")
         self.browser.settled()
         self.assertNotEqual(self.browser.run(picture), before)
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('.legend .shaded')].map((s) => s.textContent)"), ["as given and with E times 0.9 to 1.1"] * 2)
         self.assert_quiet()
 
     def test_tables_have_the_largest_values_at_both_ends_of_a_band(self):
@@ -125,6 +126,64 @@ class ReportViews(PageTest):
         self.browser.run("[...document.querySelectorAll('#tables details')].forEach((d) => { d.open = true })")
         self.browser.settled()
         self.assertIn("growth rate of all: error of theory", self.browser.text("tables"))
+
+    # Designs, and points without an answer
+
+    def test_page_of_tune_has_both_designs_in_tables_curves_and_the_mechanism(self):
+        arguments = ("tune", CRANK, "--minimise", "deflection", "--vary", "crank.length=35mm:45mm", "--keep", "stable", "--over", "rpm=1000:2000",
+                     "--modes", 1)
+        done = run(*arguments, "--out", self.folder / "tune", "--html", "--no-plots")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        tune = json.loads((self.folder / "tune" / "tune.json").read_text())
+        self.browser.open(self.folder / "tune" / "report.html", "#play=0")
+        self.browser.settled()
+        self.assertFalse(self.browser.run("return document.querySelector(\"nav a[href='#design']\").offsetParent === null"))
+        cells = self.browser.run("return [...document.querySelector('#design table tbody tr').cells].map((c) => c.dataset.value || c.textContent)")
+        variable = tune["variables"][0]
+        self.assertEqual([float(cells[1]), float(cells[2])], [variable["before"], variable["after"]])
+        self.assertGreaterEqual(self.browser.run("return document.querySelectorAll('#design canvas').length"), 2)
+        for words in ("before", "after", "Conditions", "All that hb tune says"):
+            self.assertIn(words, self.browser.text("design"))
+        self.assertIn("Light: the design before", self.browser.text("mechanism-note"))
+        self.assert_quiet()
+
+    def test_points_where_the_mechanism_does_not_close_say_so_and_the_others_answer(self):
+        arguments = ("sweep", scenes.FOLDER / "four_bar.toml", "--rpm", 300, "--x", "crank.length=0.1:0.3:0.05", "--modes", 1)
+        done = run(*arguments, "--out", self.folder / "gap", "--html", "--no-plots")
+        self.assertIn(done.returncode, (0, 3), done.stderr)
+        sweep = answer(*arguments)
+        self.browser.open(self.folder / "gap" / "report.html", "#play=0")
+        self.assertIn("have no answer", self.browser.text("notes"))
+        missing = [k for k, verdict in enumerate(sweep["verdict"]) if verdict is None]
+        self.assertGreater(len(missing), 0)
+        self.assertLess(len(missing), len(sweep["verdict"]))
+        for index, verdict in enumerate(sweep["verdict"]):
+            self.browser.choose(index)
+            self.browser.settled()
+            if verdict is None:
+                self.assertIn("does not close", self.browser.text("numbers"))
+                self.assertEqual(self.browser.text("verdict-coupler"), "–")
+            else:
+                self.assertEqual(self.browser.text("verdict-coupler"), sweep["rods"]["coupler"]["verdict"][index])
+        self.assert_quiet()
+
+    def test_page_of_stability_alone_and_page_of_a_map_alone_say_what_they_lack(self):
+        done = run("sweep", CRANK, *self.SWEPT, "--only", "stability", "--out", self.folder / "stability", "--html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.browser.open(self.folder / "stability" / "report.html", "#play=0")
+        self.browser.settled()
+        blank = self.browser.run("return [...document.querySelectorAll('.blank')].map((e) => e.dataset.view || e.dataset.chart)")
+        self.assertEqual(sorted(blank), ["moment", "response", "response", "shape", "stress"])
+        self.assertIn("not asked for", self.browser.text("speeds"))
+        self.assert_quiet()
+        done = run("map", scenes.FOLDER / "mathieu.toml", "--x", "omega=1.5:2.5:5", "--y", "hill.damping.0.0=0:0.2:3", "--out", self.folder / "map", "--html", "--no-plots")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.browser.open(self.folder / "map" / "report.html")
+        self.browser.settled()
+        self.assertIn("Without single speeds", self.browser.text("numbers"))
+        self.assertIn("holds no sweep", self.browser.text("speeds"))
+        self.assertGreater(self.browser.element("map").size["height"], 100)
+        self.assert_quiet()
 
     # Hands and keys
 
@@ -192,6 +251,23 @@ class ReportViews(PageTest):
         self.assertTrue(self.browser.run("return state.playing"))
         self.press(Keys.SPACE)
         self.assertFalse(self.browser.run("return state.playing"))
+
+    def test_numbers_follow_a_held_slider_and_are_whole_when_it_is_let_go(self):
+        self.browser.open(self.crank(), "#play=0")
+        self.browser.settled()
+        hand = "document.getElementById('speed').dispatchEvent(new PointerEvent(arguments[0], {bubbles: true}))"
+        torque = "const c = document.querySelector(\"#numbers [data-path='torque.max']\"); return c && Number(c.dataset.value)"
+        growth = "return Number(document.querySelector(\"#numbers [data-path='rods.rod.growth_rate']\").dataset.value)"
+        before = self.browser.run(torque), self.browser.run(growth)
+        self.browser.run(hand, "pointerdown")
+        for index in range(1, 9):
+            self.browser.choose(index)
+        steady = answer("steady", CRANK, "--rpm", 5000, "--modes", 3)
+        self.assertEqual(self.browser.run(growth), steady["rods"]["rod"]["growth_rate"])
+        self.browser.run(hand, "pointerup")
+        self.assertEqual(self.browser.run(torque), steady["torque"]["max"])
+        self.assertNotEqual(before, (self.browser.run(torque), self.browser.run(growth)))
+        self.assertEqual(len(self.browser.run("return [...document.querySelectorAll('#numbers details')].filter((d) => d.open)")), 0)
 
     def test_address_carries_all_that_was_chosen(self):
         self.browser.open(self.crank(), "#play=0")

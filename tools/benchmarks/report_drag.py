@@ -16,13 +16,15 @@ import browser  # noqa: E402
 # A drag to and fro over all speeds, a step for every frame. What a frame draws runs inside flush(): here at once.
 DRAG = """
 const [count, done] = arguments, times = [];
+const hand = (kind) => slider.dispatchEvent(new PointerEvent(kind, {bubbles: true}));
+hand("pointerdown");
 const drag = (k) => () => {
   const start = performance.now();
   slider.value = String(Math.round((points.count - 1) * 0.5 * (1 - Math.cos(0.13 * k))));
   slider.dispatchEvent(new Event("input", {bubbles: true}));
   flush();
   times.push(performance.now() - start);
-  if (k + 1 < count) requestAnimationFrame(drag(k + 1)); else requestAnimationFrame(() => setTimeout(() => done(times), 0));
+  if (k + 1 < count) requestAnimationFrame(drag(k + 1)); else requestAnimationFrame(() => setTimeout(() => { hand("pointerup"); done(times); }, 0));
 };
 requestAnimationFrame(drag(0));
 """

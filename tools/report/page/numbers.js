@@ -132,18 +132,17 @@ const showNumbers = (lean = false) => {
   if (warned.length) host.append(element("div", {class: "note warning"}, warned.map((w) => element("p", {}, w))));
 };
 
-// The tables at once while they are in sight; else when the slider rests, or when they come into sight. While it is
-// dragged, folded ones wait until it rests.
-const numbersCard = document.getElementById("numbers-card");
-const numbersView = {inSight: true, timer: 0, due: false, last: -Infinity};
+// The tables follow at once; while the slider is held, folded ones and tables out of sight wait until it is let go.
+const numbersView = {inSight: true, held: false, due: false};
 const showDueNumbers = () => { if (numbersView.due) { numbersView.due = false; showNumbers(); } };
-new IntersectionObserver(([entry]) => { numbersView.inSight = entry.isIntersecting; if (numbersView.inSight) showDueNumbers(); }, {rootMargin: "150px"}).observe(numbersCard);
+const holdSlider = (held) => { numbersView.held = held; if (!held) showDueNumbers(); };
+new IntersectionObserver(([entry]) => { numbersView.inSight = entry.isIntersecting; if (numbersView.inSight) showDueNumbers(); }, {rootMargin: "150px"})
+  .observe(document.getElementById("numbers-card"));
+slider.addEventListener("pointerdown", () => holdSlider(true));
+slider.addEventListener("keydown", (event) => { if (event.repeat) holdSlider(true); });
+for (const end of ["pointerup", "pointercancel", "keyup", "blur"]) window.addEventListener(end, () => holdSlider(false));
 const numbersFollow = () => {
-  const now = performance.now(), dragged = now - numbersView.last < 100;
-  numbersView.last = now;
   numbersView.due = true;
-  clearTimeout(numbersView.timer);
-  if (numbersView.inSight && !dragged) { showDueNumbers(); return; }
-  if (numbersView.inSight) showNumbers(true);
-  numbersView.timer = setTimeout(showDueNumbers, 150);
+  if (!numbersView.held) showDueNumbers();
+  else if (numbersView.inSight) showNumbers(true);
 };

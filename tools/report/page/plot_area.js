@@ -162,8 +162,8 @@ class PlotArea {
 }
 
 // Colours by their names in the style sheet.
-const legend = (items) => element("div", {class: "legend"}, items.map(({text, colour, dashed, box}) =>
-  !colour ? element("span", {class: "said"}, text) : element("span", {}, element("i", {class: box ? "box" : dashed ? "dashed" : "", style: box ? `background:var(--${colour})` : `border-top-color:var(--${colour})`}), text)));
+const legend = (items) => element("div", {class: "legend"}, items.map(({text, colour, dashed, box, name}) =>
+  !colour ? element("span", {class: "said"}, text) : element("span", {class: name || ""}, element("i", {class: box ? "box" : dashed ? "dashed" : "", style: box ? `background:var(--${colour})` : `border-top-color:var(--${colour})`}), text)));
 const rangeOf = (lists) => {
   let low = Infinity, high = -Infinity;
   for (const list of lists) for (const v of list) { if (v < low) low = v; if (v > high) high = v; }

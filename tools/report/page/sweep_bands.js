@@ -48,12 +48,13 @@ const drawShownBand = (bands) => (pen, area, chart) => {
     pen.globalAlpha = 1;
   }
 };
-const bandLegend = (bands) => (bands.some((band) => band.length > 0) ? [{text: "what all three cover", colour: "band", box: true}] : []);
+const shadedWords = () => `as given and with ${sweepBands[shownBand].parameter} times ${short(sweepBands[shownBand].from)} to ${short(sweepBands[shownBand].to)}`;
+const bandLegend = (bands) => (bands.some((band) => band.length > 0) ? [{text: shadedWords(), colour: "band", box: true, name: "shaded"}] : []);
 
 // Above the charts: which of the bands is shaded.
 const setUpSweepBands = () => {
   if (sweepBands.length === 0) return;
-  const choice = element("select", {id: "shown-band", onchange: (event) => { shownBand = Number(event.target.value); for (const chart of charts) chart.redraw(); }},
+  const choice = element("select", {id: "shown-band", onchange: (event) => { shownBand = Number(event.target.value); for (const item of document.querySelectorAll(".legend .shaded")) item.lastChild.textContent = shadedWords(); for (const chart of charts) chart.redraw(); }},
     sweepBands.map((band, k) => element("option", {value: k}, bandWords(band))));
   document.getElementById("speeds-caption").after(element("div", {class: "toolbar"}, element("label", {}, "shaded: what growth rate and response cover with ", choice, " and as given")));
 };
