@@ -136,6 +136,14 @@ def test_a_page_has_the_bands_of_its_answer(tmp_path, six_link):
     page = (tmp_path / "band.html").read_text()
     inside = json.loads(re.search('<script type="application/json" id="report-data">(.*?)</script>', page, re.S)[1])
     assert inside["bands"] == steady.to_dict()["bands"]
+    sweep = six_link.sweep(rpm=(200, 400, 100), modes=1, band="damping=0.5:2")
+    sweep.report(tmp_path / "bands.html")
+    page = (tmp_path / "bands.html").read_text()
+    (band,) = json.loads(re.search('<script type="application/json" id="report-data">(.*?)</script>', page, re.S)[1])["sweep_bands"]
+    growth = next(row for row in band["largest"] if row["name"].startswith("AB growth rate"))
+    document = sweep.to_dict()
+    ends = [document["bands"][0][end]["rods"]["AB"]["growth_rate"] for end in ("at_from", "at_to")]
+    assert [growth["from"], growth["given"], growth["to"]] == [max(ends[0]), max(document["rods"]["AB"]["growth_rate"]), max(ends[1])]
 
 
 def test_pages_that_cannot_be_written_are_told(steady, tmp_path):

@@ -71,7 +71,7 @@ class ReportViews(PageTest):
         self.assert_quiet()
 
     def test_link_without_a_section_has_no_stress_map_and_says_why(self):
-        self.browser.open(self.six_link())
+        self.browser.open(self.page("four_bar", scenes.FOLDER / "four_bar.toml", "--rpm", "100:300:100", "--modes", "1", "--no-plots"))
         self.assertIsNone(self.browser.run("return document.querySelector('[data-view=stress]')"))
         self.assertIn("where a link's section is given", self.browser.text("rods"))
 
@@ -277,20 +277,30 @@ class ReportViews(PageTest):
             choose("angle", "77");
             choose("magnification", [...document.getElementById("magnification").options].at(-1).value);
             choose("pace", [...document.getElementById("pace").options].at(-1).value);
-            const joint = document.querySelector("#forces select"); joint.value = "piston.guide"; joint.dispatchEvent(new Event("change"));""")
+            const joint = document.querySelector("#forces select"); joint.value = "piston.guide"; joint.dispatchEvent(new Event("change"));
+            choose("shown-band", "1");
+            const fibre = document.querySelector("[data-view=stress] ~ .toolbar select"); fibre.value = "-1"; fibre.dispatchEvent(new Event("change"));""")
         from selenium.webdriver.common.keys import Keys
         own = self.browser.run("return state.mapNode[1]")
         self.focus("map")
         self.press(Keys.ARROW_DOWN)
         self.browser.driver.execute_async_script("setTimeout(arguments[0], 500)")
-        wanted = "const s = state; return [s.index, Math.round(s.angle * 180 / Math.PI), s.magnification, s.secondsPerTurn, s.joint, s.mapNode, location.hash]"
+        wanted = "const s = state; return [s.index, Math.round(s.angle * 180 / Math.PI), s.magnification, s.secondsPerTurn, s.joint, s.mapNode, s.band, s.fibre, location.hash]"
         before = self.browser.run(wanted)
         self.assertEqual(before[:2] + before[4:5], [5, 77, "piston.guide"])
+        self.assertEqual(before[6:8], [1, -1])
         self.assertNotEqual(before[5][1], own, "the map's place lies off the scene's own height")
         self.browser.open(self.crank(), before[-1])
         self.browser.settled()
         self.assertEqual(self.browser.run(wanted)[:-1], before[:-1])
-        self.browser.open(self.crank(), "#speed=1e9&angle=x&zoom=9:1&map=77:-3&joint=<b>&magnification=-1&pace=NaN&play=7")
+        self.browser.run("document.querySelector(\"nav a[href='#tables']\").click()")
+        self.browser.driver.execute_async_script("setTimeout(arguments[0], 500)")
+        self.assertEqual(self.browser.run("return location.hash"), before[-1])
+        self.browser.run("location.hash = '#speed=2&play=0'")
+        self.browser.driver.execute_async_script("setTimeout(arguments[0], 1000)")
+        self.browser.settled()
+        self.assertEqual(self.browser.text("rpm-value"), "2000.0")
+        self.browser.open(self.crank(), "#speed=1e9&angle=x&zoom=9:1&map=77:-3&joint=<b>&magnification=-1&pace=NaN&play=7&band=99&fibre=x")
         self.browser.settled()
         self.assertEqual(self.browser.text("rpm-value"), "7000.0")
         self.assert_quiet()

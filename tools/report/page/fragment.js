@@ -6,6 +6,8 @@ const readFragment = () => {
   if (number("angle") !== null) state.angle = (number("angle") * Math.PI) / 180;
   if (number("magnification") > 0) state.magnification = number("magnification");
   if (number("pace") > 0) state.secondsPerTurn = number("pace");
+  if (number("band") > 0) state.band = Math.round(number("band"));
+  if (number("fibre") !== null) state.fibre = Math.sign(number("fibre"));
   if (given.has("joint")) state.joint = given.get("joint");
   if (given.has("play")) state.wantsPlay = given.get("play") === "1";
   const zoom = (given.get("zoom") || "").split(":").map(Number);
@@ -24,6 +26,8 @@ const writeFragment = () => {
     text.set("play", state.playing ? 1 : 0);
     text.set("magnification", state.magnification);
     text.set("pace", state.secondsPerTurn);
+    if (state.band) text.set("band", state.band);
+    if (state.fibre) text.set("fibre", state.fibre);
     if (state.joint) text.set("joint", state.joint);
     if (state.zoom) text.set("zoom", state.zoom.join(":"));
     if (state.mapNode) text.set("map", state.mapNode.join(":"));
@@ -34,3 +38,6 @@ const writeFragment = () => {
     }
   }, 300);
 };
+
+// Another address put into the same window is shown; a link within the page leaves the address as it was.
+window.addEventListener("hashchange", () => { if (location.hash.includes("speed=")) location.reload(); else writeFragment(); });

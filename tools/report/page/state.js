@@ -1,7 +1,7 @@
 // What is chosen: the speed's index, the crank angle, and how things are drawn. Views register with an element and are
 // drawn once per frame, and only while they are in sight.
 const state = {
-  index: 0, angle: 0, playing: false, magnification: 0, secondsPerTurn: 4, joint: "", zoom: null, mapNode: null,
+  index: 0, angle: 0, playing: false, magnification: 0, secondsPerTurn: 4, joint: "", zoom: null, mapNode: null, band: 0, fibre: 0,
 };
 
 const views = [];

@@ -49,8 +49,8 @@ class StressMap {
     this.cursor = element("div", {class: "cursor"});
     host.append(this.cursor);
     this.area.onPointer((x, y) => this.read(x, y), (x) => { if (this.field) { play(false); setAngle((x * Math.PI) / 180); } });
-    this.choice = element("select", {onchange: () => { this.view.dirty = "all"; askFrame(); }},
-      [["0", "where it is largest"], ["1", "right of the way from joint 0 to joint 1"], ["-1", "left of it"]].map(([value, words]) => element("option", {value}, words)));
+    this.choice = element("select", {onchange: () => { state.fibre = Number(this.choice.value); writeFragment(); this.view.dirty = "all"; askFrame(); }},
+      [["0", "where it is largest"], ["1", "right of the way from joint 0 to joint 1"], ["-1", "left of it"]].map(([value, words]) => element("option", {value, selected: Number(value) === state.fibre}, words)));
     host.after(element("div", {class: "toolbar"}, element("label", {}, "fibre ", this.choice)),
       element("p", {class: "caption"}, "Axial force and bending moment together. Red: tension, blue: compression; circle: the largest. Drawn to about 0.5 % of the largest; the numbers have their errors."));
     this.view = addView(host, () => this.draw(), () => this.move());

@@ -1,7 +1,6 @@
 // How response and growth rate along the speed move with damping, Young's modulus or mass of the elastic links: what the
 // curves as given and with both factors cover.
 const sweepBands = report.sweep_bands || [];
-let shownBand = 0;
 const bandWords = (band) => `${band.parameter} of the elastic links times ${short(band.from)} to ${short(band.to)}`;
 
 // Of a column over all rows the values at the computed points, which the bands have.
@@ -32,7 +31,7 @@ const bandsAround = (rod, key, x, columns, colours) => sweepBands.map((band) => 
 });
 const drawShownBand = (bands) => (pen, area, chart) => {
   const bottom = area.y + area.h, place = (v) => { const y = chart.toDomYCoord(v); return Number.isFinite(y) ? Math.max(area.y - 10, Math.min(bottom + 10, y)) : bottom + 10; };
-  for (const {low, high, colour} of bands[shownBand] || []) {
+  for (const {low, high, colour} of bands[state.band] || []) {
     pen.fillStyle = colours[colour];
     pen.globalAlpha = 0.2;
     for (let k = 0; k < points.count;) {
@@ -48,14 +47,15 @@ const drawShownBand = (bands) => (pen, area, chart) => {
     pen.globalAlpha = 1;
   }
 };
-const shadedWords = () => `as given and with ${sweepBands[shownBand].parameter} times ${short(sweepBands[shownBand].from)} to ${short(sweepBands[shownBand].to)}`;
+const shadedWords = () => `as given and with ${sweepBands[state.band].parameter} times ${short(sweepBands[state.band].from)} to ${short(sweepBands[state.band].to)}`;
 const bandLegend = (bands) => (bands.some((band) => band.length > 0) ? [{text: shadedWords(), colour: "band", box: true, name: "shaded"}] : []);
 
 // Above the charts: which of the bands is shaded.
 const setUpSweepBands = () => {
   if (sweepBands.length === 0) return;
-  const choice = element("select", {id: "shown-band", onchange: (event) => { shownBand = Number(event.target.value); for (const item of document.querySelectorAll(".legend .shaded")) item.lastChild.textContent = shadedWords(); for (const chart of charts) chart.redraw(); }},
-    sweepBands.map((band, k) => element("option", {value: k}, bandWords(band))));
+  if (!(state.band < sweepBands.length)) state.band = 0;
+  const choice = element("select", {id: "shown-band", onchange: (event) => { state.band = Number(event.target.value); writeFragment(); for (const item of document.querySelectorAll(".legend .shaded")) item.lastChild.textContent = shadedWords(); for (const chart of charts) chart.redraw(); }},
+    sweepBands.map((band, k) => element("option", {value: k, selected: k === state.band}, bandWords(band))));
   document.getElementById("speeds-caption").after(element("div", {class: "toolbar"}, element("label", {}, "shaded: what growth rate and response cover with ", choice, " and as given")));
 };
 
