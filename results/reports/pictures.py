@@ -1,7 +1,7 @@
 """Pictures of pages as headless Chromium shows them: python3 pictures.py PAGE FRAGMENT SECTION OUT.png ...
 
-A page with the address's FRAGMENT (what is shown: speed, crank angle, ...), from the element SECTION on or, with -, from its
-top; a picture for each four arguments. Debian: chromium, chromium-driver, python3-selenium."""
+A page with the address's FRAGMENT (what is shown: speed, crank angle, ...), from the element SECTION (a CSS selector) on or,
+with -, from its top; a picture for each four arguments. Debian: chromium, chromium-driver, python3-selenium."""
 
 import base64
 import pathlib
@@ -22,7 +22,7 @@ def main():
             window.resize(WIDTH, 6000)
             window.open(pathlib.Path(page).resolve(), fragment)
             window.settled()
-            top = window.run("const e = document.getElementById(arguments[0]);"
+            top = window.run("const e = arguments[0] === '-' ? null : document.querySelector(arguments[0]);"
                              "return e ? e.getBoundingClientRect().top + window.scrollY : 0", section)
             # The bar with the speed stays at the window's top.
             window.run("document.getElementById('controls').style.position = 'static'")

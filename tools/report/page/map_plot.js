@@ -87,12 +87,13 @@ class MapPlot {
     }
     this.choose(this.nodeAt(event));
   }
+  // A step across the speed leaves the slider, whose speeds lie closer, where it is.
   choose(node) {
     if (!node) return;
+    const before = state.mapNode && this.speedOf(state.mapNode), speed = this.speedOf(node);
     state.mapNode = node;
     this.tell(node);
-    const speed = this.speedOf(node);
-    if (speed !== null && points.count > 0) chooseSpeed(nearestIndex(speed));
+    if (speed !== null && (speed !== before || !this.stepping) && points.count > 0) chooseSpeed(nearestIndex(speed));
     state.mapNode = node;
     this.view.dirty = "all";
     askFrame();
@@ -103,7 +104,9 @@ class MapPlot {
     if (!move || !state.mapNode) return;
     event.preventDefault();
     const [i, j] = state.mapNode;
+    this.stepping = true;
     this.choose([Math.max(0, Math.min(this.x.length - 1, i + move[0])), Math.max(0, Math.min(this.y.length - 1, j + move[1]))]);
+    this.stepping = false;
   }
   // The speed of a node on the slider's axis, or null where neither axis of the map is the speed.
   speedOf([i, j]) {
