@@ -16,7 +16,7 @@ report ../six_link/scene.toml --rpm 1300:1560:10 --modes 1 --theory nonlinear --
   first_steps.html '#speed=27&angle=60&play=0' - first_steps.png \
   first_steps.html '#speed=27&angle=60&play=0' '#map-section' first_steps_map.png \
   first_steps.html '#speed=27&angle=60&play=0' '.card:has([data-view=stress])' first_steps_stress.png \
-  first_steps.html '#speed=27&angle=60&play=0' '#speeds' first_steps_speeds.png \
+  first_steps.html '#speed=27&angle=60&play=0' '.cards:has([data-chart=growth]) .card:not(.wide)' first_steps_speeds.png \
   six_link.html '#speed=9&angle=120&play=0' - six_link.png \
   six_link.html '#speed=9&angle=120&play=0' '#speeds' six_link_speeds.png \
   slider_crank.html '#speed=20&angle=300&play=0' - slider_crank.png \

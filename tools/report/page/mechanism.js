@@ -180,8 +180,16 @@ const setUpMechanism = () => {
     angle.value = degrees;
     value.textContent = `${degrees}°`;
   });
-  const view = addView(mechanismCanvas, () => { drawMechanism(); describeMechanism(); }, drawMechanism);
+  const view = addView(mechanismCanvas, () => { fitMechanism(); drawMechanism(); describeMechanism(); }, drawMechanism);
   return view;
+};
+// No higher than the mechanism and its vibration need.
+const fitMechanism = () => {
+  const motion = motionHere();
+  if (!motion) return;
+  const {low, high} = reach(motion.rigid || motion), share = (high[1] - low[1]) / (high[0] - low[0] || 1);
+  const most = `${Math.round(Math.max(340, Math.min(640, 68 + share * sizeOf(mechanismCanvas).width)))}px`;
+  if (mechanismCanvas.style.maxHeight !== most) mechanismCanvas.style.maxHeight = most;
 };
 const describeMechanism = () => {
   const motion = motionHere();
