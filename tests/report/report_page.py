@@ -36,7 +36,7 @@ class ReportPages(PageTest):
         self.browser.open(self.six_link())
         for index, rpm in ((0, 300), (4, 1500), (9, 3000)):
             self.browser.choose(index)
-            steady = answer("steady", scene, "--rpm", rpm)
+            steady = answer("steady", scene, *self.MODES, "--rpm", rpm)
             self.assertEqual(self.browser.text("rpm-value"), json.dumps(steady["rpm"]))
             for rod in ("AB", "CD"):
                 self.assertEqual(self.browser.text(f"verdict-{rod}"), steady["rods"][rod]["verdict"])
@@ -132,7 +132,7 @@ class ReportPages(PageTest):
         ActionChains(self.browser.driver).move_to_element(canvas).click().perform()
         self.browser.settled()
         i, j = self.browser.run("return state.mapNode")
-        table = answer("map", scenes.FOLDER / "six_link.toml", "--x", "rpm=300:3000:7", "--y", "*.J=30:90:4")
+        table = answer("map", scenes.FOLDER / "six_link.toml", *self.MODES, "--x", "rpm=300:3000:7", "--y", "*.J=30:90:4")
         told = self.browser.run("return document.querySelector('.map-reading').textContent")
         self.assertIn(table["verdict"][j][i], told)
         chosen = float(self.browser.text("rpm-value"))
@@ -140,14 +140,14 @@ class ReportPages(PageTest):
         self.assert_quiet()
 
     def test_verdict_letters_are_those_of_the_sweep_and_nothing_lies_between(self):
-        sweep = answer("sweep", scenes.FOLDER / "six_link.toml", "--rpm", "300:3000:300")
+        sweep = answer("sweep", scenes.FOLDER / "six_link.toml", *self.MODES, "--rpm", "300:3000:300")
         self.browser.open(self.six_link())
         for rod in ("AB", "CD"):
             shown = self.browser.run("return [...Array(points.count).keys()].map((k) => verdictOf(arguments[0], k))", rod)
             self.assertEqual(shown, sweep["rods"][rod]["verdict"])
 
     def test_curves_over_the_turn_have_the_peaks_of_the_json(self):
-        steady = answer("steady", scenes.FOLDER / "six_link.toml", "--rpm", 1500)
+        steady = answer("steady", scenes.FOLDER / "six_link.toml", *self.MODES, "--rpm", 1500)
         self.browser.open(self.six_link())
         self.browser.choose(4)
         for rod in ("AB", "CD"):

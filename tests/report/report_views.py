@@ -3,6 +3,7 @@
 import base64
 import csv
 import json
+import shutil
 import unittest
 
 import pages
@@ -305,7 +306,7 @@ class ReportViews(PageTest):
         self.assertEqual(self.browser.text("rpm-value"), "7000.0")
         self.assert_quiet()
 
-    # Phones and paper
+    # Phones, paper, and readers without script
 
     def test_narrow_screen_needs_no_sideways_scrolling_with_bands_and_stress(self):
         self.browser.resize(360, 800)
@@ -329,6 +330,23 @@ class ReportViews(PageTest):
             self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
         self.assertEqual(shown, [False, False, False, True, True, True, True, True])
         self.assert_quiet()
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is missing")
+    def test_readers_without_script_see_the_pictures_of_the_commands(self):
+        page = self.page("still", scenes.FOLDER / "four_bar.toml", "--rpm", "100:300:100", "--modes", "1")
+        command = self.browser.driver.execute_cdp_cmd
+        command("Emulation.setScriptExecutionDisabled", {"value": True})
+        try:
+            self.browser.driver.get(page.as_uri())
+            shown = command("Runtime.evaluate", {"returnByValue": True, "expression":
+                "[...document.querySelectorAll('noscript img')].map((i) => [i.naturalWidth, i.getClientRects().length, i.alt.length])"})["result"]["value"]
+        finally:
+            command("Emulation.setScriptExecutionDisabled", {"value": False})
+        self.assertGreaterEqual(len(shown), 5)
+        for width, drawn, words in shown:
+            self.assertGreater(width, 300)
+            self.assertEqual(drawn, 1)
+            self.assertGreater(words, 5)
 
 
 if __name__ == "__main__":
