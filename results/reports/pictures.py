@@ -22,10 +22,11 @@ def main():
             window.resize(WIDTH, 6000)
             window.open(pathlib.Path(page).resolve(), fragment)
             window.settled()
-            top = window.run("const e = arguments[0] === '-' ? null : document.querySelector(arguments[0]);"
-                             "return e ? e.getBoundingClientRect().top + window.scrollY : 0", section)
             # The bar with the speed stays at the window's top.
             window.run("document.getElementById('controls').style.position = 'static'")
+            window.settled()
+            top = window.run("const e = arguments[0] === '-' ? null : document.querySelector(arguments[0]);"
+                             "return e ? e.getBoundingClientRect().top + window.scrollY : 0", section)
             shot = window.driver.execute_cdp_cmd("Page.captureScreenshot", {
                 "captureBeyondViewport": True, "clip": {"x": 0, "y": top, "width": WIDTH, "height": HEIGHT, "scale": 1}})
             pathlib.Path(out).write_bytes(base64.b64decode(shot["data"]))

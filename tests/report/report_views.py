@@ -116,6 +116,14 @@ class ReportViews(PageTest):
             unstable = next(row for row in table if "unstable points" in row[0])
             self.assertEqual([int(v) for v in unstable[1:]], [side["verdict"].count("unstable") for side in (band["at_from"], sweep, band["at_to"])])
 
+    def test_bands_of_a_system_of_equations_do_not_speak_of_links(self):
+        self.browser.open(self.page("bands", scenes.FOLDER / "mathieu.toml", "--omega", "0.5:2.5:0.5", "--band", "damping=0.5:2", "--no-plots"))
+        self.browser.settled()
+        for name in ("shown-band", "sweep-bands"):
+            self.assertIn("damping times 0.5 to 2", self.browser.text(name))
+        self.assertNotIn("elastic link", self.browser.text("speeds"))
+        self.assert_quiet()
+
     def test_what_linear_theory_leaves_out_of_the_growth_rate_stands_beside_it(self):
         steady = answer("steady", CRANK, "--rpm", 5000, "--modes", 3)
         self.browser.open(self.crank(), "#speed=8&play=0")

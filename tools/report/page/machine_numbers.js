@@ -79,7 +79,7 @@ const knownBand = (band) => {
   const numbersOf = band.quantities.map((one) => element("tr", {}, element("td", {}, `${one.of}: ${one.name}${one.unit ? ` [${raised(one.unit)}]` : ""}`),
     text(bandValue(one.from, one.error_from)), text(bandValue(one.nominal, one.error)), text(bandValue(one.to, one.error_to)), text(slope(one))));
   const verdicts = [band.verdict_from, band.verdict, band.verdict_to];
-  return tableOf(`${band.parameter} of the elastic links times ${short(band.from)} to ${short(band.to)}`, ["", `${short(band.from)} times`, "as given", `${short(band.to)} times`, "% per % of it"],
+  return tableOf(bandWords(band), ["", `${short(band.from)} times`, "as given", `${short(band.to)} times`, "% per % of it"],
     [...(verdicts.some(Boolean) ? [element("tr", {}, element("td", {}, "verdict"), verdicts.map((verdict) => element("td", {}, verdictMark(verdict))), element("td", {}, ""))] : []), ...numbersOf]);
 };
 const bandTables = () => {

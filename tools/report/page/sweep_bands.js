@@ -1,7 +1,7 @@
 // How response and growth rate along the speed move with damping, Young's modulus or mass of the elastic links: what the
 // curves as given and with both factors cover.
 const sweepBands = report.sweep_bands || [];
-const bandWords = (band) => `${band.parameter} of the elastic links times ${short(band.from)} to ${short(band.to)}`;
+const bandWords = (band) => `${band.parameter}${isLinkage ? " of the elastic links" : ""} times ${short(band.from)} to ${short(band.to)}`;
 
 // Of a column over all rows the values at the computed points, which the bands have.
 const atPoints = (x, values) => {
@@ -62,6 +62,6 @@ const setUpSweepBands = () => {
 const sweepBandTables = () => {
   if (sweepBands.length === 0) return null;
   const number = (value) => element("td", value === null ? {} : {"data-value": String(value)}, short(value, 5));
-  return element("div", {id: "sweep-bands"}, sweepBands.map((band) => tableOf(`${band.parameter} of the elastic links times ${short(band.from)} to ${short(band.to)}, largest of all points`, ["", `${short(band.from)} times`, "as given", `${short(band.to)} times`],
+  return element("div", {id: "sweep-bands"}, sweepBands.map((band) => tableOf(`${bandWords(band)}, largest of all points`, ["", `${short(band.from)} times`, "as given", `${short(band.to)} times`],
     (band.largest || []).map((row) => element("tr", {}, element("td", {}, raised(row.name)), number(row.from), number(row.given), number(row.to))))));
 };
