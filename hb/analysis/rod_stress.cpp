@@ -23,12 +23,6 @@ FourierSeries axial_series(const RodCoefficients& rod, double speed) {
   return sum;
 }
 
-std::optional<double> least_yield_safety(const RodStress& stress, const Body& link) {
-  const double yield = link.elastic->strength.yield;
-  if (!stress.height_known || !(yield > 0)) return std::nullopt;
-  return yield / (stress.axial + stress.bending);
-}
-
 // N(x, tau) = EJ (f4 + f3 x - f2 x^2/2), README of lib (M4): largest at an end, or at x = f3/f2 inside.
 RodStress rod_stress(const Body& link, const RodCoefficients& rod, double speed, double bending_moment) {
   const Elastic& elastic = *link.elastic;

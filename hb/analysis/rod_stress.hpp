@@ -1,8 +1,6 @@
 // What a rod carries over the turn, beside what the theory of small deflections allows for.
 #pragma once
 
-#include <optional>
-
 #include "lib/linkage/linkage.hpp"
 #include "lib/rod/rod.hpp"
 
@@ -23,10 +21,6 @@ struct RodStress {
 
   double buckling_share() const { return compression / buckling_load; }
 };
-
-// S_y over both largest stresses as if at one place and time: the safety against yielding is no less. Empty without a
-// section or a yield strength.
-[[nodiscard]] std::optional<double> least_yield_safety(const RodStress& stress, const Body& link);
 
 // f_2, f_3, f_4 at one speed, lib/README.md (M4).
 [[nodiscard]] FourierSeries axial_series(const RodCoefficients& rod, double speed);

@@ -164,15 +164,40 @@ std::vector<SensitivityBand> sensitivity_bands(const Scene& scene, const Request
   return found;
 }
 
-std::vector<SweepBand> sweep_bands(const Scene& scene, SweepRequest request, const std::vector<BandRequest>& bands,
-                                   Work& work) {
-  if (!is_speed(request.x.path))
-    throw RequestError("band", "beside a sweep along " + request.x.path, "with a sweep along the speed");
+namespace {
+
+// The scenes of a sweep with their elastic links changed; along the speed one scene.
+SceneFamily scaled_family(const SceneFamily& family, const Along& x, BandParameter parameter, double factor) {
+  if (is_speed(x.path)) return scaled_scene(family.scene(), parameter, factor);
+  const Scene first = some_scene(family, {&x});
+  const auto scaled = [=](const std::vector<double>& values) {
+    return scaled_scene(family.scene({{x.path, values[0]}}), parameter, factor).model;
+  };
+  return {Numbers{{x.path, x.values.front()}}, scaled, first.units};
+}
+
+}  // namespace
+
+std::vector<SweepBand> sweep_bands(const SceneFamily& family, SweepRequest request,
+                                   const std::vector<BandRequest>& bands, Work& work) {
+  if (bands.empty()) return {};
+  // What the scene's [analysis] says, which a family of functions does not.
+  const Scene scene = some_scene(family, {&request.x});
+  const Settings settings = settings_of(request, scene);
+  request.modes = settings.modes;
+  request.tolerance = settings.tolerance;
+  if (!is_speed(request.x.path)) {
+    const Speed speed = speed_of(request, scene);
+    (speed.in_rpm ? request.rpm : request.omega) = speed.in_rpm ? speed.rpm : speed.omega;
+  }
   request.search = false;
   std::vector<SweepBand> found;
-  for (const BandRequest& band : bands)
-    found.push_back({band, sweep(SceneFamily(scaled_scene(scene, band.parameter, band.from)), request, work),
-                     sweep(SceneFamily(scaled_scene(scene, band.parameter, band.to)), request, work)});
+  for (const BandRequest& band : bands) {
+    const auto swept = [&](double factor) {
+      return sweep(scaled_family(family, request.x, band.parameter, factor), request, work);
+    };
+    found.push_back({band, swept(band.from), swept(band.to)});
+  }
   return found;
 }
 

@@ -42,13 +42,14 @@ struct SensitivityBand {
 [[nodiscard]] std::vector<SensitivityBand> sensitivity_bands(const Scene& scene, const Request& request,
                                                              const std::vector<BandRequest>& bands);
 
-// The same at every point of a sweep along the speed, without slopes and without what lies between the points.
+// The same at every point of a sweep, without slopes and without what lies between the points.
 struct SweepBand {
   BandRequest asked;
   Sweep low, high;
 };
-// Throws RequestError, also for a sweep along another number.
-[[nodiscard]] std::vector<SweepBand> sweep_bands(const Scene& scene, SweepRequest request,
+// The factor is applied to the scene at each value of what is swept: along AB.E with the band E=0.9:1.1 each value is
+// multiplied. Throws RequestError.
+[[nodiscard]] std::vector<SweepBand> sweep_bands(const SceneFamily& family, SweepRequest request,
                                                  const std::vector<BandRequest>& bands, Work& work);
 
 }  // namespace hb

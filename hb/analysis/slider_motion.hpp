@@ -11,7 +11,7 @@ namespace hb {
 struct SliderMotion {
   std::string name;
   FourierSeries position;  // over the crank angle: from the guide's point along its direction
-  double speed = 0;  // of the crank, rad per unit time
+  double speed = 0;  // rad per unit time, of the angle: the crank's; over T turns 1/T of it
 
   [[nodiscard]] FourierSeries velocity() const;  // per unit time
   [[nodiscard]] FourierSeries acceleration() const;

@@ -12,44 +12,28 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Stresses over the turn at places x: of N/F and of M e/J, a row for each place.
-struct Field {
-  MatrixXd axial, bending;
-};
-
-class Stresses {
- public:
-  Stresses(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q, Index num_samples)
-      : link_(link), rod_(rod), speed_(speed), q_(q), num_samples_(num_samples) {
-    axial_ = fourier::synthesise(axial_series(rod, speed), num_samples);
-  }
-
-  Field at(const Eigen::VectorXd& x) const {
-    const Elastic& elastic = *link_.elastic;
+// N along the rigid mechanism's rod and M of the response q; q and rod outlive it.
+StressField linear_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                         Index num_samples) {
+  return [&link, &rod, speed, &q, num_samples,
+          f = fourier::synthesise(axial_series(rod, speed), num_samples)](const Eigen::Ref<const Eigen::VectorXd>& x) {
+    const Elastic& elastic = *link.elastic;
     const double EJ = elastic.youngs_modulus * elastic.second_moment;
-    Field field;
-    field.axial.resize(x.size(), num_samples_);
+    StressSamples field;
+    field.axial.resize(x.size(), num_samples);
     for (Index i = 0; i < x.size(); ++i)
-      field.axial.row(i) =
-          EJ / elastic.area * (axial_.row(2) + x(i) * axial_.row(1) - 0.5 * x(i) * x(i) * axial_.row(0));
+      field.axial.row(i) = EJ / elastic.area * (f.row(2) + x(i) * f.row(1) - 0.5 * x(i) * x(i) * f.row(0));
     field.bending = elastic.section_height / 2 / elastic.second_moment *
-                    rod_field(link_, rod_, speed_, q_, x, num_samples_).bending_moment;
+                    rod_field(link, rod, speed, q, x, num_samples).bending_moment;
     return field;
-  }
-  // Over the turn at one place and fibre.
-  Range range(double x, int side) const {
-    const Field field = at(Eigen::VectorXd::Constant(1, x));
-    return fourier::range(fourier::analyse(field.axial + side * field.bending), 0);
-  }
+  };
+}
 
- private:
-  const Body& link_;
-  const RodCoefficients& rod_;
-  double speed_;
-  const FourierSeries& q_;
-  Index num_samples_;
-  MatrixXd axial_;  // f_2, f_3, f_4
-};
+// Over the turn at one place and fibre.
+Range range_at(const StressField& field, double x, int side) {
+  const StressSamples at = field(Eigen::VectorXd::Constant(1, x));
+  return fourier::range(fourier::analyse(at.axial + side * at.bending), 0);
+}
 
 // The largest value of a smooth function between a and b by golden sections.
 double largest_between(double a, double b, const std::function<double(double)>& value) {
@@ -78,8 +62,9 @@ struct Place {
 };
 
 // Where `measure` of the turn's range is largest: on a grid, then between its neighbours.
-Place worst_place(const Stresses& stresses, double length, Index points, const MatrixXd (&by_side)[2],
+Place worst_place(const StressField& field, double length, const MatrixXd (&by_side)[2],
                   const std::function<double(const Range&)>& measure) {
+  const Index points = by_side[0].rows();
   double most = -1;
   Index best = 0;
   int side = 1;
@@ -94,72 +79,63 @@ Place worst_place(const Stresses& stresses, double length, Index points, const M
   const auto x_of = [&](Index i) {
     return length * static_cast<double>(std::clamp<Index>(i, 0, points - 1)) / static_cast<double>(points - 1);
   };
-  const auto value = [&](double x) { return measure(stresses.range(x, side)); };
+  const auto value = [&](double x) { return measure(range_at(field, x, side)); };
   const double inside = largest_between(x_of(best - 1), x_of(best + 1), value);
   return {value(inside) > value(x_of(best)) ? inside : x_of(best), side};
 }
 
 }  // namespace
 
-StressEnvelope stress_envelope(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
-                               Index points) {
-  Index H = std::max<Index>(q.num_harmonics(), 8);
-  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
-  constexpr Index samples_per_harmonic = 16;
+StressEnvelope stress_envelope(const Body& link, const StressField& field, Index points) {
   StressEnvelope envelope;
   envelope.x = Eigen::VectorXd::LinSpaced(points, 0, link.length);
-  const Field field = Stresses(link, rod, speed, q, fourier::fast_length(samples_per_harmonic * H)).at(envelope.x);
+  const StressSamples at = field(envelope.x);
   for (int s = 0; s < 2; ++s) {
-    const MatrixXd sigma = field.axial + (s == 0 ? 1 : -1) * field.bending;
+    const MatrixXd sigma = at.axial + (s == 0 ? 1 : -1) * at.bending;
     envelope.smallest[s] = sigma.rowwise().minCoeff();
     envelope.largest[s] = sigma.rowwise().maxCoeff();
   }
   return envelope;
 }
 
-StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
-                         const FourierSeries& more_modes, double error_bound) {
-  const Elastic& elastic = *link.elastic;
-  const double e = elastic.section_height / 2;
-  Index H = std::max({q.num_harmonics(), more_modes.num_harmonics(), Index{8}});
+StressEnvelope stress_envelope(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                               Index points) {
+  Index H = std::max<Index>(q.num_harmonics(), 8);
   for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
-  const Index N = fourier::fast_length(4 * H + 4), points = 8 * q.num_components() + 17;
-  const Stresses stresses(link, rod, speed, q, N);
-  const Eigen::VectorXd grid = Eigen::VectorXd::LinSpaced(points, 0, link.length);
-  const Field field = stresses.at(grid);
-  const MatrixXd by_side[2] = {field.axial + field.bending, field.axial - field.bending};
+  constexpr Index samples_per_harmonic = 16;
+  return stress_envelope(link, linear_field(link, rod, speed, q, fourier::fast_length(samples_per_harmonic * H)),
+                         points);
+}
 
+Eigen::VectorXd stress_places(const Body& link, Index num_modes) {
+  return Eigen::VectorXd::LinSpaced(8 * num_modes + 17, 0, link.length);
+}
+
+StressCycle stress_cycle(const Body& link, const StressField& field, const StressSamples& grid, double error) {
+  const MatrixXd by_side[2] = {grid.axial + grid.bending, grid.axial - grid.bending};
   StressCycle cycle;
-  const Place largest = worst_place(stresses, link.length, points, by_side, magnitude);
-  const Range there = stresses.range(largest.x, largest.side);
+  cycle.error = error;
+  const Place largest = worst_place(field, link.length, by_side, magnitude);
+  const Range there = range_at(field, largest.x, largest.side);
   const Extremum& peak = there.max.value >= -there.min.value ? there.max : there.min;
   cycle.max_abs = std::abs(peak.value);
   cycle.crank_angle = peak.crank_angle;
   cycle.x = largest.x;
   cycle.side = largest.side;
-  const Place widest = worst_place(stresses, link.length, points, by_side, amplitude);
-  const Range turn = stresses.range(widest.x, widest.side);
+  const Place widest = worst_place(field, link.length, by_side, amplitude);
+  const Range turn = range_at(field, widest.x, widest.side);
   cycle.amplitude = amplitude(turn);
   cycle.mean = mean(turn);
   cycle.amplitude_x = widest.x;
   cycle.amplitude_side = widest.side;
 
-  // |error of q_i| <= bound max |q|: in w'' sum of i^2 times that. The cut: twice what more modes change.
-  const auto I = static_cast<double>(q.num_components());
-  cycle.error = error_bound * I * (I + 1) * (2 * I + 1) / 6 * field.bending.cwiseAbs().maxCoeff();
-  if (more_modes.c.size() > 0) {
-    const MatrixXd finer = rod_field(link, rod, speed, more_modes, grid, N).bending_moment;
-    cycle.error += 2 * (e / elastic.second_moment * finer - field.bending).cwiseAbs().maxCoeff();
-  }
-
-  const Strength& strength = elastic.strength;
-  if (strength.yield > 0) cycle.yield = safety_factor(cycle.max_abs / strength.yield, cycle.error / strength.yield);
+  const Strength& strength = link.elastic->strength;
+  if (strength.yield > 0) cycle.yield = safety_factor(cycle.max_abs / strength.yield, error / strength.yield);
   if (fatigue_line(strength) != FatigueLine::none) {
     const auto usage = [&](const Range& range) { return fatigue_usage(strength, mean(range), amplitude(range)); };
-    const Place worst = worst_place(stresses, link.length, points, by_side, usage);
-    const Range at = stresses.range(worst.x, worst.side);
-    const double error = fatigue_usage(strength, cycle.error, cycle.error);
-    cycle.fatigue = {safety_factor(usage(at), error),
+    const Place worst = worst_place(field, link.length, by_side, usage);
+    const Range at = range_at(field, worst.x, worst.side);
+    cycle.fatigue = {safety_factor(usage(at), fatigue_usage(strength, error, error)),
                      mean(at),
                      amplitude(at),
                      worst.x,
@@ -168,6 +144,27 @@ StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double sp
                      at.min.crank_angle};
   }
   return cycle;
+}
+
+StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                         const FourierSeries& more_modes, double error_bound) {
+  const Elastic& elastic = *link.elastic;
+  Index H = std::max({q.num_harmonics(), more_modes.num_harmonics(), Index{8}});
+  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
+  const Index N = fourier::fast_length(4 * H + 4);
+  const StressField field = linear_field(link, rod, speed, q, N);
+  const Eigen::VectorXd places = stress_places(link, q.num_components());
+  const StressSamples grid = field(places);
+
+  // |error of q_i| <= bound max |q|: in w'' sum of i^2 times that. The cut: twice what more modes change.
+  const auto I = static_cast<double>(q.num_components());
+  double error = error_bound * I * (I + 1) * (2 * I + 1) / 6 * grid.bending.cwiseAbs().maxCoeff();
+  if (more_modes.c.size() > 0) {
+    const double per_moment = elastic.section_height / 2 / elastic.second_moment;
+    const MatrixXd finer = rod_field(link, rod, speed, more_modes, places, N).bending_moment;
+    error += 2 * (per_moment * finer - grid.bending).cwiseAbs().maxCoeff();
+  }
+  return stress_cycle(link, field, grid, error);
 }
 
 }  // namespace hb

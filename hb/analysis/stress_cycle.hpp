@@ -1,6 +1,7 @@
 // What a cross-section carries over a turn: axial and bending stress together, at the outer fibres of the section.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "hb/analysis/safety.hpp"
@@ -34,8 +35,20 @@ struct StressCycle {
   std::optional<FatigueSafety> fatigue;  // where fatigue_line is known
 };
 
-// `more_modes`: the response with more modes, or empty: then the error is that of `error_bound` alone, which is
-// relative to the largest |q|. Needs elastic.section_height.
+// Stresses of a motion at places x, a row for each, at equally spaced crank angles: of N/F and of M e/J.
+struct StressSamples {
+  Eigen::MatrixXd axial, bending;
+};
+using StressField = std::function<StressSamples(const Eigen::Ref<const Eigen::VectorXd>& x)>;
+
+// The places at which a cycle is looked for first, joint 0 to joint 1.
+[[nodiscard]] Eigen::VectorXd stress_places(const Body& link, Eigen::Index num_modes);
+// `grid`: the field at these places; `error`: of its stresses. Needs elastic.section_height.
+[[nodiscard]] StressCycle stress_cycle(const Body& link, const StressField& field, const StressSamples& grid,
+                                       double error);
+
+// By the linear theory. `more_modes`: the response with more modes, or empty: then the error is that of `error_bound`
+// alone, which is relative to the largest |q|. Needs elastic.section_height.
 [[nodiscard]] StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double speed,
                                        const FourierSeries& q, const FourierSeries& more_modes, double error_bound);
 
@@ -44,6 +57,7 @@ struct StressEnvelope {
   Eigen::VectorXd x;
   Eigen::VectorXd smallest[2], largest[2];  // side +1, side -1
 };
+[[nodiscard]] StressEnvelope stress_envelope(const Body& link, const StressField& field, Eigen::Index points);
 [[nodiscard]] StressEnvelope stress_envelope(const Body& link, const RodCoefficients& rod, double speed,
                                              const FourierSeries& q, Eigen::Index points);
 

@@ -12,6 +12,10 @@ namespace hb {
 // chord, n of a guide), then the torque; a column per crank angle.
 struct ForceSamples {
   Eigen::MatrixXd values;
+  // What the mechanism does to its frame, joints, motor and applied slider forces together: force x, y (global axes),
+  // moment about the crank's pivot.
+  Eigen::Matrix3Xd frame;
+  Eigen::MatrixXd sliders;  // distance of each slider from its guide's point along its direction, in the dyads' order
   std::optional<ExactBreakdown> breakdown;
 };
 

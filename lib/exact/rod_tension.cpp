@@ -6,11 +6,37 @@ namespace hb {
 
 using Eigen::Index;
 
-std::vector<TensionRange> rod_tensions(const ExactModel& model, double speed, const CrankAngles& angles,
-                                       const RitzSamples& motion) {
+// Barycentric interpolation, p(x) = sum w_k N_k/(x - x_k) / sum w_k/(x - x_k), w_k = 1/prod_{j != k} (x_k - x_j);
+// distances in quarters of the length, for which the products neither over- nor underflow.
+Eigen::MatrixXd RodTension::at(const Eigen::Ref<const Eigen::VectorXd>& places) const {
+  const Index n = x.size();
+  const double unit = x.maxCoeff() / 4;
+  Eigen::VectorXd weight(n);
+  for (Index k = 0; k < n; ++k) {
+    double product = 1;
+    for (Index j = 0; j < n; ++j)
+      if (j != k) product *= (x(k) - x(j)) / unit;
+    weight(k) = 1 / product;
+  }
+  Eigen::MatrixXd result(places.size(), N.cols());
+  for (Index i = 0; i < places.size(); ++i) {
+    const Eigen::VectorXd distance = (places(i) - x.array()).matrix() / unit;
+    Index nearest = 0;
+    if (distance.cwiseAbs().minCoeff(&nearest) == 0) {
+      result.row(i) = N.row(nearest);
+      continue;
+    }
+    const Eigen::VectorXd share = weight.cwiseQuotient(distance);
+    result.row(i) = share.transpose() * N / share.sum();
+  }
+  return result;
+}
+
+std::vector<RodTension> rod_tensions(const ExactModel& model, double speed, const CrankAngles& angles,
+                                     const RitzSamples& motion) {
   const ExactModel::Forces all = model.forces(speed, angles, motion);
   const std::complex<double> gravity(0, model.linkage().gravity);
-  std::vector<TensionRange> result;
+  std::vector<RodTension> result;
   for (std::size_t r = 0; r < model.rods().size(); ++r) {
     const int link = model.rods()[r].link;
     const auto body = static_cast<std::size_t>(link), dyad = (body - 1) / 2;
@@ -35,8 +61,9 @@ std::vector<TensionRange> rod_tensions(const ExactModel& model, double speed, co
     const exact::RodConstants constants = exact::constants_of(rod);
     const exact::BentRod bent(rule, constants, motion.q.middleRows(first, I), motion.q1.middleRows(first, I),
                               motion.q2.middleRows(first, I));
-    const exact::Field N = bent.tension(at, Y);
-    result.push_back({N.minCoeff(), N.maxCoeff()});
+    RodTension tension{Eigen::VectorXd(rule.num_points() + 2), bent.tension(at, Y).matrix()};
+    tension.x << rule.x, 0, rod.length;
+    result.push_back(std::move(tension));
   }
   return result;
 }

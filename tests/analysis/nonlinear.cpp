@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "hb/analysis/machine_loads.hpp"
 #include "hb/hb.hpp"
+#include "lib/exact/rod_tension.hpp"
 
 namespace {
 
@@ -13,6 +15,14 @@ using namespace hb;
 const std::string nonlinear_scenes = HB_SOURCE_DIR "/tests/scenes/";
 constexpr Only motion_alone{.steady = true, .stability = false, .reactions = false, .shape = false};
 constexpr Only with_stability{.steady = true, .stability = true, .reactions = false, .shape = false};
+
+// Pulled and pushed along, thin enough to bend far.
+const char* const slider_crank_text =
+    "[crank]\npivot = [0, 0]\nlength = 0.05\n[[dyad]]\non = \"crank\"\nbranch = 1\ncoupler = { name = \"rod\", length "
+    "= "
+    "0.3, elastic = { material = \"steel\", damping_ratio = 0.01, yield = 350e6, tensile = 500e6, endurance = 200e6, "
+    "section = { shape = \"rectangle\", width = 0.016, height = 0.008 } } }\nslider = { name = \"piston\", mass = 0.3, "
+    "guide = [0, 0] }\n";
 
 Request at(double rpm, int modes, const Only& only) {
   Request request;
@@ -139,6 +149,89 @@ TEST(NonlinearFromCpp, StressIsThatOfTheLinearTheoryAtLowSpeed) {
     EXPECT_NEAR(a.bending, b.bending, 1e-3 * b.bending);
     EXPECT_NEAR(a.strain, b.strain, 0.01 * b.strain);
   }
+}
+
+// At low speed they are those of the linear theory, which takes other sums: body loads, the rigid axial force.
+TEST(NonlinearFromCpp, CycleAndShakingForceAreThoseOfTheLinearTheoryAtLowSpeed) {
+  const Scene scene = SceneSource(slider_crank_text, "rod.toml", ".").with({});
+  const Request request = at(600, 3, {});
+  const NonlinearSteady bent = nonlinear_steady(scene, request);
+  const SteadyResult straight = steady(scene, request);
+  const RodResult& rod = straight.rods[0];
+  const Body& link = std::get<Linkage>(scene.model).dyads[0].coupler;
+  const StressCycle cycle = stress_cycle(link, straight.model->coefficients.rods[0], straight.speed, rod.steady->q,
+                                         rod.more_modes, rod.steady->error_bound);
+  ASSERT_TRUE(bent.rods[0].cycle);
+  const StressCycle& found = *bent.rods[0].cycle;
+  EXPECT_NEAR(found.max_abs, cycle.max_abs, 1e-3 * cycle.max_abs);
+  EXPECT_NEAR(found.amplitude, cycle.amplitude, 1e-3 * cycle.amplitude);
+  EXPECT_NEAR(found.fatigue->factor.value, cycle.fatigue->factor.value, 1e-3 * cycle.fatigue->factor.value);
+  EXPECT_GT(found.error, 0);
+  EXPECT_LT(found.error, 0.01 * found.max_abs);
+  const MachineLoads loads = *machine_loads(*straight.model, straight);
+  for (double tau = 0; tau < 6; tau += 0.7) {
+    const Eigen::VectorXd a = fourier::evaluate(bent.frame->elastic, tau),
+                          b = fourier::evaluate(loads.frame.elastic, tau),
+                          rigid = fourier::evaluate(loads.frame.rigid, tau);
+    EXPECT_NEAR((a - b).head<2>().norm(), 0, 1e-4 * loads.shaking_force.value) << tau;
+    EXPECT_NEAR(a(2), b(2), 1e-3 * 2) << tau;
+    EXPECT_GT((a - rigid).norm(), (a - b).norm());  // the comparison sees the bent rod
+  }
+}
+
+// What accelerates the masses has no mean over a period: only the weight has.
+TEST(NonlinearFromCpp, TheMeanShakingForceOfAStronglyBentMotionIsTheWeight) {
+  const Scene scene = SceneSource(slider_crank_text, "rod.toml", ".").with({});
+  const NonlinearSteady found = nonlinear_steady(scene, at(6000, 3, {}));
+  ASSERT_EQ(found.search, MotionSearch::found);
+  const auto& linkage = std::get<Linkage>(scene.model);
+  const Body& rod = linkage.dyads[0].coupler;
+  const double weight =
+      9.80665 * (rod.mass + std::get<Slider>(linkage.dyads[0].closing).mass + linkage.crank.body.mass);
+  ASSERT_TRUE(found.frame);
+  const double size = fourier::max_abs(found.frame->elastic, 0).value;
+  EXPECT_GT(fourier::max_abs(found.frame->elastic, 1).value, 1.5 * fourier::max_abs(found.frame->rigid, 1).value);
+  EXPECT_NEAR(found.frame->elastic.c(0, 0).real(), 0, 1e-6 * size);
+  EXPECT_NEAR(found.frame->elastic.c(1, 0).real(), -weight, 1e-6 * size);
+}
+
+// Against every place of a fine grid, from the axial force at the exact model's own points.
+TEST(NonlinearFromCpp, TheCycleOfABentRodIsTheWorstOfAllPlacesFibresAndAngles) {
+  const Scene scene = SceneSource(slider_crank_text, "rod.toml", ".").with({});
+  constexpr int modes = 6;
+  const NonlinearSteady found = nonlinear_steady(scene, at(6000, modes, {}));
+  ASSERT_EQ(found.search, MotionSearch::found);
+  const auto& linkage = std::get<Linkage>(scene.model);
+  const Body& rod = linkage.dyads[0].coupler;
+  const ExactModel exact(linkage, {{found.rods[0].link, modes}}, 200);
+  constexpr Eigen::Index N = 1024;
+  const std::vector<FourierSeries> q = {found.rods[0].q};
+  const RitzSamples motion = ritz_samples(q, found.speed, N);
+  const RodTension tension = rod_tensions(exact, found.speed, CrankAngles(linkage, N), motion)[0];
+  double largest = 0, widest = 0;
+  for (Eigen::Index i = 0; i < tension.x.size(); ++i)
+    for (const int side : {1, -1}) {
+      double low = HUGE_VAL, high = -HUGE_VAL;
+      for (Eigen::Index j = 0; j < N; ++j) {
+        double slope = 0, curvature = 0;
+        for (Eigen::Index k = 0; k < modes; ++k) {
+          const double wave = static_cast<double>(k + 1) * 3.14159265358979323846 / rod.length;
+          slope += wave * std::cos(wave * tension.x(i)) * motion.q(k, j);
+          curvature -= wave * wave * std::sin(wave * tension.x(i)) * motion.q(k, j);
+        }
+        const double bending = rod.elastic->youngs_modulus * curvature / std::sqrt(1 - slope * slope);
+        const double sigma = tension.N(i, j) / rod.elastic->area + side * bending * rod.elastic->section_height / 2;
+        low = std::min(low, sigma);
+        high = std::max(high, sigma);
+      }
+      largest = std::max({largest, high, -low});
+      widest = std::max(widest, (high - low) / 2);
+    }
+  const StressCycle& cycle = *found.rods[0].cycle;
+  // The grid leaves out the modes beyond, of which the cycle has the static part.
+  EXPECT_NEAR(cycle.max_abs, largest, 2e-3 * largest);
+  EXPECT_NEAR(cycle.amplitude, widest, 2e-3 * widest);
+  EXPECT_LT(cycle.max_abs, found.rods[0].stress->axial + found.rods[0].stress->bending);
 }
 
 TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {

@@ -213,7 +213,7 @@ TEST_F(Map, AreaWhereTheLinkageDoesNotCloseIsMarkedAndCounted) {
 
 TEST_F(Map, DampingRangeGivesBoundariesAtBothEnds) {
   const Json found =
-      document(scene("mathieu") + " --x omega=1.5:3:16 --y " + swing + "=0.1:0.6:6 --damping-range 0.5:2");
+      document(scene("mathieu") + " --x omega=1.5:3:16 --y " + swing + "=0.1:0.6:6 --band damping=0.5:2");
   ASSERT_EQ(found["damping_range"].size(), 2u);
   EXPECT_EQ(found["damping_range"][0]["factor"], 0.5);
   const auto tip = [](const Json& curves) {
@@ -289,6 +289,8 @@ TEST_F(Map, RefusesWrongRangesAndParameters) {
   refused(scene("mathieu") + good + " --set " + swing + "=1", "one of the two");
   refused(scene("mathieu") + good + " --damping-range 2:1", "LOW < HIGH");
   refused(scene("mathieu") + good + " --damping-range x", "LOW:HIGH");
+  refused(scene("mathieu") + good + " --band E=0.9:1.1", "allowed: one damping=A:B");
+  refused(scene("mathieu") + good + " --band damping=0.5:2 --damping-range 0.5:2", "one of the two");
   refused(scene("mathieu") + good + " --colour blue", "growth, turn, tenfold");
   refused(scene("six_link") + " --x rpm=300:600:5 --y AB.K=1:2:3", "AB.");
   refused(scene("six_link") + " --x rpm=300:600:5 --y AB.J=-5:10:3", "AB.J");

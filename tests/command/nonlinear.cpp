@@ -138,6 +138,7 @@ TEST_F(Nonlinear, StressesOfABranchAreThoseOfItsMotions) {
     if (between > 0) {
       EXPECT_TRUE(along["stress"]["bending"][between].is_null());
     }
+    EXPECT_FALSE(along["stress"].contains("mean"));  // no section is given
   }
 }
 

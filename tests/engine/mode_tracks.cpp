@@ -59,4 +59,39 @@ TEST(ModeTracks, PlacesWithoutAnswerAreGapsThatTracksGoOnBeyond) {
   EXPECT_NEAR(tracks[2][0].frequency, 3.8, 1e-12);
 }
 
+// Mode 1 is locked to an order line of the speed, which rises; its two real multipliers are named after different
+// modes, as are the conjugates of mode 2. What belongs together is told by the mean growth, which stays.
+TEST(ModeTracks, ALockedModeFollowsItsOrderLineWhateverItsExponentsAreNamed) {
+  constexpr int n = 12;
+  std::vector<Stability> along(n);
+  std::vector<TrackedPlace> places;
+  for (int k = 0; k < n; ++k) {
+    const double speed = 10 + 0.2 * k, split = 0.3 * k;
+    const auto fold = [&](double x) { return x - speed * std::round(x / speed); };
+    const bool wrong_names = k >= 4;
+    std::vector<Exponent>& all = along[static_cast<std::size_t>(k)].exponents;
+    all.push_back({.value = {-0.1 + split, 0}, .error = 1e-12, .mode = 0, .frequency = 3 * speed});
+    all.push_back({.value = {-0.1 - split, 0},
+                   .error = 1e-12,
+                   .mode = wrong_names ? 1 : 0,
+                   .frequency = (wrong_names ? 7 : 3) * speed});
+    for (const double sign : {1.0, -1.0})
+      all.push_back({.value = {-2, fold(sign * 72.0)},
+                     .error = 1e-12,
+                     .mode = wrong_names && sign < 0 ? 0 : 1,
+                     .frequency = wrong_names && sign < 0 ? std::abs(72 - 4 * speed) : 72.0});
+    places.push_back({speed, speed, &along[static_cast<std::size_t>(k)]});
+  }
+  const auto tracks = track_modes(places, 2);
+  for (int k = 0; k < n; ++k) {
+    const ModeState &locked = tracks[static_cast<std::size_t>(k)][0], &free = tracks[static_cast<std::size_t>(k)][1];
+    EXPECT_NEAR(locked.frequency, 3 * places[static_cast<std::size_t>(k)].speed, 1e-9) << k;
+    EXPECT_NEAR(locked.damping(), 0.1, 1e-12) << k;
+    EXPECT_TRUE(locked.locked) << k;
+    EXPECT_NEAR(free.frequency, 72, 1e-9) << k;
+    EXPECT_NEAR(free.growth, -2, 1e-12) << k;
+    EXPECT_FALSE(free.locked) << k;
+  }
+}
+
 }  // namespace

@@ -46,6 +46,12 @@ void add_scene_flags(CLI::App& app, CommonFlags& flags) {
             "kinds of pictures: svg, png, pdf, several joined by commas; default svg,png", "LIST");
   add_value(app, "--size", flags.size, "width and height of every picture in points, as in 640x400", "WxH");
   app.add_flag("--no-titles", flags.no_titles, "pictures without titles, for texts that have their own captions");
+  app.add_option("--label", flags.label,
+                 "another name of an axis in pictures: 'torque [N m]=Moment [N m]'; of sweep x=, of map x=, y= too; "
+                 "repeatable")
+      ->type_name("AXIS=TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--stats", flags.stats, "what was computed, what was skipped, times");
   add_value(app, "--time-limit", flags.time_limit,
             "end after S seconds with what is there, and with exit status 3 where that is not all", "S");
@@ -70,14 +76,6 @@ void add_band_flag(CLI::App& app, std::vector<std::string>& bands) {
                  "how the answer moves with damping=0.5:2, E=0.9:1.1 or mass=0.9:1.1 of the elastic links (factors); "
                  "repeatable")
       ->type_name("NAME=A:B")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-void add_label_flag(CLI::App& app, CommonFlags& flags, const char* axes) {
-  flags.label_axes = axes;
-  app.add_option("--label", flags.label, "name of an axis in pictures, as in x='height [mm]'; repeatable")
-      ->type_name("AXIS=TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }

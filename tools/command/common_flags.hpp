@@ -21,12 +21,13 @@ struct CommonFlags {
   std::optional<std::string> out;
   std::vector<std::string> set;
   std::vector<std::string> label;
-  std::string label_axes;  // that --label may name: "x", "xy"
+  std::string label_axes;  // that --label may name by these letters: "", "x", "xy"
   bool json = false, no_plots = false, no_titles = false, stats = false, html = false;
   bool growth_alone = false;  // the command takes --only growth and --only verdict
 };
 
-// SCENE, --set, --out, --json, --no-plots, --format, --size, --no-titles, --stats, --time-limit: for every subcommand.
+// SCENE, --set, --out, --json, --no-plots, --format, --size, --no-titles, --label, --stats, --time-limit: for every
+// subcommand.
 void add_scene_flags(CLI::App& app, CommonFlags& flags);
 // --modes, --tol, --rods, --only, --rpm, --omega, --threads, --steady-method, --stability-method.
 enum class SpeedsTaken { one, range };
@@ -35,8 +36,6 @@ void add_analysis_flags(CLI::App& app, CommonFlags& flags, SpeedsTaken speeds = 
 void add_html_flag(CLI::App& app, CommonFlags& flags);
 // --band: how the answer moves with damping, E or mass.
 void add_band_flag(CLI::App& app, std::vector<std::string>& bands);
-// --label: names of the axes of pictures; `axes`: "x" or "xy".
-void add_label_flag(CLI::App& app, CommonFlags& flags, const char* axes);
 // --measured: values that pictures show beside the computed ones.
 void add_measured_flag(CLI::App& app, std::string& file, const char* where);
 // --bound: for single speeds.

@@ -1,7 +1,9 @@
 #include "tools/command/delivery.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 
 #include "tools/command/command.hpp"
@@ -15,6 +17,16 @@ namespace {
 
 void warn(const OutputFolder& folder, const std::exception& error) {
   fmt::print(stderr, "hb {}: {}\n", folder.command(), printable(error.what()));
+}
+
+// A name that no axis has changes nothing: that is said, once the pictures are known.
+void say_unknown_labels(const OutputFolder& folder, const PictureStyle& style, const std::vector<Figure>& figures) {
+  if (style.labels.empty() || figures.empty()) return;
+  const std::vector<std::string> names = axis_names(figures);
+  for (const PictureStyle::Label& label : style.labels)
+    if (std::ranges::find(names, label.name) == names.end())
+      fmt::print(stderr, "hb {}: --label: no axis is named \"{}\", there are: {}\n", folder.command(),
+                 printable(label.name), printable(fmt::format("{}", fmt::join(names, ", "))));
 }
 
 // One stage: data, their script, the pictures.
@@ -54,6 +66,7 @@ int deliver(OutputFolder* folder, const PictureStyle& style, int status, const D
   try {
     if (style.drawn && delivery.write_more)
       figures = write_stage(*folder, style, std::move(figures), delivery.write_more);
+    say_unknown_labels(*folder, style, figures);
     if (!figures.empty()) drawn = draw_figures(figures, *folder, style);
     if (delivery.page) {
       const std::string page =

@@ -94,7 +94,8 @@ void add_map_command(CLI::App& app, int& status) {
       ->add_option("--boundary-tol", flags->map.boundary_tolerance,
                    "relative error of boundary points, 1e-14 to 0.01; default a tenth of --tol")
       ->type_name("T");
-  add_label_flag(*command, *flags, "xy");
+  flags->label_axes = "xy";
+  add_band_flag(*command, flags->map.bands);
   add_html_flag(*command, *flags);
   command->add_option("--x", flags->map.x, "first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

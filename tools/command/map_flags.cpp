@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "hb/analysis/sensitivity_band.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
@@ -93,6 +94,21 @@ std::optional<std::array<double, 2>> damping_factors(const std::string& text) {
   return factors;
 }
 
+// --band damping=A:B is --damping-range A:B.
+std::optional<std::array<double, 2>> damping_band(const std::vector<std::string>& bands) {
+  std::optional<std::array<double, 2>> factors;
+  for (const std::string& text : bands) {
+    const BandRequest band = parse_band(text);
+    if (band.parameter != BandParameter::damping || factors)
+      throw UsageError(fmt::format(
+          "--band: found \"{}\", allowed: one damping=A:B, whose boundaries the map shows; for another E or "
+          "mass the map again with --set, or hb sweep --band along one number",
+          text));
+    factors = {band.from, band.to};
+  }
+  return factors;
+}
+
 }  // namespace
 
 MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneInput& input) {
@@ -100,6 +116,10 @@ MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneI
   request.x = axis_range("--x", map.x, input.source);
   request.y = axis_range("--y", map.y, input.source);
   request.damping_range = damping_factors(map.damping_range);
+  if (const std::optional<std::array<double, 2>> band = damping_band(map.bands)) {
+    if (request.damping_range) throw UsageError("--band: found beside --damping-range, allowed: one of the two");
+    request.damping_range = band;
+  }
   const std::vector<Override> set = overrides(flags);
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();
   if (static_cast<double>(nx) * static_cast<double>(ny) > max_points)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hb/analysis/map_task.hpp"
 #include "tools/command/common_flags.hpp"
@@ -13,6 +14,7 @@ namespace hb::tools {
 struct MapFlags {
   std::string x, y, damping_range;
   std::string boundary_tolerance;  // --boundary-tol
+  std::vector<std::string> bands;  // --band, of which damping alone goes over maps
   bool no_boundaries = false, stress = false;
 };
 

@@ -29,12 +29,22 @@ PictureStyle picture_style(const CommonFlags& flags) {
     }
   }
   for (const std::string& label : flags.label) {
-    const bool y_too = flags.label_axes == "xy";
-    const std::string allowed = y_too ? "x=TEXT or y=TEXT, as in y='height [mm]'" : "x=TEXT, as in x='speed [rpm]'";
-    const std::string axis = label.substr(0, label.find('='));
-    if (label.size() < 3 || label[1] != '=' || !(axis == "x" || (y_too && axis == "y")))
-      refuse_flag("--label", label, allowed);
-    (axis == "x" ? style.x_label : style.y_label) = label.substr(2);
+    const std::size_t equals = label.find('=');
+    const std::string axis = label.substr(0, equals);
+    if (equals == std::string::npos || axis.empty() || equals + 1 == label.size())
+      refuse_flag("--label", label, "AXIS=TEXT, AXIS the name that stands there, as in 'torque [N m]=Moment [N m]'");
+    const std::string shown = label.substr(equals + 1);
+    if (axis == "x" && !flags.label_axes.empty())
+      style.x_label = shown;
+    else if (axis == "y" && flags.label_axes == "xy")
+      style.y_label = shown;
+    else if (axis == "x" || axis == "y")
+      refuse_flag("--label", label,
+                  flags.label_axes.empty()
+                      ? "an axis by the name that stands there, as in 'crank angle [deg]=Kurbelwinkel [Grad]'"
+                      : "x=TEXT, what is swept; other axes by the name that stands there");
+    else
+      style.labels.push_back({axis, shown});
   }
   if (!flags.size.empty()) {
     const std::string allowed =

@@ -73,7 +73,7 @@ int run_report(const ReportFlags& flags) {
   branches_asked.stop = stop_of();
   const bool nonlinear = is_nonlinear(flags.theory);
   if (nonlinear) require_nonlinear(*along, branches_asked);
-  const std::vector<BandRequest> bands_asked = bands_of(flags.bands, request, flags.theory);
+  const std::vector<BandRequest> bands_asked = bands_of(flags.bands, flags.theory);
   OutputFile file(*out.folder, "report");
 
   // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
@@ -123,7 +123,8 @@ void add_report_command(CLI::App& app, int& status) {
   command->remove_option(command->get_option("--stats"));
   add_theory_flags(*command, flags->theory);
   add_band_flag(*command, flags->bands);
-  for (const char* name : {"--format", "--size", "--no-titles"}) command->remove_option(command->get_option(name));
+  for (const char* name : {"--format", "--size", "--no-titles", "--label"})
+    command->remove_option(command->get_option(name));
   command->get_option("--no-plots")->description("no pictures for readers without JavaScript");
   command->add_option("--x", flags->x, "a map too: its first parameter, as in rpm=200:6000:100 (100 points)")
       ->type_name("PATH=A:B:N|A:B:xN");

@@ -13,6 +13,7 @@
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/measured_deviation.hpp"
 #include "tools/command/output_flags.hpp"
 #include "tools/command/scene_input.hpp"
 #include "tools/command/speed_flags.hpp"
@@ -54,7 +55,6 @@ int run_nonlinear(const SteadyFlags& flags) {
   std::optional<OutputFolder> folder;
   const Provenance origin = provenance(flags.line, input);
   if (out.folder) folder.emplace(*out.folder, "steady", origin);
-
   NonlinearSteady result = nonlinear_steady(scene, request, asked);
   const SceneModel& model = *result.model;
   say_time_limit(flags.time_limit, asked.stop, result.shortfalls);
@@ -64,7 +64,8 @@ int run_nonlinear(const SteadyFlags& flags) {
   delivery.printed = out.json ? json_text(document) : nonlinear_table(model, result);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    return result.turns == 1 ? steady_files(model, as_speed_result(result), false, place) : std::vector<Figure>();
+    return result.turns == 1 ? steady_files(model, as_speed_result(result), machine_files(result), place)
+                             : std::vector<Figure>();
   };
   if (out.html)
     delivery.page = [&](std::vector<PageText::Picture> pictures) {
@@ -85,17 +86,14 @@ int run_steady(const SteadyFlags& flags) {
   Request request = asked_request(flags, scene);
   const Output out = output(flags);
   set_speed(request, first_speed(flags, scene));
-  if (!flags.measured.empty() && !out.folder)
-    refuse_flag("--measured", "no --out", "beside --out DIR, whose pictures show it");
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
   const SteadyResult result = steady(scene, request);
   const SceneModel& model = *result.model;
-  MeasuredOverlay measured;
-  if (!flags.measured.empty())
-    measured = read_measured(flags.measured, {"crank angle", "deg"}, measured_quantities(model, result));
+  std::optional<MeasuredComparison> measured;
+  if (!flags.measured.empty()) measured = compare_measured(flags.measured, model, result);
   std::vector<BandRequest> asked;
   for (const std::string& text : flags.bands) asked.push_back(parse_band(text));
   nlohmann::ordered_json document = out.json || folder || !asked.empty()
@@ -103,12 +101,15 @@ int run_steady(const SteadyFlags& flags) {
                                         : nlohmann::ordered_json();
   const std::vector<SensitivityBand> bands = sensitivity_bands(scene, request, asked);
   if (!asked.empty()) document["bands"] = bands_json(document, bands);
+  if (measured && !document.is_null()) document["measured"] = measured_json(*measured);
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : steady_table(model, result, result.settings, flags.multipliers);
   if (!out.json && !asked.empty()) delivery.printed += bands_table(document["bands"]);
+  if (measured && !out.json) delivery.printed += measured_table(*measured);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("steady.json", json_file_text(document));
-    std::vector<Figure> figures = steady_files(model, result, true, place, measured);
+    std::vector<Figure> figures = steady_files(model, result, machine_files(model, result), place,
+                                               measured ? measured->overlay : MeasuredOverlay());
     for (const BandCurves& curves : band_responses(result, bands)) {
       place.write(curves.csv.name, csv_text(curves.csv));
       figures.push_back(band_figure(model.scene, curves, true));

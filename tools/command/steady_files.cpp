@@ -27,8 +27,8 @@ std::vector<MeasuredQuantity> measured_quantities(const SceneModel& model, const
   return list;
 }
 
-std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, bool machine, OutputFolder& folder,
-                                 const MeasuredOverlay& measured) {
+std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& result, const MachineFiles& machine,
+                                 OutputFolder& folder, const MeasuredOverlay& measured) {
   std::vector<Figure> figures;
   const auto write = [&](const CsvFile& file) { folder.write(file.name, csv_text(file)); };
   if (!measured.empty()) write(measured.csv());
@@ -51,9 +51,10 @@ std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& res
       figures.push_back(shape_figure(model, result, rod, moment, true));
     }
     const auto place = static_cast<std::size_t>(&rod - result.rods.data());
-    if (const std::optional<CsvFile> stress = machine ? stress_csv(model, result, place) : std::nullopt) {
-      write(*stress);
-      figures.push_back(stress_figure(model, result, rod, stress->name));
+    if (const std::optional<StressEnvelope>& envelope = machine.envelopes[place]) {
+      const CsvFile stress = stress_csv(model.scene, result.speed, rod.name, *envelope);
+      write(stress);
+      figures.push_back(stress_figure(model, result, rod, stress.name));
     }
     if (rod.stability) write(exponents_csv(model, result, rod));
   }
@@ -64,10 +65,8 @@ std::vector<Figure> steady_files(const SceneModel& model, const SpeedResult& res
     for (Figure& figure : force_figures(model, result, forces.name, measured)) figures.push_back(std::move(figure));
     for (Figure& figure : polar_figures(model, result, forces.name)) figures.push_back(std::move(figure));
     figures.push_back(torque_figure(model, result, torque.name, measured));
-    if (machine) {
-      write(frame_csv(model, result));
-      for (const CsvFile& slider : slider_csvs(model, result)) write(slider);
-    }
+    if (machine.frame) write(frame_csv(model.scene, result.speed, *machine.frame));
+    for (const CsvFile& slider : slider_csvs(model.scene, result.speed, machine.sliders)) write(slider);
   }
   if (model.linkage()) {
     const CsvFile mechanism = mechanism_csv(model.scene);

@@ -11,6 +11,7 @@
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
+#include "tools/command/measured_deviation.hpp"
 #include "tools/command/output_flags.hpp"
 #include "tools/command/result_files.hpp"
 #include "tools/command/scene_input.hpp"
@@ -50,7 +51,6 @@ int run_sweep_command(const SweepFlags& flags) {
   request.search = !flags.no_search;
   const Output out = output(flags);
   std::optional<NonlinearSweepOptions> branches_asked = branches_of(flags);
-  require_a_place_for_measured(flags);
   const EarlierParts earlier = earlier_parts_flag(flags.resume, flags.restart, out.folder.has_value());
   const Provenance origin = provenance(flags.line, input);
   std::optional<OutputFolder> folder;
@@ -62,16 +62,19 @@ int run_sweep_command(const SweepFlags& flags) {
     branches_asked->starts.push_back(motion_from_json(read_text_file(file), file, swept));
   if (branches_asked) require_nonlinear(swept, *branches_asked);
   SweepResult result;
-  const std::vector<BandRequest> bands_asked = bands_of(flags.bands, request, flags.theory);
-  MeasuredOverlay measured;
-  if (!flags.measured.empty())
-    measured = read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
+  const std::vector<BandRequest> bands_asked = bands_of(flags.bands, flags.theory);
+  if (!flags.measured.empty()) (void)read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
   KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
   std::vector<SweepBand> bands;
   if (!bands_asked.empty()) {
     SharedWork work(out.threads);
-    bands = sweep_bands(scene, request, bands_asked, work);
+    bands = sweep_bands(SceneFamily(input.source, set), request, bands_asked, work);
+  }
+  std::optional<MeasuredComparison> measured;
+  if (!flags.measured.empty()) {
+    SharedWork work(out.threads);
+    measured = compare_measured(flags.measured, SceneFamily(input.source, set), request, swept, work);
   }
   std::optional<NonlinearSweep> branches;
   if (branches_asked) {
@@ -82,6 +85,7 @@ int run_sweep_command(const SweepFlags& flags) {
   nlohmann::ordered_json document =
       out.json || folder || !bands_asked.empty() ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
   if (!bands_asked.empty()) document["bands"] = sweep_bands_json(document, bands);
+  if (measured && !document.is_null()) document["measured"] = measured_json(*measured);
   if (branches && !document.is_null()) add_branches(document, swept, *branches);
   Delivery delivery;
   delivery.printed = out.json ? json_text(document) : sweep_table(swept, result);
@@ -90,9 +94,10 @@ int run_sweep_command(const SweepFlags& flags) {
                        "\nBy the linear theory; the motion without linearisation stands below.\n" + delivery.printed +
                        branches_table(swept, *branches);
   if (!bands_asked.empty() && !out.json) delivery.printed += sweep_bands_table(document, document["bands"]);
+  if (measured && !out.json) delivery.printed += measured_table(*measured);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("sweep.json", json_file_text(document));
-    std::vector<Figure> figures = sweep_files(swept, result, place, measured);
+    std::vector<Figure> figures = sweep_files(swept, result, place, measured ? measured->overlay : MeasuredOverlay());
     if (!bands_asked.empty()) add_bands(document, swept, place, figures);
     if (branches)
       for (Figure& figure : branch_files(swept, result, *branches, place)) figures.push_back(std::move(figure));

@@ -18,7 +18,7 @@ void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
   allow_growth_alone(command, flags);
   command.add_flag("--no-search", flags.no_search, "the points alone: no bands, boundaries or peaks between them");
   add_band_flag(command, flags.bands);
-  add_label_flag(command, flags, "x");
+  flags.label_axes = "x";
   add_html_flag(command, flags);
   command
       .add_option("--x", flags.x,
@@ -34,12 +34,9 @@ void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
   command.add_flag("--restart", flags.restart, "throw away what an interrupted run into the same --out left");
 }
 
-std::vector<BandRequest> bands_of(const std::vector<std::string>& texts, const SweepRequest& request,
-                                  const TheoryFlags& theory) {
+std::vector<BandRequest> bands_of(const std::vector<std::string>& texts, const TheoryFlags& theory) {
   std::vector<BandRequest> bands;
   for (const std::string& text : texts) bands.push_back(parse_band(text));
-  if (!bands.empty() && !is_speed(request.x.path))
-    throw UsageError("--band: found beside --x, allowed: with a sweep along the speed");
   if (!bands.empty() && is_nonlinear(theory))
     throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
   return bands;
@@ -54,11 +51,6 @@ std::optional<NonlinearSweepOptions> branches_of(const SweepFlags& flags) {
     throw UsageError(
         fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear", flags.start.front()));
   return nonlinear ? std::optional(asked) : std::nullopt;
-}
-
-void require_a_place_for_measured(const SweepFlags& flags) {
-  if (!flags.measured.empty() && !flags.out)
-    refuse_flag("--measured", "no --out", "beside --out DIR, whose pictures show it");
 }
 
 }  // namespace hb::tools

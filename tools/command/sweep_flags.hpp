@@ -20,12 +20,9 @@ struct SweepFlags : CommonFlags {
 };
 
 void add_sweep_flags(CLI::App& command, SweepFlags& flags);
-// Of --band; along the speed, with the linear theory.
-[[nodiscard]] std::vector<BandRequest> bands_of(const std::vector<std::string>& texts, const SweepRequest& request,
-                                                const TheoryFlags& theory);
+// Of --band; with the linear theory.
+[[nodiscard]] std::vector<BandRequest> bands_of(const std::vector<std::string>& texts, const TheoryFlags& theory);
 // Empty with the linear theory.
 [[nodiscard]] std::optional<NonlinearSweepOptions> branches_of(const SweepFlags& flags);
-// --measured stands beside a folder, whose pictures show it.
-void require_a_place_for_measured(const SweepFlags& flags);
 
 }  // namespace hb::tools

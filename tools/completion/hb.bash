@@ -10,7 +10,7 @@ _hb() {
   # bash takes "=" for a word of its own: --set PATH=VALUE ends where its value begins.
   [[ $word == '=' || $before == '=' ]] && return
   case $before in
-    --set | --x | --y | --vary)
+    --set | --set-b | --x | --y | --vary | --tie)
       for ((i = 2; i < COMP_CWORD; ++i)); do [[ ${COMP_WORDS[i]} == *.toml ]] && scene=${COMP_WORDS[i]}; done
       [[ $scene ]] || return
       local more=''

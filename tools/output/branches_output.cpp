@@ -52,15 +52,35 @@ Json over(const std::vector<NonlinearPoint>& points, const Value& value) {
   return array;
 }
 
-// The safety against yielding of a rod's branch, no less than the true one.
-std::optional<double> yield_safety(const SweepScene& scene, const NonlinearPoint& point, std::size_t r) {
-  const LinkagePlace place = scene.linkage_at(point.x);
-  if (!place.linkage) return std::nullopt;
-  return least_yield_safety(point.loads[r].stress, *body_at(*place.linkage, scene.first().rods[r].link));
+// Axial and bending stress together, of links with a section; null between the values asked for.
+void add_cycles(Json& stress, const std::vector<NonlinearPoint>& points, std::size_t r) {
+  const auto known = [&](const std::function<bool(const StressCycle&)>& has) {
+    return std::ranges::any_of(points, [&](const NonlinearPoint& p) {
+      return !p.loads.empty() && p.loads[r].cycle && has(*p.loads[r].cycle);
+    });
+  };
+  if (!known([](const StressCycle&) { return true; })) return;
+  const auto each = [&](const std::function<double(const StressCycle&)>& value) {
+    return over(points, [&](const NonlinearPoint& p) {
+      return p.loads.empty() || !p.loads[r].cycle ? Json(nullptr) : number(value(*p.loads[r].cycle));
+    });
+  };
+  stress["max_abs"] = each([](const StressCycle& c) { return c.max_abs; });
+  stress["mean"] = each([](const StressCycle& c) { return c.mean; });
+  stress["amplitude"] = each([](const StressCycle& c) { return c.amplitude; });
+  stress["error"] = each([](const StressCycle& c) { return c.error; });
+  if (known([](const StressCycle& c) { return c.yield.has_value(); })) {
+    stress["yield_safety"] = each([](const StressCycle& c) { return c.yield->value; });
+    stress["yield_safety_error"] = each([](const StressCycle& c) { return c.yield->error; });
+  }
+  if (known([](const StressCycle& c) { return c.fatigue.has_value(); })) {
+    stress["fatigue_safety"] = each([](const StressCycle& c) { return c.fatigue->factor.value; });
+    stress["fatigue_safety_error"] = each([](const StressCycle& c) { return c.fatigue->factor.error; });
+  }
 }
 
 // Deflection and stress at the values asked for; null between them.
-void add_bent_loads(Json& rod, const SweepScene& scene, const std::vector<NonlinearPoint>& points, std::size_t r) {
+void add_bent_loads(Json& rod, const std::vector<NonlinearPoint>& points, std::size_t r) {
   if (std::ranges::none_of(points, [](const NonlinearPoint& p) { return !p.loads.empty(); })) return;
   const auto each = [&](const std::function<Json(const NonlinearPoint&)>& value) {
     return over(points, [&](const NonlinearPoint& p) { return p.loads.empty() ? Json(nullptr) : value(p); });
@@ -71,12 +91,7 @@ void add_bent_loads(Json& rod, const SweepScene& scene, const std::vector<Nonlin
   Json stress;
   stress["axial"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.axial); });
   stress["bending"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.bending); });
-  if (scene.first().linkage() &&
-      body_at(*scene.first().linkage(), scene.first().rods[r].link)->elastic->strength.yield > 0)
-    stress["yield_safety"] = each([&](const NonlinearPoint& p) {
-      const std::optional<double> safety = yield_safety(scene, p, r);
-      return safety ? number(*safety) : Json(nullptr);
-    });
+  add_cycles(stress, points, r);
   rod["stress"] = std::move(stress);
 }
 
@@ -87,7 +102,10 @@ std::string bent_stress_rows(const SweepScene& scene, const NonlinearSweep& swee
   for (std::size_t r = 0; r < sweep.rods.size(); ++r) {
     if (!sweep.reported[r]) continue;
     const NonlinearPoint* most = nullptr;
-    const auto sum = [r](const NonlinearPoint& p) { return p.loads[r].stress.axial + p.loads[r].stress.bending; };
+    const auto sum = [r](const NonlinearPoint& p) {
+      const BentLoads& loads = p.loads[r];
+      return loads.cycle ? loads.cycle->max_abs : loads.stress.axial + loads.stress.bending;
+    };
     bool all = true;
     for (const NonlinearPoint& point : branch.points) {
       if (point.loads.empty()) continue;
@@ -96,13 +114,20 @@ std::string bent_stress_rows(const SweepScene& scene, const NonlinearSweep& swee
       if (stable && (!most || sum(point) > sum(*most))) most = &point;
     }
     if (!most) continue;
-    const std::optional<double> safety = yield_safety(scene, *most, r);
     const RodStress& stress = most->loads[r].stress;
-    text += fmt::format("  {}: stress at most {:.4g} MPa axial and {:.4g} MPa of bending{} at {} = {:.8g}{}{}\n",
-                        sweep.rods[r], units.megapascal * stress.axial, units.megapascal * stress.bending,
-                        stress.height_known ? "" : " (as a rectangle)", scene.axis().path, most->x,
-                        all ? "" : ", where not unstable",
-                        safety ? fmt::format("; safety against yielding {:.4g} or more", *safety) : "");
+    const std::optional<StressCycle>& cycle = most->loads[r].cycle;
+    const std::string where =
+        fmt::format("at {} = {:.8g}{}", scene.axis().path, most->x, all ? "" : ", where not unstable");
+    if (!cycle) {
+      text += fmt::format("  {}: stress at most {:.4g} MPa axial and {:.4g} MPa of bending (as a rectangle) {}\n",
+                          sweep.rods[r], units.megapascal * stress.axial, units.megapascal * stress.bending, where);
+      continue;
+    }
+    text += fmt::format(
+        "  {}: stress at most {:.4g} MPa, amplitude {:.4g} MPa about {:.4g} MPa{}{} {}\n", sweep.rods[r],
+        units.megapascal * cycle->max_abs, units.megapascal * cycle->amplitude, units.megapascal * cycle->mean,
+        cycle->yield ? fmt::format(", safety against yielding {:.4g}", cycle->yield->value) : "",
+        cycle->fatigue ? fmt::format(", against fatigue {:.4g}", cycle->fatigue->factor.value) : "", where);
   }
   return text;
 }
@@ -121,7 +146,7 @@ Json branch_json(const SweepScene& scene, const NonlinearSweep& sweep, const Non
     if (!sweep.reported[r]) continue;
     Json rod;
     rod["max_abs"] = over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
-    add_bent_loads(rod, scene, points, r);
+    add_bent_loads(rod, points, r);
     json["rods"][sweep.rods[r]] = std::move(rod);
   }
   json["error_bound"] = over(points, [](const NonlinearPoint& p) { return number(p.error_bound); });
@@ -311,10 +336,11 @@ CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::
                   "points of each branch along its arc; growth rate and verdict of all rods together", verdict_numbers};
   file.columns = {"branch", "turns", axis_label(scene), "asked for"};
   for (int i = 1; i <= modes; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));
-  file.columns.insert(
-      file.columns.end(),
-      {"error bound", "growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate), "verdict",
-       "deflection" + bracketed(units.response), "bending moment [N m]", "axial stress [MPa]", "bending stress [MPa]"});
+  file.columns.insert(file.columns.end(),
+                      {"error bound", "growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate),
+                       "verdict", "deflection" + bracketed(units.response), "bending moment [N m]",
+                       "axial stress [MPa]", "bending stress [MPa]", "stress [MPa]", "stress mean [MPa]",
+                       "stress amplitude [MPa]", "safety against yielding", "safety against fatigue"});
   std::size_t count = 0;
   for (const NonlinearBranch& branch : sweep.branches) count += branch.points.size();
   file.rows.setConstant(static_cast<Eigen::Index>(count), static_cast<Eigen::Index>(file.columns.size()), nan);
@@ -331,8 +357,12 @@ CsvFile branches_csv(const SweepScene& scene, const NonlinearSweep& sweep, std::
       row(column++) = point.error_bound;
       if (!point.loads.empty()) {
         const BentLoads& loads = point.loads[r];
-        row.tail(4) << loads.deflection, units.moment * loads.bending_moment, units.megapascal * loads.stress.axial,
-            units.megapascal * loads.stress.bending;
+        row.tail(9).head(4) << loads.deflection, units.moment * loads.bending_moment,
+            units.megapascal * loads.stress.axial, units.megapascal * loads.stress.bending;
+        if (const std::optional<StressCycle>& cycle = loads.cycle)
+          row.tail(5) << units.megapascal * cycle->max_abs, units.megapascal * cycle->mean,
+              units.megapascal * cycle->amplitude, cycle->yield ? cycle->yield->value : nan,
+              cycle->fatigue ? cycle->fatigue->factor.value : nan;
       }
       if (!point.stability) continue;
       row(column++) = point.stability->growth_rate;

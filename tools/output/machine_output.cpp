@@ -70,24 +70,21 @@ std::string safety_text(const SafetyFactor& safety) {
 
 }  // namespace
 
-std::string stress_rows(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
-  const std::optional<StressCycle> cycle = cycle_of(model, result, rod);
-  if (!cycle) return "";
-  const OutputUnits units = output_units(model.scene);
+std::string stress_rows(const StressCycle& cycle, const Body& link, const OutputUnits& units) {
   // w to the left with w'' > 0 pulls at the right.
   const auto fibre = [](int side) { return side > 0 ? "right" : "left"; };
   std::string text = fmt::format(
       "  together          {:.3g} MPa at x = {:.4g} {}, crank angle {:.2f} deg, {} side; error {:.1e} MPa\n"
       "  stress cycle      mean {:.3g} MPa, amplitude {:.3g} MPa at x = {:.4g} {}, {} side\n",
-      cycle->max_abs * units.megapascal, cycle->x, units.length, cycle->crank_angle * degrees_per_radian,
-      fibre(cycle->side), cycle->error * units.megapascal, cycle->mean * units.megapascal,
-      cycle->amplitude * units.megapascal, cycle->amplitude_x, units.length, fibre(cycle->amplitude_side));
-  const Strength& strength = body_at(*model.linkage(), result.rods[rod].link)->elastic->strength;
-  if (cycle->yield)
-    text += fmt::format("  against yielding  {} of {:.4g} MPa{}\n", safety_text(*cycle->yield),
+      cycle.max_abs * units.megapascal, cycle.x, units.length, cycle.crank_angle * degrees_per_radian,
+      fibre(cycle.side), cycle.error * units.megapascal, cycle.mean * units.megapascal,
+      cycle.amplitude * units.megapascal, cycle.amplitude_x, units.length, fibre(cycle.amplitude_side));
+  const Strength& strength = link.elastic->strength;
+  if (cycle.yield)
+    text += fmt::format("  against yielding  {} of {:.4g} MPa{}\n", safety_text(*cycle.yield),
                         strength.yield * units.megapascal,
-                        cycle->yield->value < 1 ? "; THE ROD YIELDS, beyond this model" : "");
-  if (const auto& fatigue = cycle->fatigue)
+                        cycle.yield->value < 1 ? "; THE ROD YIELDS, beyond this model" : "");
+  if (const auto& fatigue = cycle.fatigue)
     text += fmt::format(
         "  against fatigue   {}, {} line: mean {:.3g} MPa, amplitude {:.3g} MPa at x = {:.4g} {}, {} side{}\n",
         safety_text(fatigue->factor), to_string(fatigue_line(strength)), fatigue->mean * units.megapascal,
@@ -96,48 +93,61 @@ std::string stress_rows(const SceneModel& model, const SpeedResult& result, std:
   return text;
 }
 
+std::string stress_rows(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  const std::optional<StressCycle> cycle = cycle_of(model, result, rod);
+  if (!cycle) return "";
+  return stress_rows(*cycle, *body_at(*model.linkage(), result.rods[rod].link), output_units(model.scene));
+}
+
+std::optional<std::string> yield_warning(const std::string& name, const StressCycle& cycle, const Body& link,
+                                         const OutputUnits& units) {
+  if (!cycle.yield || !(cycle.yield->value < 1)) return std::nullopt;
+  return fmt::format("{}: it yields: {:.3g} MPa where it bears {:.4g} MPa; beyond this model", name,
+                     cycle.max_abs * units.megapascal, link.elastic->strength.yield * units.megapascal);
+}
+
 std::vector<std::string> strength_warnings(const SceneModel& model, const SpeedResult& result) {
   std::vector<std::string> sentences;
   const OutputUnits units = output_units(model.scene);
   for (std::size_t r = 0; model.linkage() && r < result.rods.size(); ++r) {
-    const Strength& strength = body_at(*model.linkage(), result.rods[r].link)->elastic->strength;
-    if (!(strength.yield > 0)) continue;
+    const Body& link = *body_at(*model.linkage(), result.rods[r].link);
+    if (!link.elastic || !(link.elastic->strength.yield > 0)) continue;
     const std::optional<StressCycle> cycle = cycle_of(model, result, r);
-    if (!cycle || !cycle->yield || !(cycle->yield->value < 1)) continue;
-    sentences.push_back(fmt::format("{}: it yields: {:.3g} MPa where it bears {:.4g} MPa; beyond this model",
-                                    result.rods[r].name, cycle->max_abs * units.megapascal,
-                                    strength.yield * units.megapascal));
+    if (!cycle) continue;
+    if (std::optional<std::string> sentence = yield_warning(result.rods[r].name, *cycle, link, units))
+      sentences.push_back(std::move(*sentence));
   }
   return sentences;
 }
 
-void add_stress_cycle(Json& stress, const SceneModel& model, const SpeedResult& result, std::size_t rod) {
-  const std::optional<StressCycle> cycle = cycle_of(model, result, rod);
-  if (!cycle) return;
-  stress["max_abs"] = cycle->max_abs;
-  stress["x"] = cycle->x;
-  stress["crank_angle"] = scene_angle(cycle->crank_angle, model.scene.units);
-  stress["side"] = cycle->side;
-  stress["mean"] = cycle->mean;
-  stress["amplitude"] = cycle->amplitude;
-  stress["amplitude_x"] = cycle->amplitude_x;
-  stress["amplitude_side"] = cycle->amplitude_side;
-  stress["error"] = cycle->error;
-  const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-  if (cycle->yield) {
-    stress["yield_safety"] = number(cycle->yield->value);
-    stress["yield_safety_error"] = number(cycle->yield->error);
+void add_stress_cycle(Json& stress, const StressCycle& cycle, const Body& link, const Units& units) {
+  stress["max_abs"] = cycle.max_abs;
+  stress["x"] = cycle.x;
+  stress["crank_angle"] = scene_angle(cycle.crank_angle, units);
+  stress["side"] = cycle.side;
+  stress["mean"] = cycle.mean;
+  stress["amplitude"] = cycle.amplitude;
+  stress["amplitude_x"] = cycle.amplitude_x;
+  stress["amplitude_side"] = cycle.amplitude_side;
+  stress["error"] = number(cycle.error);
+  if (cycle.yield) {
+    stress["yield_safety"] = number(cycle.yield->value);
+    stress["yield_safety_error"] = number(cycle.yield->error);
   }
-  if (const auto& fatigue = cycle->fatigue) {
+  if (const auto& fatigue = cycle.fatigue) {
     stress["fatigue_safety"] = number(fatigue->factor.value);
     stress["fatigue_safety_error"] = number(fatigue->factor.error);
-    stress["fatigue_line"] =
-        to_string(fatigue_line(body_at(*model.linkage(), result.rods[rod].link)->elastic->strength));
+    stress["fatigue_line"] = to_string(fatigue_line(link.elastic->strength));
     stress["fatigue_mean"] = fatigue->mean;
     stress["fatigue_amplitude"] = fatigue->amplitude;
     stress["fatigue_x"] = fatigue->x;
     stress["fatigue_side"] = fatigue->side;
   }
+}
+
+void add_stress_cycle(Json& stress, const SceneModel& model, const SpeedResult& result, std::size_t rod) {
+  if (const std::optional<StressCycle> cycle = cycle_of(model, result, rod))
+    add_stress_cycle(stress, *cycle, *body_at(*model.linkage(), result.rods[rod].link), model.scene.units);
 }
 
 std::string static_row(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
@@ -186,23 +196,24 @@ std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuat
   return text + "\n";
 }
 
-std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
-  const std::optional<MachineLoads> loads = machine_loads(model, result);
-  if (!loads) return "";
-  const OutputUnits units = output_units(model.scene);
-  const FrameForces& frame = loads->frame;
-  const Extremum &shaking = loads->shaking_force, &rigid = loads->shaking_force_rigid;
-  std::string text = bearing_rows(loads->bearings, units);
+std::string machine_rows(const MachineLoads& loads, const std::vector<SliderMotion>& sliders, double torque_error,
+                         double speed, const Scene& scene) {
+  const OutputUnits units = output_units(scene);
+  const FrameForces& frame = loads.frame;
+  const Extremum &shaking = loads.shaking_force, &rigid = loads.shaking_force_rigid;
+  std::string text = bearing_rows(loads.bearings, units);
+  const auto error = [](double value, const char* unit) {
+    return value > 0 && std::isfinite(value) ? fmt::format("; error {:.1e} {}", value, unit) : std::string();
+  };
   text += fmt::format(
-      "  shaking force on the frame: x {} N, y {} N, resultant up to {:.6g} N at {:.2f} deg (rigid {:.6g} N)\n"
-      "  shaking moment about the crank's pivot: {} N m (rigid {} N m)\n",
+      "  shaking force on the frame: x {} N, y {} N, resultant up to {:.6g} N at {:.2f} deg (rigid {:.6g} N){}\n"
+      "  shaking moment about the crank's pivot: {} N m (rigid {} N m){}\n",
       range_of(frame.elastic, 0, units.force, 6), range_of(frame.elastic, 1, units.force, 6),
       shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
-      range_of(frame.elastic, 2, units.moment, 6), range_of(frame.rigid, 2, units.moment, 6));
-  const std::optional<ForceErrors>& errors = result.force_errors;
-  text += drive_rows(loads->drive, loads->speed_fluctuation, errors ? errors->torque + errors->torque_cut : 0.0,
-                     result.speed, model.scene);
-  for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed)) {
+      error(loads.shaking_force_error * units.force, "N"), range_of(frame.elastic, 2, units.moment, 6),
+      range_of(frame.rigid, 2, units.moment, 6), error(loads.shaking_moment_error * units.moment, "N m"));
+  text += drive_rows(loads.drive, loads.speed_fluctuation, torque_error, speed, scene);
+  for (const SliderMotion& slider : sliders) {
     const Range position = fourier::range(slider.position, 0);
     text += fmt::format("  {}: stroke {:.6g} {} ({:.6g} .. {:.6g}), velocity {} {}/{}, acceleration {} {}/{}^2\n",
                         slider.name, position.max.value - position.min.value, units.length, position.min.value,
@@ -210,6 +221,14 @@ std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
                         range_of(slider.acceleration(), 0, 1, 6), units.length, units.time);
   }
   return text;
+}
+
+std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
+  const std::optional<MachineLoads> loads = machine_loads(model, result);
+  if (!loads) return "";
+  const std::optional<ForceErrors>& errors = result.force_errors;
+  return machine_rows(*loads, slider_motions(*model.linkage(), result.speed),
+                      errors ? errors->torque + errors->torque_cut : 0.0, result.speed, model.scene);
 }
 
 Json static_json(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
@@ -233,8 +252,8 @@ Json frame_json(const MachineLoads& loads, bool errors, const Units& units) {
   on_frame["crank_angle"] = scene_angle(loads.shaking_force.crank_angle, units);
   on_frame["max_rigid"] = loads.shaking_force_rigid.value;
   if (errors) {
-    on_frame["force_error"] = loads.shaking_force_error;
-    on_frame["moment_error"] = loads.shaking_moment_error;
+    on_frame["force_error"] = number(loads.shaking_force_error);
+    on_frame["moment_error"] = number(loads.shaking_moment_error);
   }
   return on_frame;
 }
@@ -268,56 +287,70 @@ void add_drive(Json& document, const Drive& drive, const Drive& rigid, double in
                           {"speed_fluctuation", fluctuation ? Json(*fluctuation) : Json()}};
 }
 
-void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
-  const std::optional<MachineLoads> loads = machine_loads(model, result);
-  if (!loads) return;
-  document["bearings"] = bearings_json(loads->bearings, model.scene.units);
-  document["frame"] = frame_json(*loads, result.force_errors.has_value(), model.scene.units);
-  add_drive(document, loads->drive, loads->drive_rigid, loads->inertia, loads->speed_fluctuation);
-  if (result.force_errors) {
+void add_machine(Json& document, const MachineLoads& loads, const std::vector<SliderMotion>& sliders,
+                 const JointForces& forces, const std::optional<ForceErrors>& errors, const Units& units) {
+  document["bearings"] = bearings_json(loads.bearings, units);
+  document["frame"] = frame_json(loads, errors.has_value(), units);
+  add_drive(document, loads.drive, loads.drive_rigid, loads.inertia, loads.speed_fluctuation);
+  if (errors) {
     // An integral of T less its mean over the shorter of two ways round, at most pi, each wrong by no more than
     // epsilon.
-    const Range torque = fourier::range(result.forces->torque, 0);
+    const Range torque = fourier::range(forces.torque, 0);
     const double size = std::max(std::abs(torque.max.value), std::abs(torque.min.value));
-    document["flywheel"]["energy_fluctuation_error"] =
-        number(two_pi * (result.force_errors->torque + result.force_errors->torque_cut) * size);
+    document["flywheel"]["energy_fluctuation_error"] = number(two_pi * (errors->torque + errors->torque_cut) * size);
   }
-  Json sliders = Json::object();
-  for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed))
-    sliders[slider.name] = {{"position", range_json(slider.position, 0)},
+  Json motions = Json::object();
+  for (const SliderMotion& slider : sliders)
+    motions[slider.name] = {{"position", range_json(slider.position, 0)},
                             {"velocity", range_json(slider.velocity(), 0)},
                             {"acceleration", range_json(slider.acceleration(), 0)}};
-  if (!sliders.empty()) document["sliders"] = std::move(sliders);
+  if (!motions.empty()) document["sliders"] = std::move(motions);
 }
 
-std::optional<CsvFile> stress_csv(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
-  const RodResult& entry = result.rods[rod];
-  if (!entry.stress || !entry.stress->height_known) return std::nullopt;
-  const OutputUnits units = output_units(model.scene);
+void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
+  if (const std::optional<MachineLoads> loads = machine_loads(model, result))
+    add_machine(document, *loads, slider_motions(*model.linkage(), result.speed), *result.forces, result.force_errors,
+                model.scene.units);
+}
+
+MachineFiles machine_files(const SceneModel& model, const SpeedResult& result) {
   constexpr Index points = 101;
-  const StressEnvelope envelope = stress_envelope(*body_at(*model.linkage(), entry.link), coefficients_of(model, rod),
-                                                  result.speed, entry.steady->q, points);
+  MachineFiles files;
+  for (std::size_t r = 0; r < result.rods.size(); ++r) {
+    const RodResult& rod = result.rods[r];
+    files.envelopes.emplace_back();
+    if (rod.stress && rod.stress->height_known)
+      files.envelopes.back() = stress_envelope(*body_at(*model.linkage(), rod.link), coefficients_of(model, r),
+                                               result.speed, rod.steady->q, points);
+  }
+  if (!result.forces) return files;
+  files.frame = machine_loads(model, result)->frame;
+  files.sliders = slider_motions(*model.linkage(), result.speed);
+  return files;
+}
+
+CsvFile stress_csv(const Scene& scene, double speed, const std::string& rod, const StressEnvelope& envelope) {
+  const OutputUnits units = output_units(scene);
   CsvFile file;
-  file.name = file_name("stress_" + entry.name) + ".csv";
+  file.name = file_name("stress_" + rod) + ".csv";
   file.comment = {fmt::format("{}, {}: {}, axial and bending stress together along the rod, over one turn",
-                              scene_name(model.scene), speed_text(result.speed, model.scene), entry.name),
+                              scene_name(scene), speed_text(speed, scene), rod),
                   "fibres right and left of the way from joint 0 to joint 1; tension positive"};
   file.columns = {"x" + bracketed(units.length), "right smallest [MPa]", "right largest [MPa]", "left smallest [MPa]",
                   "left largest [MPa]"};
-  file.rows.resize(points, 5);
+  file.rows.resize(envelope.x.size(), 5);
   file.rows << envelope.x, units.megapascal * envelope.smallest[0], units.megapascal * envelope.largest[0],
       units.megapascal * envelope.smallest[1], units.megapascal * envelope.largest[1];
   return file;
 }
 
-CsvFile frame_csv(const SceneModel& model, const SpeedResult& result) {
-  const OutputUnits units = output_units(model.scene);
-  const FrameForces frame = machine_loads(model, result)->frame;
+CsvFile frame_csv(const Scene& scene, double speed, const FrameForces& frame) {
+  const OutputUnits units = output_units(scene);
   const Index N = samples_for(std::max(frame.elastic.num_harmonics(), frame.rigid.num_harmonics()));
   CsvFile file;
   file.name = "frame_forces.csv";
   file.comment = {fmt::format("{}, {}: shaking force and moment on the frame over one turn, elastic beside rigid",
-                              scene_name(model.scene), speed_text(result.speed, model.scene)),
+                              scene_name(scene), speed_text(speed, scene)),
                   "global axes; moment about the crank's pivot; motor and applied slider forces act against the frame"};
   file.columns = {"crank angle [deg]", "x [N]", "y [N]", "moment [N m]", "x rigid [N]", "y rigid [N]",
                   "moment rigid [N m]"};
@@ -328,15 +361,15 @@ CsvFile frame_csv(const SceneModel& model, const SpeedResult& result) {
   return file;
 }
 
-std::vector<CsvFile> slider_csvs(const SceneModel& model, const SpeedResult& result) {
-  const OutputUnits units = output_units(model.scene);
+std::vector<CsvFile> slider_csvs(const Scene& scene, double speed, const std::vector<SliderMotion>& sliders) {
+  const OutputUnits units = output_units(scene);
   std::vector<CsvFile> files;
-  for (const SliderMotion& slider : slider_motions(*model.linkage(), result.speed)) {
+  for (const SliderMotion& slider : sliders) {
     const Index N = samples_for(slider.position.num_harmonics());
     CsvFile file;
     file.name = file_name("slider_" + slider.name) + ".csv";
     file.comment = {fmt::format("{}, {}: {}, motion along its guide over one turn, from the guide's point",
-                                scene_name(model.scene), speed_text(result.speed, model.scene), slider.name)};
+                                scene_name(scene), speed_text(speed, scene), slider.name)};
     file.columns = {"crank angle [deg]", fmt::format("position [{}]", units.length),
                     fmt::format("velocity [{}/{}]", units.length, units.time),
                     fmt::format("acceleration [{}/{}^2]", units.length, units.time)};

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "hb/analysis/machine_loads.hpp"
+#include "hb/analysis/nonlinear/motion_loads.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/json_parts.hpp"
@@ -44,8 +44,7 @@ Json rod_json(const NonlinearRod& rod, const Linkage& linkage, const NonlinearRe
     add_shape(json, *rod.shape, rod.peak_errors, units);
     if (rod.stress) {
       add_stress(json, *rod.stress);
-      if (const std::optional<double> least = least_yield_safety(*rod.stress, *body_at(linkage, rod.link)))
-        json["stress"]["yield_safety"] = number(*least);
+      if (rod.cycle) add_stress_cycle(json["stress"], *rod.cycle, *body_at(linkage, rod.link), units);
     }
   }
   return json;
@@ -79,9 +78,7 @@ void add_rod(Text& text, const NonlinearRod& rod, const Linkage& linkage, const 
   if (rod.stress) {
     const Body& link = *body_at(linkage, rod.link);
     add(text, "{}", stress_lines(*rod.stress, link, units));
-    if (const std::optional<double> least = least_yield_safety(*rod.stress, link))
-      add(text, "  against yielding  safety at least {:.4g} of {:.4g} MPa, both stresses taken at one place{}\n",
-          *least, link.elastic->strength.yield * units.megapascal, *least < 1 ? "; IT MAY YIELD" : "");
+    if (rod.cycle) add(text, "{}", stress_rows(*rod.cycle, link, units));
   }
   add(text, "\n");
 }
@@ -107,12 +104,19 @@ void add_stability(Text& text, const NonlinearResult& result, const Scene& scene
   add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene));
 }
 
-// Where the crank has inertia.
-std::optional<double> fluctuation_of(const SceneModel& model, const NonlinearResult& result, const Drive& drive) {
-  const double inertia = crank_inertia(*model.linkage());
-  if (!(inertia > 0)) return std::nullopt;
-  return speed_fluctuation(drive, inertia, result.speed);
+// Sentences on rods that yield.
+std::vector<std::string> strength_warnings(const SceneModel& model, const NonlinearResult& result) {
+  std::vector<std::string> sentences;
+  for (const NonlinearRod& rod : result.rods)
+    if (rod.cycle)
+      if (std::optional<std::string> sentence =
+              yield_warning(rod.name, *rod.cycle, *body_at(*model.linkage(), rod.link), output_units(model.scene)))
+        sentences.push_back(std::move(*sentence));
+  return sentences;
 }
+
+// The error of the cut is known where the motion with more modes is.
+bool cut_known(const NonlinearResult& result) { return result.rods.empty() || result.rods.front().cut.has_value(); }
 
 void add_forces(Text& text, const SceneModel& model, const NonlinearResult& result, const OutputUnits& units) {
   const JointForces& forces = *result.forces;
@@ -132,14 +136,13 @@ void add_forces(Text& text, const SceneModel& model, const NonlinearResult& resu
           range(joint.rigid, c, units.force), range(joint.elastic, c, units.force));
   add(text, "  {:<22}  {}  {}\n", "driving torque [N m]", range(forces.torque_rigid, 0, units.moment),
       range(forces.torque, 0, units.moment));
-  if (result.force_errors)
-    add(text, "  estimated errors: forces {:.1e} of the largest, torque {:.1e}\n", result.force_errors->force,
-        result.force_errors->torque);
-  add(text, "{}", bearing_rows(bearing_loads(forces, result.turns), units));
-  const Drive drive = drive_of(forces.torque, result.speed, result.turns);
-  add(text, "{}",
-      drive_rows(drive, fluctuation_of(model, result, drive), result.force_errors ? result.force_errors->torque : 0.0,
-                 result.speed, model.scene));
+  const ForceErrors& errors = *result.force_errors;
+  add(text, "  estimated errors: forces {:.1e} of the largest, torque {:.1e}", errors.force, errors.torque);
+  if (cut_known(result))
+    add(text, "; from the cut of the modes {:.1e} and {:.1e}", errors.force_cut, errors.torque_cut);
+  add(text, "\n{}",
+      machine_rows(*machine_loads(*model.linkage(), result), result.sliders, errors.torque + errors.torque_cut,
+                   result.speed, model.scene));
 }
 
 }  // namespace
@@ -157,7 +160,9 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   json["tolerance"] = settings.tolerance;
   json["motion_tolerance"] = result.tolerance;
   if (result.cut_tolerance) json["modes_tolerance"] = *result.cut_tolerance;
-  if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
+  std::vector<std::string> warnings = model.scene.warnings;
+  for (std::string& sentence : strength_warnings(model, result)) warnings.push_back(std::move(sentence));
+  if (!warnings.empty()) json["warnings"] = warnings;
   json["units"] = units_json(units);
   json["found"] = result.search == MotionSearch::found;
   if (result.followed_from) json["followed_from_rpm"] = rpm_of(*result.followed_from, units);
@@ -180,10 +185,12 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
     json["torque"]["rigid"] = range_json(result.forces->torque_rigid, 0);
     json["joints_error"] = number(result.force_errors->force);
     json["torque_error"] = number(result.force_errors->torque);
-    json["bearings"] = bearings_json(bearing_loads(*result.forces, result.turns), units);
-    const Drive drive = drive_of(result.forces->torque, result.speed, result.turns);
-    add_drive(json, drive, drive_of(result.forces->torque_rigid, result.speed, result.turns),
-              crank_inertia(*model.linkage()), fluctuation_of(model, result, drive));
+    if (cut_known(result)) {
+      json["joints_modes_error"] = number(result.force_errors->force_cut);
+      json["torque_modes_error"] = number(result.force_errors->torque_cut);
+    }
+    add_machine(json, *machine_loads(*model.linkage(), result), result.sliders, *result.forces, result.force_errors,
+                units);
   }
   Json& others = json["other_motions"] = Json::array();
   for (const OtherMotion& other : result.others) {
@@ -229,6 +236,7 @@ std::string nonlinear_table(const SceneModel& model, const NonlinearResult& resu
         add(text, " {} max |q_1| = {:.6g} {}", model.rods[r].name, result.last_max_abs[r].front(), units.length);
     add(text, "\n");
   }
+  for (const std::string& warning : strength_warnings(model, result)) add(text, "WARNING: {}\n", warning);
   for (const std::string& warning : scene.warnings) add(text, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }
@@ -258,6 +266,14 @@ SpeedResult as_speed_result(const NonlinearResult& result) {
   speed.forces = result.forces;
   speed.force_errors = result.force_errors;
   return speed;
+}
+
+MachineFiles machine_files(const NonlinearResult& result) {
+  MachineFiles files;
+  for (const NonlinearRod& rod : result.rods) files.envelopes.push_back(rod.envelope);
+  files.frame = result.frame;
+  files.sliders = result.sliders;
+  return files;
 }
 
 }  // namespace hb::tools

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
+#include "tools/output/machine_output.hpp"
 
 namespace hb::tools {
 
@@ -14,5 +15,6 @@ namespace hb::tools {
 
 // The motion of one turn in the form of a linear answer, for the tables and pictures of a turn.
 [[nodiscard]] SpeedResult as_speed_result(const NonlinearResult& result);
+[[nodiscard]] MachineFiles machine_files(const NonlinearResult& result);
 
 }  // namespace hb::tools

@@ -22,9 +22,8 @@ Figure band_figure(const Scene& scene, const BandCurves& curves, bool turn) {
       panels,
       figure_title(
           scene, {curves.rod},
-          fmt::format(
-              "{} of the elastic links times {:g} to {:g}, both ends computed; shaded: what the three curves cover",
-              curves.parameter == "E" ? "Young''s modulus" : curves.parameter, curves.from, curves.to)),
+          fmt::format("{} of the elastic links times {:g} to {:g}; shaded: what the three curves cover",
+                      curves.parameter == "E" ? "Young''s modulus" : curves.parameter, curves.from, curves.to)),
       turn ? std::string(turn_axis) : fmt::format("set xrange [{}:{}]\n", rows(0, 0), rows(rows.rows() - 1, 0)));
   for (int k = 0; k < panels; ++k) {
     const std::string& label = curves.labels[static_cast<std::size_t>(k)];
@@ -49,7 +48,8 @@ Figure band_figure(const Scene& scene, const BandCurves& curves, bool turn) {
         "lines "
         "linewidth 1 dashtype (2,3) linecolor '#e69f00' title '{6:g}', '' using 1:{7} with lines lt 1 title 'as "
         "given'\nunset key\nunset arrow\n",
-        range, quoted(label), curves.csv.name, low, high, curves.from, curves.to, given);
+        range, label.starts_with("q_") ? fmt::format("'q_{}'", literal(label.substr(2))) : quoted(label),
+        curves.csv.name, low, high, curves.from, curves.to, given);
   }
   figure.commands +=
       "unset multiplot\nunset logscale\nset format '%g'\nset xrange [*:*]\nset yrange [*:*]\nset xtics "

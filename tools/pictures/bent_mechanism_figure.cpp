@@ -181,7 +181,8 @@ Figure bent_mechanism_figure(const SceneModel& model, const SpeedResult& result,
                     layer(pose, BentPart::slider, "pointtype 5 pointsize 1.5 linecolor '#666666'"));
   figure.commands +=
       "unset multiplot\nunset title\nset border 3 linecolor '#444444'\nset tics nomirror textcolor '#222222'\nset "
-      "xtics autofreq\nset ytics autofreq\nset grid\nset size noratio\nset margins -1, -1, -1, -1\nset xrange "
+      "xtics nomirror autofreq\nset ytics nomirror autofreq\nset grid\nset size noratio\nset margins -1, -1, -1, "
+      "-1\nset xrange "
       "[*:*]\nset yrange [*:*]\nset key default\n";
   return figure;
 }

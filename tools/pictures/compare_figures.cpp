@@ -37,15 +37,16 @@ Figure compare_response_figure(const ComparedSide& a, const ComparedSide& b, con
   Figure figure;
   figure.name = csv.name.substr(0, csv.name.size() - std::string(".csv").size());
   figure.commands = fmt::format(
-      "set title {}\nset xrange [0:360]\nset xtics 0,60,360\nset xlabel 'crank angle [deg]'\nset ylabel {}\n"
+      "set title {}\nset xrange [0:360]\nset xtics 0,60,360\nset xlabel 'crank angle [deg]'\nset ylabel 'q_1{}'\n"
       "set key outside right top Left reverse samplen 2\nplot '{}' using 1:2 with lines lt 1 title 'A', '' using 1:3 "
-      "with lines lt 2 title 'B'\nunset title\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset xtics autofreq\nset "
+      "with lines lt 2 dashtype 2 title 'B'\nunset title\nunset xlabel\nunset ylabel\nset xrange [*:*]\nset xtics "
+      "autofreq\nset "
       "key "
       "default\n",
       two_lines(figure.name.substr(std::string("compare_").size()) + ", response over the turn",
                 literal(fmt::format("A: {}, {}", a.source, side_verdict(a))) + "\n" +
                     literal(fmt::format("B: {}, {}", b.source, side_verdict(b)))),
-      quoted(csv.columns[1].substr(0, 3) + csv.columns[1].substr(5)), csv.name);
+      literal(csv.columns[1].substr(5)), csv.name);
   return figure;
 }
 

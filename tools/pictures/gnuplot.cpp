@@ -210,7 +210,58 @@ void rename_axis(std::string& commands, const char* set, const std::string& own,
     commands.replace(at, before.size(), after);
 }
 
+// A quoted text as it is shown, without its marks for subscripts and escapes.
+std::string as_shown(const std::string& text) {
+  std::string shown;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    if (text[k] == '\\' && k + 1 < text.size())
+      shown += text[++k];
+    else if (text[k] == '\'' && k + 1 < text.size() && text[k + 1] == '\'')
+      shown += text[k++];
+    else if (text[k] != '{' && text[k] != '}')
+      shown += text[k];
+  }
+  return shown;
+}
+
+// Calls `change(name)` for the quoted text of every axis in the commands and puts what it gives in its place.
+void for_each_axis(std::string& commands, const std::function<std::string(const std::string& quoted_text)>& change) {
+  for (const std::string& set :
+       {std::string("set xlabel '"), std::string("set ylabel '"), std::string("set cblabel '")})
+    for (std::size_t at = 0; (at = commands.find(set, at)) != std::string::npos;) {
+      const std::size_t begin = at + set.size();
+      std::size_t end = begin;
+      while (end < commands.size() &&
+             (commands[end] != '\'' || (end + 1 < commands.size() && commands[end + 1] == '\'')))
+        end += commands[end] == '\'' ? 2 : 1;
+      const std::string text = change(commands.substr(begin, end - begin));
+      commands.replace(begin, end - begin, text);
+      at = begin + text.size();
+    }
+}
+
+void rename_axes(std::string& commands, const std::vector<PictureStyle::Label>& labels) {
+  if (labels.empty()) return;
+  for_each_axis(commands, [&](const std::string& text) {
+    for (const PictureStyle::Label& label : labels)
+      if (as_shown(text) == label.name) return literal(label.shown);
+    return text;
+  });
+}
+
 }  // namespace
+
+std::vector<std::string> axis_names(const std::vector<Figure>& figures) {
+  std::vector<std::string> names;
+  for (const Figure& figure : figures) {
+    std::string commands = figure.commands;
+    for_each_axis(commands, [&](const std::string& text) {
+      if (const std::string name = as_shown(text); std::ranges::find(names, name) == names.end()) names.push_back(name);
+      return text;
+    });
+  }
+  return names;
+}
 
 std::string literal(const std::string& text) {
   std::string result;
@@ -236,6 +287,7 @@ std::string plot_script(const std::vector<Figure>& figures, const PictureStyle& 
     std::string commands = figure.commands;
     rename_axis(commands, "set xlabel ", figure.x_label, style.x_label);
     rename_axis(commands, "set ylabel ", figure.y_label, style.y_label);
+    rename_axes(commands, style.labels);
     script += fmt::format(
         "\ndo for [kind in '{4}'] {{\n"
         "eval (kind eq 'svg') ? svg({0}, {1}) : (kind eq 'png') ? png({0}, {1}) : (kind eq 'pdf') ? pdf({0}, {1}) : "

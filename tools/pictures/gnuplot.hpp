@@ -38,7 +38,15 @@ struct PictureStyle {
   std::optional<Size> size = std::nullopt;  // of every figure, instead of its own
   bool titles = true;
   std::string x_label = {}, y_label = {};  // instead of those of the figures; empty: their own
+  // Other names of axes of any picture, colour bars included, by the name that stands there.
+  struct Label {
+    std::string name, shown;
+  };
+  std::vector<Label> labels = {};
 };
+
+// The names of all axes, as they are shown.
+[[nodiscard]] std::vector<std::string> axis_names(const std::vector<Figure>& figures);
 
 // The script that draws all figures when run in the folder of their CSV files.
 [[nodiscard]] std::string plot_script(const std::vector<Figure>& figures, const PictureStyle& style = {});

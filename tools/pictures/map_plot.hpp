@@ -23,7 +23,7 @@ void name_axes(const MapDocument& document, Figure& figure);
 [[nodiscard]] std::vector<std::string> boundary_layers(const MapResult& result, const MapFiles& files);
 // Room for the key below and for the colours' numbers and name at the right.
 inline constexpr const char* map_frame =
-    "set bmargin at screen 0.2\nset tmargin at screen 0.89\nset lmargin at screen 0.12\nset rmargin at screen 0.83\n"
+    "set bmargin at screen 0.2\nset tmargin at screen 0.89\nset lmargin at screen 0.14\nset rmargin at screen 0.83\n"
     "set colorbox user origin screen 0.85, screen 0.2 size screen 0.03, screen 0.69\n";
 inline constexpr const char* map_clean_up =
     "unset label\nunset object\nunset logscale\nset key default\nset margins -1, -1, -1, -1\nset colorbox default\n"

@@ -21,6 +21,14 @@ std::string names_of(const std::vector<MeasuredQuantity>& quantities) {
   return text + (quantities.size() > most ? ", ..." : "");
 }
 
+// The key that a stress lacks, where there is such a link.
+std::string without_section(const std::string& name, const std::vector<MeasuredQuantity>& allowed) {
+  if (!name.starts_with("stress ")) return "";
+  const std::string rod = name.substr(7);
+  if (std::ranges::find(allowed, "deflection " + rod, &MeasuredQuantity::name) == allowed.end()) return "";
+  return fmt::format("; a stress of {0} needs {0}.section", rod);
+}
+
 // Factor from the header's unit to the one shown.
 double to_shown(const std::string& file, const ColumnName& column, const std::string& shown) {
   if (column.unit.empty() || column.unit == shown) return 1;
@@ -37,6 +45,12 @@ int MeasuredOverlay::column(const std::string& quantity) const {
   for (std::size_t k = 1; k < csv_.columns.size(); ++k)
     if (csv_.columns[k] == quantity) return static_cast<int>(k) + 1;
   return 0;
+}
+
+void MeasuredOverlay::add_column(const std::string& name, const Eigen::VectorXd& values) {
+  csv_.columns.push_back(name);
+  csv_.rows.conservativeResize(Eigen::NoChange, csv_.rows.cols() + 1);
+  csv_.rows.rightCols(1) = values;
 }
 
 std::string MeasuredOverlay::layer(const std::string& quantity, bool in_key) const {
@@ -75,8 +89,8 @@ MeasuredOverlay read_measured(const std::string& file, const MeasuredQuantity& a
     const ColumnName& column = table.header[k];
     const auto known = std::ranges::find(allowed, column.name, &MeasuredQuantity::name);
     if (known == allowed.end())
-      throw UsageError(
-          fmt::format("--measured: {}: found the column \"{}\", allowed: {}", file, column.name, names_of(allowed)));
+      throw UsageError(fmt::format("--measured: {}: found the column \"{}\", allowed: {}{}", file, column.name,
+                                   names_of(allowed), without_section(column.name, allowed)));
     csv.columns.push_back(known->name);
     csv.comment.front() += ", " + known->name + (known->unit.empty() ? "" : " [" + known->unit + "]");
     csv.rows.col(static_cast<Eigen::Index>(k)) *= to_shown(file, column, known->unit);

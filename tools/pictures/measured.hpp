@@ -21,6 +21,8 @@ class MeasuredOverlay {
 
   [[nodiscard]] bool empty() const { return csv_.rows.cols() == 0; }
   [[nodiscard]] const CsvFile& csv() const { return csv_; }
+  // A column beside the others, which no picture shows.
+  void add_column(const std::string& name, const Eigen::VectorXd& values);
   // A further layer of a plot, ", 'measured.csv' using 1:3 with points ..."; nothing where it was not measured.
   [[nodiscard]] std::string layer(const std::string& quantity, bool in_key = false) const;
   // "; circles: measured" where any of these was.

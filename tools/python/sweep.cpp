@@ -52,7 +52,7 @@ std::shared_ptr<SweepCore> swept(const SceneCore& core, const py::dict& written,
   return work.run([&] {
     if (!turns) {
       auto answer = std::make_shared<SweepCore>(SweepCore{sweep(core.source, request, work), std::nullopt});
-      if (!bands.empty()) answer->bands = sweep_bands(core.scene, request, bands, work);
+      if (!bands.empty()) answer->bands = sweep_bands(core.source, request, bands, work);
       return answer;
     }
     NonlinearSweepOptions options;

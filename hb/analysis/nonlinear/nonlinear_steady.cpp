@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "hb/analysis/nonlinear/bent_stress.hpp"
 #include "hb/analysis/nonlinear/motion_finder.hpp"
 #include "hb/engine/nonlinear/motion_stability.hpp"
 #include "lib/exact/exact_forces.hpp"
-#include "lib/exact/rod_tension.hpp"
 #include "lib/stopwatch.hpp"
 
 namespace hb {
@@ -21,23 +20,14 @@ using Eigen::MatrixXd;
 // With modes = "auto", of the error of the cut: that much above the motion's own.
 constexpr double motion_share = 0.05;
 
+constexpr Index envelope_points = 101;
+
 // f_k of the rod over T turns.
 RodCoefficients over_turns(const RodCoefficients& rod, int turns) {
   RodCoefficients all = rod;
   for (FourierSeries& f : all.f)
     if (f.c.size() > 0) f = repeated(f, turns);
   return all;
-}
-
-// EJ kappa from EJ w'': at the place found, 1/cos psi = (1 - w'^2)^(-1/2) with the slope of the modes kept.
-void bend(RodPeak& moment, const FourierSeries& q, double l) {
-  const Eigen::VectorXd at = fourier::evaluate(q, moment.crank_angle);
-  double slope = 0;
-  for (Index i = 0; i < at.size(); ++i) {
-    const double k = static_cast<double>(i + 1) * std::numbers::pi / l;
-    slope += k * std::cos(k * moment.x) * at(i);
-  }
-  moment.max_abs /= std::sqrt(1 - slope * slope);
 }
 
 std::vector<FourierSeries> by_rod(const ExactModel& exact, const FourierSeries& q) {
@@ -47,28 +37,59 @@ std::vector<FourierSeries> by_rod(const ExactModel& exact, const FourierSeries& 
   return all;
 }
 
-// With the axial force along the bent rod instead of the rigid mechanism's.
-RodStress bent_stress(const Body& rod, const TensionRange& force, const RodCoefficients& coefficients, double speed,
-                      double bending_moment) {
-  RodStress stress = rod_stress(rod, coefficients, speed, bending_moment);
-  stress.tension = std::max(0.0, force.high);
-  stress.compression = std::max(0.0, -force.low);
-  stress.axial = std::max(stress.tension, stress.compression) / rod.elastic->area;
-  stress.strain = (stress.axial + stress.bending) / rod.elastic->youngs_modulus;
-  return stress;
+// The same motion better known: with more harmonics, and by rod with more modes.
+struct BetterMotion {
+  ExactModel exact;
+  std::vector<FourierSeries> q;
+};
+
+std::vector<BetterMotion> better_motions(const ExactModel& exact, const PeriodicMotion& motion,
+                                         const std::optional<std::vector<FourierSeries>>& finer) {
+  const auto with_modes_of = [&](std::vector<FourierSeries> q) {
+    std::vector<ExactModel::Rod> rods;
+    for (std::size_t r = 0; r < q.size(); ++r) rods.push_back({exact.rods()[r].link, q[r].num_components()});
+    return BetterMotion{ExactModel(exact.linkage(), rods), std::move(q)};
+  };
+  std::vector<BetterMotion> all;
+  if (motion.q_finer.c.size() > 0) all.push_back(with_modes_of(by_rod(exact, motion.q_finer)));
+  if (finer) all.push_back(with_modes_of(*finer));
+  return all;
+}
+
+// Of the motion itself, and of the better ones.
+struct AllStresses {
+  std::optional<BentStresses> own;
+  std::vector<BentStresses> better;
+};
+
+AllStresses all_stresses(const ExactModel& exact, const NonlinearResult& result,
+                         const std::vector<BetterMotion>& better) {
+  Index H = result.motion.q.num_harmonics();
+  for (const BetterMotion& other : better) H = std::max(H, other.q.front().num_harmonics());
+  const Index N = stress_samples(H, result.turns);
+  AllStresses all;
+  all.own.emplace(exact, result.speed, result.turns, by_rod(exact, result.motion.q), N);
+  for (const BetterMotion& other : better) all.better.emplace_back(other.exact, result.speed, result.turns, other.q, N);
+  return all;
+}
+
+// With modes beyond I following their load as in the linear theory; damping of that tail counts harmonics of Omega/T,
+// and f_k^(p) are multiplied with powers of the speed given: of the crank's.
+RodCoefficients coefficients_of_motion(const SceneModel& model, const RodModel& rod, int turns) {
+  RodCoefficients coefficients = over_turns(model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], turns);
+  double power = 1;
+  for (FourierSeries& f : coefficients.f) {
+    f.c *= power;
+    power *= turns;
+  }
+  return coefficients;
 }
 
 // `finer`: by rod with more modes, where it is known.
 void add_rods(const SceneModel& model, const ExactModel& exact, const std::optional<std::vector<FourierSeries>>& finer,
-              NonlinearResult& result) {
+              const std::vector<BetterMotion>& better, NonlinearResult& result) {
   const PeriodicMotion& motion = result.motion;
-  std::vector<TensionRange> tension;
-  if (result.computed.shape) {
-    const Index N = std::max<Index>(256 * result.turns, fourier::fast_length(8 * motion.q.num_harmonics()));
-    tension = rod_tensions(exact, result.speed, CrankAngles(exact.linkage(), N, result.turns),
-                           ritz_samples(by_rod(exact, motion.q), result.speed, N, result.turns));
-  }
-  // With modes beyond I following their load as in the linear theory; damping of that tail counts harmonics of Omega/T.
+  const AllStresses stresses = result.computed.shape ? all_stresses(exact, result, better) : AllStresses{};
   const double base = result.speed / result.turns;
   for (std::size_t r = 0; r < model.rods.size(); ++r) {
     const RodModel& from = model.rods[r];
@@ -83,20 +104,15 @@ void add_rods(const SceneModel& model, const ExactModel& exact, const std::optio
     }
     const double error = motion.error.size() > 0 ? motion.error.segment(first, I).maxCoeff() : HUGE_VAL;
     rod.error_bound = error == 0 ? 0 : error / size;
-    // f_k^(p) are multiplied with powers of the speed given: of the crank's.
-    RodCoefficients coefficients =
-        over_turns(model.coefficients.rods[static_cast<std::size_t>(from.coefficients)], result.turns);
-    double power = 1;
-    for (FourierSeries& f : coefficients.f) {
-      f.c *= power;
-      power *= result.speed / base;
-    }
+    const RodCoefficients coefficients = coefficients_of_motion(model, from, result.turns);
     if (finer) rod.cut = cut_error(body, coefficients, base, rod.q, (*finer)[r]);
     if (result.computed.shape) {
       rod.shape = rod_shape(body, coefficients, base, rod.q);
       bend(rod.shape->bending_moment, rod.q, body.length);
       if (rod.cut) rod.peak_errors = peak_errors(body, *rod.shape, rod.q, rod.error_bound, *rod.cut);
-      rod.stress = bent_stress(body, tension[r], coefficients, base, rod.shape->bending_moment.max_abs);
+      rod.stress = stresses.own->largest(r, coefficients, rod.shape->bending_moment.max_abs);
+      rod.cycle = bent_cycle(body, *stresses.own, r, coefficients, I, result.turns, stresses.better);
+      if (rod.cycle) rod.envelope = stress_envelope(body, stresses.own->field(r, coefficients), envelope_points);
     }
     // Over the turns.
     const auto turned = [&](double& angle) { angle *= result.turns; };
@@ -106,60 +122,95 @@ void add_rods(const SceneModel& model, const ExactModel& exact, const std::optio
   }
 }
 
-// Forces of the motion as series over its turns, beside the rigid ones.
-JointForces forces_of_motion(const ExactModel& exact, double speed, int turns, const FourierSeries& q) {
-  JointForces forces = joint_forces(exact.linkage(), speed, {});
+// Positions as series over the turns, in the dyads' order.
+std::vector<SliderMotion> sliders_of(const Linkage& linkage, const FourierSeries& positions, double base) {
+  std::vector<SliderMotion> sliders;
+  for (const Dyad& dyad : linkage.dyads)
+    if (const auto* slider = std::get_if<Slider>(&dyad.closing))
+      sliders.push_back(
+          {slider->name, FourierSeries(Eigen::MatrixXcd(positions.c.row(static_cast<Index>(sliders.size())))), base});
+  return sliders;
+}
+
+// Forces of the motion as series over its turns, beside the rigid ones; what its frame feels; its sliders.
+void add_forces(const ExactModel& exact, NonlinearResult& result) {
+  const Linkage& linkage = exact.linkage();
+  const FourierSeries& q = result.motion.q;
+  const int turns = result.turns;
+  JointForces forces = joint_forces(linkage, result.speed, {});
   // Bodies move with more harmonics than the rods bend with.
   Index N = 256 * turns;
-  MatrixXd values;
+  ForceSamples samples;
   for (;; N *= 2) {
-    const CrankAngles angles(exact.linkage(), N, turns);
     if (2 * q.num_harmonics() + 2 > N) continue;
-    values = exact_forces(exact, speed, angles, ritz_samples(by_rod(exact, q), speed, N, turns)).values;
-    const FourierSeries series = fourier::analyse(values);
+    samples = exact_forces(exact, result.speed, CrankAngles(linkage, N, turns),
+                           ritz_samples(by_rod(exact, q), result.speed, N, turns));
+    const FourierSeries series = fourier::analyse(samples.values);
     const double left = series.c.rightCols(series.c.cols() / 4).cwiseAbs().maxCoeff();
-    if (!values.allFinite() || left <= 1e-13 * series.c.cwiseAbs().maxCoeff() || N >= 8192 * turns) break;
+    if (!samples.values.allFinite() || left <= 1e-13 * series.c.cwiseAbs().maxCoeff() || N >= 8192 * turns) break;
   }
+  const auto over_all_turns = [&](FourierSeries& series) {
+    if (turns > 1 && series.c.size() > 0) series = repeated(series, turns);
+  };
   Index row = 0;
   for (JointForce& joint : forces.joints) {
     const Index count = joint.rigid.num_components();
-    joint.elastic = fourier::analyse(values.middleRows(row, count));
-    if (turns > 1 && joint.rigid.c.size() > 0) joint.rigid = repeated(joint.rigid, turns);
+    joint.elastic = fourier::analyse(samples.values.middleRows(row, count));
+    over_all_turns(joint.rigid);
     row += count;
   }
-  forces.torque = fourier::analyse(values.row(row));
-  if (turns > 1 && forces.torque_rigid.c.size() > 0) forces.torque_rigid = repeated(forces.torque_rigid, turns);
-  return forces;
+  forces.torque = fourier::analyse(samples.values.row(row));
+  over_all_turns(forces.torque_rigid);
+  result.forces = std::move(forces);
+  FrameForces frame{frame_forces(linkage, result.speed, {}).rigid, fourier::analyse(samples.frame)};
+  over_all_turns(frame.rigid);
+  result.frame = std::move(frame);
+  if (samples.sliders.rows() > 0)
+    result.sliders = sliders_of(linkage, fourier::analyse(samples.sliders), result.speed / turns);
 }
 
-// By the motion with more harmonics, as for linear forces.
-ForceErrors errors_of(const ExactModel& exact, const NonlinearResult& result) {
+// Twice what the better motions change: with more harmonics, and with more modes (the cut).
+void add_force_errors(const ExactModel& exact, const std::vector<BetterMotion>& better, NonlinearResult& result) {
   const Index N = 1024 * result.turns;
-  const auto values = [&](const FourierSeries& q) {
-    return exact_forces(exact, result.speed, CrankAngles(exact.linkage(), N, result.turns),
-                        ritz_samples(by_rod(exact, fourier::resized(q, std::min<Index>(q.num_harmonics(), N / 2 - 1))),
-                                     result.speed, N, result.turns))
-        .values;
+  const CrankAngles angles(exact.linkage(), N, result.turns);
+  const auto samples_of = [&](const ExactModel& of, std::vector<FourierSeries> q) {
+    for (FourierSeries& series : q)
+      series = fourier::resized(series, std::min<Index>(series.num_harmonics(), N / 2 - 1));
+    return exact_forces(of, result.speed, angles, ritz_samples(q, result.speed, N, result.turns));
   };
-  const MatrixXd here = values(result.motion.q);
-  const Index last = here.rows() - 1;
-  const double force = here.topRows(last).cwiseAbs().maxCoeff(), torque = here.row(last).cwiseAbs().maxCoeff();
-  if (result.motion.q_finer.c.size() == 0) return {HUGE_VAL, HUGE_VAL, 0, 0};
-  const MatrixXd change = values(result.motion.q_finer) - here;
-  constexpr double safety = 2;
-  return {safety * change.topRows(last).cwiseAbs().maxCoeff() / force,
-          safety * change.row(last).cwiseAbs().maxCoeff() / torque, 0, 0};
+  const ForceSamples here = samples_of(exact, by_rod(exact, result.motion.q));
+  const Index last = here.values.rows() - 1;
+  const double force = here.values.topRows(last).cwiseAbs().maxCoeff(),
+               torque = here.values.row(last).cwiseAbs().maxCoeff();
+  result.force_errors = ForceErrors{0, 0, 0, 0};
+  result.frame_errors = FrameErrors{};
+  const bool finer = result.motion.q_finer.c.size() > 0;
+  if (!finer) result.force_errors = {HUGE_VAL, HUGE_VAL, 0, 0}, result.frame_errors = {HUGE_VAL, HUGE_VAL};
+  for (std::size_t k = 0; k < better.size(); ++k) {
+    const ForceSamples there = samples_of(better[k].exact, better[k].q);
+    constexpr double safety = 2;
+    const MatrixXd change = safety * (there.values - here.values);
+    const double by_force = change.topRows(last).cwiseAbs().maxCoeff() / force,
+                 by_torque = change.row(last).cwiseAbs().maxCoeff() / torque;
+    const bool harmonics = finer && k == 0;
+    (harmonics ? result.force_errors->force : result.force_errors->force_cut) = by_force;
+    (harmonics ? result.force_errors->torque : result.force_errors->torque_cut) = by_torque;
+    const Eigen::Matrix3Xd frame = safety * (there.frame - here.frame);
+    result.frame_errors->force += frame.topRows(2).colwise().norm().maxCoeff();
+    result.frame_errors->moment += frame.row(2).cwiseAbs().maxCoeff();
+  }
 }
 
 // Rods, stability and forces of the motion found.
 void describe(const SceneModel& model, const MotionFinder& finder, const Settings& settings, NonlinearResult& result) {
   std::optional<std::vector<FourierSeries>> finer;
-  if (result.computed.steady || result.computed.shape) {
+  if (result.computed.steady || result.computed.shape || result.computed.reactions) {
     Stopwatch watch;
     finer = finder.with_more_modes();
     result.stages.push_back({"motion with more modes", watch.seconds(), finer ? "" : "none found"});
   }
-  add_rods(model, finder.exact(), finer, result);
+  const std::vector<BetterMotion> better = better_motions(finder.exact(), result.motion, finer);
+  add_rods(model, finder.exact(), finer, better, result);
   if (settings.only.stability) {
     Stopwatch watch;
     const StabilityOptions exponents{.tolerance = exponent_share * result.tolerance};
@@ -175,8 +226,8 @@ void describe(const SceneModel& model, const MotionFinder& finder, const Setting
   }
   if (!settings.only.reactions) return;
   Stopwatch watch;
-  result.forces = forces_of_motion(finder.exact(), result.speed, result.turns, result.motion.q);
-  result.force_errors = errors_of(finder.exact(), result);
+  add_forces(finder.exact(), result);
+  add_force_errors(finder.exact(), better, result);
   result.stages.push_back({"joint forces", watch.seconds(), ""});
 }
 
@@ -303,11 +354,12 @@ NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& 
   std::vector<ExactModel::Rod> modes;
   for (const RodModel& rod : model.rods) modes.push_back({rod.link, rod.system.num_modes()});
   const ExactModel exact(*model.linkage(), modes);
-  add_rods(model, exact, std::nullopt, result);
+  const std::vector<BetterMotion> better = better_motions(exact, motion, std::nullopt);
+  add_rods(model, exact, std::nullopt, better, result);
   if (settings.only.stability) result.stability = stability;
   if (settings.only.reactions) {
-    result.forces = forces_of_motion(exact, motion.speed, motion.turns, motion.q);
-    result.force_errors = errors_of(exact, result);
+    add_forces(exact, result);
+    add_force_errors(exact, better, result);
   }
   return result;
 }

@@ -8,8 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/frame_forces.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/nonlinear/rod_peaks.hpp"
+#include "hb/analysis/slider_motion.hpp"
+#include "hb/analysis/stress_cycle.hpp"
 #include "hb/engine/nonlinear/periodic_motion.hpp"
 
 namespace hb {
@@ -31,12 +34,20 @@ struct NonlinearRod {
   std::optional<PeakErrors> peak_errors = std::nullopt;  // of the shape, beside `cut`
   std::optional<RodShape> shape = std::nullopt;  // the moment EJ kappa, kappa = w''/cos psi
   std::optional<RodStress> stress = std::nullopt;  // beside it, with the axial force along the bent rod
+  std::optional<StressCycle> cycle =
+      std::nullopt;  // with a section; its error infinite where no better motion is known
+  std::optional<StressEnvelope> envelope = std::nullopt;  // beside it
 };
 
 // Another motion of as many turns at the same speed.
 struct OtherMotion {
   RodPeaks max_abs;  // by rod and mode
   std::optional<Verdict> verdict;
+};
+
+// Estimates of the errors of shaking force (its length) and moment, in their units.
+struct FrameErrors {
+  double force = 0, moment = 0;
 };
 
 enum class MotionSearch {
@@ -66,6 +77,9 @@ struct NonlinearResult {
   std::optional<Stability> stability;  // of all rods together
   std::optional<JointForces> forces;
   std::optional<ForceErrors> force_errors;
+  std::optional<FrameForces> frame;  // beside the forces
+  std::optional<FrameErrors> frame_errors;
+  std::vector<SliderMotion> sliders;  // of the bent mechanism; beside the forces
   std::vector<OtherMotion> others;
   std::vector<std::string> shortfalls;
   std::vector<Stage> stages;

@@ -343,7 +343,8 @@ class Sweeper {
         const NonlinearResult answer =
             nonlinear_answer(*place.model, *point.motion, std::nullopt, result_.tolerance, settings);
         for (const NonlinearRod& rod : answer.rods)
-          point.loads.push_back({rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, *rod.stress});
+          point.loads.push_back(
+              {rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, *rod.stress, rod.cycle});
       }
     result_.stages.push_back({"shape and stress of the bent rods", watch.seconds(), ""});
   }

@@ -10,6 +10,7 @@
 
 #include "hb/analysis/nonlinear/rod_peaks.hpp"
 #include "hb/analysis/rod_stress.hpp"
+#include "hb/analysis/stress_cycle.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "hb/engine/nonlinear/continuation.hpp"
 
@@ -19,6 +20,7 @@ namespace hb {
 struct BentLoads {
   double deflection = 0, bending_moment = 0;
   RodStress stress;
+  std::optional<StressCycle> cycle;  // with a section; the error without that of the modes left out
 };
 
 struct NonlinearPoint {

@@ -238,23 +238,29 @@ class Tuner {
     return rods;
   }
 
+  // Besides what was asked; the stress where all elastic links have a section.
+  static std::vector<Metric> always_shown(const Scene& scene) {
+    std::vector<Metric> metrics = {{MetricKind::deflection, "", 1, "deflection"},
+                                   {MetricKind::margin, "", 1, "stable"}};
+    const auto* linkage = std::get_if<Linkage>(&scene.model);
+    if (!linkage) return metrics;
+    metrics.push_back({MetricKind::mass, "", 1, "mass"});
+    const std::vector<int> links = elastic_links(*linkage);
+    if (links.empty()) return metrics;
+    metrics.push_back({MetricKind::theory, "", 1, "theory"});
+    if (std::ranges::all_of(links, [&](int link) { return body_at(*linkage, link)->elastic->section_height > 0; }))
+      metrics.push_back({MetricKind::total_stress, "", 1, "total-stress"});
+    return metrics;
+  }
+
   void report(DesignSpace& space, const DesignProblem& problem, TuneResult& result) {
-    // Besides what was asked: deflection, margin and mass always.
     std::vector<Metric> shown;
     for (const GoalTerm& term : task_.goal.terms) shown.push_back(term.metric);
     for (const Keep& keep : task_.keeps)
       if (std::ranges::find(shown, keep.metric) == shown.end()) shown.push_back(keep.metric);
-    std::vector<MetricKind> more = {MetricKind::deflection, MetricKind::margin};
     const Scene scene = scene_at(start_);
-    if (const auto* linkage = std::get_if<Linkage>(&scene.model)) {
-      more.push_back(MetricKind::mass);
-      if (!elastic_links(*linkage).empty()) more.push_back(MetricKind::theory);
-    }
-    const char* const words[] = {"deflection", "stable", "mass", "theory"};
-    for (std::size_t k = 0; k < more.size(); ++k) {
-      const Metric metric{more[k], "", 1, words[k]};
+    for (const Metric& metric : always_shown(scene))
       if (std::ranges::find(shown, metric) == shown.end()) shown.push_back(metric);
-    }
     const auto began = std::chrono::steady_clock::now();
     DesignSpace::Report before = space.report(result.start, shown, verification, verification_tolerance);
     DesignSpace::Report after = space.report(result.tuned, shown, verification, verification_tolerance);

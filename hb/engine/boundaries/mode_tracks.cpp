@@ -1,7 +1,9 @@
 #include "hb/engine/boundaries/mode_tracks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "lib/constants.hpp"
 
@@ -14,38 +16,62 @@ constexpr double renaming_penalty = 0.05;
 // ... and not at all beyond this.
 constexpr double farthest_renamed = 0.5;
 
-// Two exponents of one mode: a conjugate pair, or two that are locked to the crank (or overdamped).
+constexpr std::size_t nobody = std::numeric_limits<std::size_t>::max();
+
+// Two exponents that may be one mode's: a conjugate pair, or two real multipliers of one sign (locked to the crank, or
+// overdamped), each with the name and frequency that the solver gave it; or one whose partner is not there.
 struct Pair {
+  std::size_t first, second;  // places among the exponents
   double growth, growth_low;
   double folded;  // |Im|
-  double frequency;  // as named
-  int mode;
+  bool locked;
+  std::array<double, 2> frequency;
+  std::array<int, 2> mode;
+
+  [[nodiscard]] bool named(int m) const { return mode[0] == m || mode[1] == m; }
+  // Of the two frequencies the one nearer to this.
+  [[nodiscard]] double frequency_near(double expected) const {
+    return std::abs(frequency[1] - expected) < std::abs(frequency[0] - expected) ? frequency[1] : frequency[0];
+  }
 };
 
+Pair pair_of(const std::vector<Exponent>& all, std::size_t i, std::size_t j, bool locked) {
+  const Exponent &a = all[i], &b = j == nobody ? all[i] : all[j];
+  return {i,
+          j,
+          std::max(a.value.real(), b.value.real()),
+          std::min(a.value.real(), b.value.real()),
+          std::abs(a.value.imag()),
+          locked,
+          {a.frequency, b.frequency},
+          {a.mode, b.mode}};
+}
+
+// Conjugates belong together. Those without one have real multipliers: any two of one sign may be a mode's.
 std::vector<Pair> pairs_of(const Stability& stability) {
   const std::vector<Exponent>& all = stability.exponents;
+  const auto bar = [&](std::size_t i, std::size_t j) {
+    return all[i].error + all[j].error + 1e-13 * std::abs(all[i].value);
+  };
   std::vector<bool> used(all.size(), false);
   std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = i + 1; j < all.size() && !used[i]; ++j)
+      if (!used[j] && all[i].value.imag() != 0 && std::abs(all[j].value - std::conj(all[i].value)) <= bar(i, j)) {
+        used[i] = used[j] = true;
+        pairs.push_back(pair_of(all, i, j, false));
+      }
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (used[i]) continue;
-    used[i] = true;
-    // The partner: its conjugate; else the next one of the same mode.
-    std::size_t partner = all.size();
-    for (std::size_t j = i + 1; j < all.size(); ++j) {
-      if (used[j]) continue;
-      const double bar = all[i].error + all[j].error + 1e-13 * std::abs(all[i].value);
-      if (all[i].value.imag() != 0 && std::abs(all[j].value - std::conj(all[i].value)) <= bar) {
-        partner = j;
-        break;
-      }
-      if (partner == all.size() && all[j].mode == all[i].mode) partner = j;
+    bool alone = true;
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      if (j == i || used[j]) continue;
+      const double apart = std::abs(std::abs(all[i].value.imag()) - std::abs(all[j].value.imag()));
+      if (!(apart <= bar(i, j) + 1e-9 * std::abs(all[i].value.imag()))) continue;
+      alone = false;
+      if (j > i) pairs.push_back(pair_of(all, i, j, true));
     }
-    Pair pair{all[i].value.real(), all[i].value.real(), std::abs(all[i].value.imag()), all[i].frequency, all[i].mode};
-    if (partner < all.size()) {
-      used[partner] = true;
-      pair.growth_low = all[partner].value.real();
-    }
-    pairs.push_back(pair);
+    if (alone) pairs.push_back(pair_of(all, i, nobody, true));
   }
   return pairs;
 }
@@ -54,13 +80,14 @@ std::vector<Pair> pairs_of(const Stability& stability) {
 // that the solver named, so that a wrong turn is not followed further and further.
 double unfolded(const Pair& pair, double speed, double expected) {
   constexpr double weight_of_name = 0.3;  // chosen by experiment
-  double best = pair.frequency, least = HUGE_VAL;
-  for (const double near : {expected, pair.frequency}) {
+  const double name = pair.frequency_near(expected);
+  double best = name, least = HUGE_VAL;
+  for (const double near : {expected, name}) {
     for (const double sign : {1.0, -1.0}) {
       const double middle = std::round((near - sign * pair.folded) / speed);
       for (const double k : {middle - 1, middle, middle + 1}) {
         const double frequency = std::abs(sign * pair.folded + k * speed);
-        const double distance = std::abs(frequency - expected) + weight_of_name * std::abs(frequency - pair.frequency);
+        const double distance = std::abs(frequency - expected) + weight_of_name * std::abs(frequency - name);
         if (distance < least) {
           least = distance;
           best = frequency;
@@ -70,27 +97,51 @@ double unfolded(const Pair& pair, double speed, double expected) {
   }
   // The motion's main harmonic is the one followed or one beside it; further off the expectation has gone astray.
   constexpr double farthest_from_name = 1.25;
-  const double off = std::abs(best - pair.frequency);
-  return off <= 1e-9 * speed || off > farthest_from_name * speed ? pair.frequency : best;
+  const double off = std::abs(best - name);
+  return off <= 1e-9 * speed || off > farthest_from_name * speed ? name : best;
+}
+
+// A locked mode stays at its multiple of half the speed for as long as it is locked.
+double locked_frequency(const Pair& pair, double speed, double expected) {
+  double best = pair.folded;
+  for (const double sign : {1.0, -1.0}) {
+    const double k = std::round((expected - sign * pair.folded) / speed);
+    const double frequency = std::abs(sign * pair.folded + k * speed);
+    if (std::abs(frequency - expected) < std::abs(best - expected)) best = frequency;
+  }
+  return best;
+}
+
+bool taken(const Pair& pair, const std::vector<bool>& used) {
+  return used[pair.first] || (pair.second != nobody && used[pair.second]);
+}
+
+void take(const Pair& pair, std::vector<bool>& used) {
+  used[pair.first] = true;
+  if (pair.second != nobody) used[pair.second] = true;
 }
 
 }  // namespace
 
 std::vector<ModeState> modes_by_name(const Stability& stability, int num_modes) {
   std::vector<ModeState> states(static_cast<std::size_t>(num_modes), ModeState{nan, nan, nan});
-  std::vector<Pair> homeless;
-  for (const Pair& pair : pairs_of(stability)) {
-    const auto mode = static_cast<std::size_t>(pair.mode);
-    if (mode < states.size() && std::isnan(states[mode].frequency)) {
-      states[mode] = {pair.frequency, pair.growth, pair.growth_low};
-    } else {
-      homeless.push_back(pair);
+  std::vector<Pair> pairs = pairs_of(stability);
+  std::vector<bool> used(stability.exponents.size(), false);
+  const auto settle = [&](const Pair& pair, std::size_t mode) {
+    take(pair, used);
+    states[mode] = {pair.frequency[0], pair.growth, pair.growth_low};
+  };
+  // Pairs of one name first, then what is left.
+  for (const bool one_name : {true, false})
+    for (const Pair& pair : pairs) {
+      const auto mode = static_cast<std::size_t>(pair.mode[0]);
+      if (taken(pair, used) || (one_name && pair.mode[0] != pair.mode[1])) continue;
+      if (mode < states.size() && std::isnan(states[mode].frequency)) settle(pair, mode);
     }
-  }
-  for (const Pair& pair : homeless) {
+  for (const Pair& pair : pairs) {
     const auto free =
         std::find_if(states.begin(), states.end(), [](const ModeState& s) { return std::isnan(s.frequency); });
-    if (free != states.end()) *free = {pair.frequency, pair.growth, pair.growth_low};
+    if (free != states.end() && !taken(pair, used)) settle(pair, static_cast<std::size_t>(free - states.begin()));
   }
   return states;
 }
@@ -106,16 +157,22 @@ std::vector<ModeState> modes_by_continuity(const Stability& stability, double sp
   std::vector<Match> matches;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
     for (std::size_t m = 0; m < expected.size(); ++m) {
-      const bool renamed = pairs[p].mode != static_cast<int>(m);
+      const Pair& pair = pairs[p];
+      const bool renamed = !pair.named(static_cast<int>(m));
       const ModeState& state = expected[m];
       if (std::isnan(state.frequency)) {  // nothing to be near to: the name decides, after all others
-        if (!renamed) matches.push_back({1e3, p, m, pairs[p].frequency});
+        if (!renamed) matches.push_back({1e3, p, m, pair.frequency[0]});
         continue;
       }
-      const double frequency = unfolded(pairs[p], speed, state.frequency);
-      const double damping = -0.5 * (pairs[p].growth + pairs[p].growth_low);
-      const double distance =
-          std::hypot(frequency - state.frequency, damping - state.damping()) / speed + (renamed ? renaming_penalty : 0);
+      const bool stays = state.locked && pair.locked;
+      const double frequency =
+          stays ? locked_frequency(pair, speed, state.frequency) : unfolded(pair, speed, state.frequency);
+      const double damping = -0.5 * (pair.growth + pair.growth_low);
+      // Which two of several belong together: their mean stays, and where they were locked before, how far they are
+      // apart.
+      const double spread = stays ? 0.5 * ((pair.growth - pair.growth_low) - (state.growth - state.growth_low)) : 0;
+      const double distance = std::hypot(frequency - state.frequency, damping - state.damping(), spread) / speed +
+                              (renamed ? renaming_penalty : 0);
       if (renamed && distance > farthest_renamed) continue;
       matches.push_back({distance, p, m, frequency});
     }
@@ -123,11 +180,13 @@ std::vector<ModeState> modes_by_continuity(const Stability& stability, double sp
   std::stable_sort(matches.begin(), matches.end(),
                    [](const Match& a, const Match& b) { return a.distance < b.distance; });
   std::vector<ModeState> states(expected.size(), ModeState{nan, nan, nan});
-  std::vector<bool> used(pairs.size(), false), taken(expected.size(), false);
+  std::vector<bool> used(stability.exponents.size(), false), settled(expected.size(), false);
   for (const Match& match : matches) {
-    if (used[match.pair] || taken[match.mode]) continue;
-    used[match.pair] = taken[match.mode] = true;
-    states[match.mode] = {match.frequency, pairs[match.pair].growth, pairs[match.pair].growth_low};
+    const Pair& pair = pairs[match.pair];
+    if (taken(pair, used) || settled[match.mode]) continue;
+    take(pair, used);
+    settled[match.mode] = true;
+    states[match.mode] = {match.frequency, pair.growth, pair.growth_low, pair.locked};
   }
   return states;
 }

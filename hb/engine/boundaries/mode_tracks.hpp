@@ -12,6 +12,7 @@ struct ModeState {
   double frequency = 0;  // >= 0, unfolded, rad per unit time
   double growth = 0;  // larger real part of its two exponents, 1/time
   double growth_low = 0;  // smaller one
+  bool locked = false;  // two real multipliers: the frequency is a multiple of half the crank's
   double damping() const { return -0.5 * (growth + growth_low); }
 };
 

@@ -73,8 +73,7 @@ class Stress:
     error: Any = None
     """Of each of these stresses, an estimate."""
     yield_safety: Any = None
-    """S_y/max_abs, with the key `yield`; of a motion without linearisation a lower bound. None (sweeps: NaN, or infinite
-    stresses' absence) where there is none."""
+    """S_y/max_abs, with the key `yield`. None (sweeps: NaN, or infinite stresses' absence) where there is none."""
     yield_safety_error: Any = None
     fatigue_safety: Any = None
     """n of 1/n = amplitude/S_e + max(mean, 0)/S at the place where it is smallest."""

@@ -192,7 +192,7 @@ class Scene:
         branches of the motion without linearisation, of up to `period` turns. search: False leaves out what lies
         between the points (bands, resonance peaks), as only="growth" or "verdict" does for bands. threads: 1 or more, or
         "all"; the answer has the same bits. time_limit: seconds; the answer is then what is there, and `shortfalls` says
-        so. band: as in steady(), of a sweep along the speed: `bands` of the answer. progress: True, or a function of
+        so. band: as in steady(): `bands` of the answer. progress: True, or a function of
         (what, done, total).
         """
         from .sweep import Sweep

@@ -130,7 +130,7 @@ class Steady:
 
     @property
     def frame(self) -> "Optional[Frame]":
-        """Shaking force and moment; None where not computed, and of a motion without linearisation."""
+        """Shaking force and moment; None where not computed."""
         from .machine_loads import Frame, made
 
         return made(Frame, self._doc.get("frame"))
