@@ -21,7 +21,7 @@ double or_nan(const std::optional<double>& value) { return value.value_or(nan); 
 struct LoadQuantity {
   const char* key;  // of the JSON; of `stress` where it is one
   const char* column;  // of the CSV, behind the rod's name
-  enum class Kind { deflection, stress, factor } kind;
+  enum class Kind { length, stress, factor, angle } kind;
   LoadValue value;
 };
 
@@ -36,9 +36,13 @@ LoadValue of_safety(std::optional<double> StressPoint::*member) {
 const std::vector<LoadQuantity>& load_quantities() {
   using Kind = LoadQuantity::Kind;
   static const std::vector<LoadQuantity> list = {
-      {"deflection", "deflection", Kind::deflection, [](const RodLoads& loads) { return or_nan(loads.deflection); }},
+      {"deflection", "deflection", Kind::length, [](const RodLoads& loads) { return or_nan(loads.deflection); }},
       {"theory_error", "theory error", Kind::factor, [](const RodLoads& loads) { return or_nan(loads.theory_error); }},
+      {"axial", "axial stress", Kind::stress, of_stress(&StressPoint::axial)},
+      {"bending", "bending stress", Kind::stress, of_stress(&StressPoint::bending)},
       {"max_abs", "stress", Kind::stress, of_stress(&StressPoint::max_abs)},
+      {"x", "stress at x", Kind::length, of_stress(&StressPoint::x)},
+      {"crank_angle", "stress at crank angle", Kind::angle, of_stress(&StressPoint::crank_angle)},
       {"mean", "mean stress", Kind::stress, of_stress(&StressPoint::mean)},
       {"amplitude", "stress amplitude", Kind::stress, of_stress(&StressPoint::amplitude)},
       {"error", "stress error", Kind::stress, of_stress(&StressPoint::error)},
@@ -59,13 +63,13 @@ bool somewhere(const MapResult& result, std::size_t r, const LoadQuantity& quant
   return false;
 }
 
-Json grid(const MapResult& result, std::size_t r, const LoadQuantity& quantity) {
+Json grid(const MapResult& result, std::size_t r, const LoadQuantity& quantity, double factor) {
   const std::size_t nx = result.x().size();
   Json rows = Json::array();
   for (std::size_t p = 0; p < result.loads.size(); ++p) {
     if (p % nx == 0) rows.push_back(Json::array());
     const RodLoads* loads = loads_at(result, p, r);
-    rows.back().push_back(loads ? number(quantity.value(*loads)) : Json(nullptr));
+    rows.back().push_back(loads ? number(factor * quantity.value(*loads)) : Json(nullptr));
   }
   return rows;
 }
@@ -95,12 +99,13 @@ bool trusted_loads(const MapResult& result, std::size_t place, std::size_t r) {
          loads->theory_error.value_or(HUGE_VAL) <= theory_error_limit;
 }
 
-void add_loads(Json& rod, const MapResult& result, std::size_t r) {
+void add_loads(Json& rod, const MapResult& result, std::size_t r, const Units& units) {
   const std::vector<LoadQuantity>& all = load_quantities();
   for (std::size_t k = 0; k < all.size(); ++k) {
     const bool safety = all[k].value && std::string(all[k].key).ends_with("safety");
     if (safety && !somewhere(result, r, all[k])) continue;
-    (k < first_of_stress ? rod : rod["stress"])[all[k].key] = grid(result, r, all[k]);
+    (k < first_of_stress ? rod : rod["stress"])[all[k].key] =
+        grid(result, r, all[k], all[k].kind == LoadQuantity::Kind::angle ? scene_angle(1, units) : 1);
   }
 }
 
@@ -118,12 +123,15 @@ CsvFile map_loads_csv(const MapDocument& document) {
   for (std::size_t rod = 0; rod < r.rods.size(); ++rod)
     for (const LoadQuantity& quantity : load_quantities()) {
       if (!somewhere(r, rod, quantity)) continue;
-      const bool stress = quantity.kind == LoadQuantity::Kind::stress;
-      const std::string unit = stress                                            ? " [MPa]"
-                               : quantity.kind == LoadQuantity::Kind::deflection ? " [" + units.length + "]"
-                                                                                 : "";
+      using Kind = LoadQuantity::Kind;
+      const Kind kind = quantity.kind;
+      const std::string unit = kind == Kind::stress   ? " [MPa]"
+                               : kind == Kind::length ? " [" + units.length + "]"
+                               : kind == Kind::angle  ? " [deg]"
+                                                      : "";
+      const double to_shown = kind == Kind::stress ? units.megapascal : kind == Kind::angle ? degrees_per_radian : 1;
       file.columns.push_back(r.rods[rod] + " " + quantity.column + unit);
-      values.push_back([&, rod, factor = stress ? units.megapascal : 1.0](std::size_t p) {
+      values.push_back([&, rod, factor = to_shown](std::size_t p) {
         const RodLoads* loads = loads_at(r, p, rod);
         return loads ? factor * quantity.value(*loads) : nan;
       });

@@ -7,7 +7,7 @@
 namespace hb::tools {
 
 // `deflection`, `theory_error` and the grids of `stress` of one rod, rows along x; null where there are none.
-void add_loads(Json& rod, const MapResult& result, std::size_t r);
+void add_loads(Json& rod, const MapResult& result, std::size_t r, const Units& units);
 
 // x, y, then of each rod deflection, stress, its error, safeties where there are any; NaN where there is no answer.
 [[nodiscard]] CsvFile map_loads_csv(const MapDocument& document);

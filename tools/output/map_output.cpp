@@ -226,7 +226,7 @@ std::string map_text(const MapDocument& document) {
     }
     if (!r.loads.empty()) {
       Json loads = Json::object();
-      add_loads(loads, r, k);
+      add_loads(loads, r, k, document.scene.units);
       for (auto& [key, grid] : loads.items()) rod.add(key, std::move(grid));
     }
     rods.add(r.rods[k], rod);

@@ -30,25 +30,32 @@ const StressPoint* stress_at(const SweepPoint& point, std::size_t r) {
 
 double or_none(const std::optional<double>& value) { return value.value_or(no_number); }
 
+enum class StressKind { stress, factor, length, angle };
+
 struct StressQuantity {
   const char* key;
-  const char* column;  // of the CSV
+  const char* column;  // of the CSV; empty: the document alone
   StressValue value;
-  bool is_stress;  // else a factor
+  StressKind kind;
 };
 
 const std::vector<StressQuantity>& stress_quantities() {
+  using enum StressKind;
   static const std::vector<StressQuantity> list = {
-      {"max_abs", "stress [MPa]", [](const StressPoint& p) { return p.max_abs; }, true},
-      {"mean", "mean stress [MPa]", [](const StressPoint& p) { return p.mean; }, true},
-      {"amplitude", "stress amplitude [MPa]", [](const StressPoint& p) { return p.amplitude; }, true},
-      {"error", "stress error [MPa]", [](const StressPoint& p) { return p.error; }, true},
-      {"yield_safety", "yield safety", [](const StressPoint& p) { return or_none(p.yield_safety); }, false},
+      {"axial", "axial stress [MPa]", [](const StressPoint& p) { return p.axial; }, stress},
+      {"bending", "bending stress [MPa]", [](const StressPoint& p) { return p.bending; }, stress},
+      {"max_abs", "stress [MPa]", [](const StressPoint& p) { return p.max_abs; }, stress},
+      {"x", "", [](const StressPoint& p) { return p.x; }, length},
+      {"crank_angle", "", [](const StressPoint& p) { return p.crank_angle; }, angle},
+      {"mean", "mean stress [MPa]", [](const StressPoint& p) { return p.mean; }, stress},
+      {"amplitude", "stress amplitude [MPa]", [](const StressPoint& p) { return p.amplitude; }, stress},
+      {"error", "stress error [MPa]", [](const StressPoint& p) { return p.error; }, stress},
+      {"yield_safety", "yield safety", [](const StressPoint& p) { return or_none(p.yield_safety); }, factor},
       {"yield_safety_error", "yield safety error",
-       [](const StressPoint& p) { return p.yield_safety ? p.yield_safety_error : no_number; }, false},
-      {"fatigue_safety", "fatigue safety", [](const StressPoint& p) { return or_none(p.fatigue_safety); }, false},
+       [](const StressPoint& p) { return p.yield_safety ? p.yield_safety_error : no_number; }, factor},
+      {"fatigue_safety", "fatigue safety", [](const StressPoint& p) { return or_none(p.fatigue_safety); }, factor},
       {"fatigue_safety_error", "fatigue safety error",
-       [](const StressPoint& p) { return p.fatigue_safety ? p.fatigue_safety_error : no_number; }, false}};
+       [](const StressPoint& p) { return p.fatigue_safety ? p.fatigue_safety_error : no_number; }, factor}};
   return list;
 }
 
@@ -152,12 +159,13 @@ std::vector<MachineColumn> machine_columns(const SweepScene& scene, const SweepR
 
 }  // namespace
 
-void add_stress(Json& rod, std::size_t r, const std::vector<SweepPoint>& points) {
+void add_stress(Json& rod, std::size_t r, const std::vector<SweepPoint>& points, const Units& units) {
   for (const StressQuantity* quantity : quantities_of(points, r)) {
     Json& array = rod["stress"][quantity->key] = Json::array();
     for (const SweepPoint& point : points) {
       const StressPoint* stress = stress_at(point, r);
-      array.push_back(stress ? number(quantity->value(*stress)) : Json(nullptr));
+      const double factor = quantity->kind == StressKind::angle ? scene_angle(1, units) : 1;
+      array.push_back(stress ? number(factor * quantity->value(*stress)) : Json(nullptr));
     }
   }
 }
@@ -192,9 +200,12 @@ std::string stress_rows(const SweepScene& scene, const SweepResult& result, std:
     });
   };
   std::string text;
-  if (const Worst most = worst(false, [](const StressPoint& p) { return p.max_abs; }); most.at)
-    text += fmt::format("  largest stress {} {:.4g} MPa {}\n", whose_largest(scene, result),
-                        most.value * units.megapascal, place_text(scene, most));
+  if (const Worst most = worst(false, [](const StressPoint& p) { return p.max_abs; }); most.at) {
+    const StressPoint& there = *stress_at(*most.at, rod);
+    text += fmt::format("  largest stress {} {:.4g} MPa {}, x = {:.4g} {}, crank angle {:.2f} deg\n",
+                        whose_largest(scene, result), most.value * units.megapascal, place_text(scene, most), there.x,
+                        units.length, there.crank_angle * degrees_per_radian);
+  }
   const auto safety = [&](const char* what, const StressValue& value) {
     const Worst least = worst(true, value);
     if (least.at && std::isfinite(least.value))
@@ -231,7 +242,8 @@ std::string machine_rows(const SweepScene& scene, const SweepResult& result) {
 
 std::vector<std::string> stress_columns(const SweepResult& result, std::size_t rod) {
   std::vector<std::string> columns;
-  for (const StressQuantity* quantity : quantities_of(result.points, rod)) columns.emplace_back(quantity->column);
+  for (const StressQuantity* quantity : quantities_of(result.points, rod))
+    if (*quantity->column != '\0') columns.emplace_back(quantity->column);
   return columns;
 }
 
@@ -240,7 +252,8 @@ void fill_stress(const RodPoint& point, double megapascal, const std::vector<std
   if (!point.stress) return;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const auto quantity = std::ranges::find(stress_quantities(), columns[c], &StressQuantity::column);
-    values(static_cast<Eigen::Index>(c)) = (quantity->is_stress ? megapascal : 1) * quantity->value(*point.stress);
+    values(static_cast<Eigen::Index>(c)) =
+        (quantity->kind == StressKind::stress ? megapascal : 1) * quantity->value(*point.stress);
   }
 }
 

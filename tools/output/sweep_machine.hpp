@@ -11,7 +11,7 @@
 namespace hb::tools {
 
 // Adds `stress` of one rod, arrays over the points; nothing where no section is given.
-void add_stress(nlohmann::ordered_json& rod, std::size_t r, const std::vector<SweepPoint>& points);
+void add_stress(nlohmann::ordered_json& rod, std::size_t r, const std::vector<SweepPoint>& points, const Units& units);
 // Adds bearings, frame, power, flywheel to the document, mean and rms to its torque.
 void add_machine(nlohmann::ordered_json& document, const SweepResult& result);
 

@@ -62,7 +62,7 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
     json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment); });
     json["buckling_share"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share); });
     json["strain"] = of_rod([](const RodPoint& rod) { return number(rod.strain); });
-    add_stress(json, r, points);
+    add_stress(json, r, points, scene.scene().units);
   }
   if (scene.first().linkage())
     json["theory_error"] = of_rod([](const RodPoint& rod) { return number(rod.theory_error); });

@@ -118,9 +118,9 @@ void add_combinations(const CsvFile& csv, const SweepColumns& columns, int shown
             csv.name, columns.first_frequency + 2 * j, sign, columns.first_frequency + 2 * i));
 }
 
-// One mode's frequency, coloured by its growth. Locked to the crank it follows an order line k Omega/2; between two bands
-// it passes to the next one, Omega/2 away, perhaps within a gap narrower than the points. A line breaks only where the
-// multiple of the speed that its frequency is known up to changes.
+// One mode's frequency, coloured by its growth. Locked to the crank it follows an order line k Omega/2; between two
+// bands it passes to the next one, Omega/2 away, perhaps within a gap narrower than the points. A line breaks only
+// where the multiple of the speed that its frequency is known up to changes.
 void add_mode(const CampbellFrame& frame, const CsvFile& csv, const SweepColumns& columns, int mode, double scale,
               const std::string& name, std::vector<std::string>& curves, std::string& commands) {
   constexpr double jump = 0.6;  // of the speed

@@ -14,12 +14,9 @@ void visit_range(Visit& visit, TurnRange& range) {
 
 template <class Visit>
 void visit_stress(Visit& visit, StressPoint& stress) {
-  visit(stress.max_abs);
-  visit(stress.mean);
-  visit(stress.amplitude);
-  visit(stress.error);
-  visit(stress.yield_safety_error);
-  visit(stress.fatigue_safety_error);
+  for (double* value : {&stress.axial, &stress.bending, &stress.max_abs, &stress.mean, &stress.amplitude, &stress.x,
+                        &stress.crank_angle, &stress.error, &stress.yield_safety_error, &stress.fatigue_safety_error})
+    visit(*value);
   visit_if_there(visit, stress.yield_safety, visit);
   visit_if_there(visit, stress.fatigue_safety, visit);
 }

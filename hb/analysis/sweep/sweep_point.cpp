@@ -21,8 +21,12 @@ TurnRange turn_range(const FourierSeries& series, Eigen::Index component) {
   return {range.min.value, range.max.value};
 }
 
-StressPoint stress_point(const StressCycle& cycle) {
+StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
   StressPoint point;
+  point.axial = stress.axial;
+  point.bending = stress.bending;
+  point.x = cycle.x;
+  point.crank_angle = cycle.crank_angle;
   point.max_abs = cycle.max_abs;
   point.mean = cycle.mean;
   point.amplitude = cycle.amplitude;
@@ -80,8 +84,8 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
         point.strain = stress.strain;
         if (stress.height_known) {
           const FourierSeries finer = with_more_modes(rod, speed, settings);
-          point.stress = stress_point(stress_cycle(link, coefficients, speed, state.q, finer,
-                                                   finer.c.size() > 0 ? state.error_bound : HUGE_VAL));
+          point.stress = stress_point(stress, stress_cycle(link, coefficients, speed, state.q, finer,
+                                                           finer.c.size() > 0 ? state.error_bound : HUGE_VAL));
         }
       }
       q = std::move(state.q);

@@ -16,9 +16,11 @@ struct TurnRange {
   double min = 0, max = 0;
 };
 
-// StressCycle in short, scene's units; safeties infinite without stress.
+// StressCycle and RodStress in short, scene's units; safeties infinite without stress.
 struct StressPoint {
+  double axial = 0, bending = 0;  // the largest of each, at their own places and times
   double max_abs = 0, mean = 0, amplitude = 0;
+  double x = 0, crank_angle = 0;  // of max_abs; rad
   double error = 0;  // of each of these, an estimate; infinite where no more modes were looked at
   std::optional<double> yield_safety, fatigue_safety;
   double yield_safety_error = 0, fatigue_safety_error = 0;
