@@ -257,7 +257,7 @@ TEST(NonlinearFromCpp, StopInTheLinearPartLeavesTheBranchesOut) {
   request.modes = 2;
   request.only = with_stability;
   request.x = along("rpm", 300, 1500, 121);
-  const NonlinearAlong found = nonlinear_sweep(read_scene(scenes + "six_link.toml"), request, options);
+  const NonlinearAlong found = nonlinear_sweep(read_scene(nonlinear_scenes + "six_link.toml"), request, options);
   EXPECT_TRUE(found.branches.stopped);
   EXPECT_TRUE(found.branches.branches.empty());
   EXPECT_FALSE(found.branches.shortfalls.empty());
@@ -269,7 +269,7 @@ TEST(NonlinearFromCpp, CheckThatTakesTooLongSaysWhichLimitEndedIt) {
   request.rpm = 600;
   request.modes = 3;
   request.case_limit = 1e-3;
-  const NonlinearChecks checks = nonlinear_check(read_scene(scenes + "six_link.toml"), request);
+  const NonlinearChecks checks = nonlinear_check(read_scene(nonlinear_scenes + "six_link.toml"), request);
   ASSERT_EQ(checks.speeds.size(), 1u);
   EXPECT_FALSE(checks.reached());
   EXPECT_NE(checks.speeds[0].not_compared.find("limit of 0.001 s"), std::string::npos) << checks.speeds[0].not_compared;

@@ -164,6 +164,8 @@ std::string static_row(const SceneModel& model, const SpeedResult& result, std::
       found->peak.crank_angle * degrees_per_radian);
 }
 
+namespace {
+
 std::string bearing_rows(const std::vector<BearingLoad>& loads, const OutputUnits& units) {
   std::string text = fmt::format("\n  {:<22}  {:>12}  {:>12}  {:>12}  {:>12}\n", "largest resultant [N]", "rigid",
                                  "elastic", "at [deg]", "mean");
@@ -195,6 +197,8 @@ std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuat
                         *fluctuation > 0.1 ? ", more than this estimate is good for" : "");
   return text + "\n";
 }
+
+}  // namespace
 
 std::string machine_rows(const MachineLoads& loads, const std::vector<SliderMotion>& sliders, double torque_error,
                          double speed, const Scene& scene) {
@@ -258,8 +262,6 @@ Json frame_json(const MachineLoads& loads, bool errors, const Units& units) {
   return on_frame;
 }
 
-}  // namespace
-
 Json bearings_json(const std::vector<BearingLoad>& loads, const Units& units) {
   Json bearings = Json::object();
   for (const BearingLoad& load : loads)
@@ -286,6 +288,8 @@ void add_drive(Json& document, const Drive& drive, const Drive& rigid, double in
                           {"inertia", inertia},
                           {"speed_fluctuation", fluctuation ? Json(*fluctuation) : Json()}};
 }
+
+}  // namespace
 
 void add_machine(Json& document, const MachineLoads& loads, const std::vector<SliderMotion>& sliders,
                  const JointForces& forces, const std::optional<ForceErrors>& errors, const Units& units) {

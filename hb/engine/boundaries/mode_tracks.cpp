@@ -129,7 +129,7 @@ std::vector<ModeState> modes_by_name(const Stability& stability, int num_modes) 
   std::vector<bool> used(stability.exponents.size(), false);
   const auto settle = [&](const Pair& pair, std::size_t mode) {
     take(pair, used);
-    states[mode] = {pair.frequency[0], pair.growth, pair.growth_low};
+    states[mode] = {pair.frequency[0], pair.growth, pair.growth_low, pair.locked};
   };
   // Pairs of one name first, then what is left.
   for (const bool one_name : {true, false})
