@@ -123,25 +123,33 @@ void take(const Pair& pair, std::vector<bool>& used) {
 
 }  // namespace
 
+// The leading exponents first; one with a real multiplier pairs with another of its name before any other.
 std::vector<ModeState> modes_by_name(const Stability& stability, int num_modes) {
-  std::vector<ModeState> states(static_cast<std::size_t>(num_modes), ModeState{nan, nan, nan});
-  std::vector<Pair> pairs = pairs_of(stability);
-  std::vector<bool> used(stability.exponents.size(), false);
-  const auto settle = [&](const Pair& pair, std::size_t mode) {
-    take(pair, used);
-    states[mode] = {pair.frequency[0], pair.growth, pair.growth_low, pair.locked};
-  };
-  // Pairs of one name first, then what is left.
-  for (const bool one_name : {true, false})
-    for (const Pair& pair : pairs) {
-      const auto mode = static_cast<std::size_t>(pair.mode[0]);
-      if (taken(pair, used) || (one_name && pair.mode[0] != pair.mode[1])) continue;
-      if (mode < states.size() && std::isnan(states[mode].frequency)) settle(pair, mode);
+  const std::vector<Exponent>& all = stability.exponents;
+  const std::vector<Pair> pairs = pairs_of(stability);
+  std::vector<ModeState> states(static_cast<std::size_t>(num_modes), ModeState{nan, nan, nan}), homeless;
+  std::vector<bool> used(all.size(), false);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (used[i]) continue;
+    Pair pair = pair_of(all, i, nobody, true);
+    bool found = false;
+    for (const Pair& other : pairs) {
+      if ((other.first != i && other.second != i) || taken(other, used)) continue;
+      if (!found || (pair.mode[0] != pair.mode[1] && other.mode[0] == other.mode[1])) pair = other;
+      found = true;
     }
-  for (const Pair& pair : pairs) {
+    take(pair, used);
+    const ModeState state{all[i].frequency, pair.growth, pair.growth_low, pair.locked};
+    const auto mode = static_cast<std::size_t>(all[i].mode);
+    if (mode < states.size() && std::isnan(states[mode].frequency))
+      states[mode] = state;
+    else
+      homeless.push_back(state);
+  }
+  for (const ModeState& state : homeless) {
     const auto free =
         std::find_if(states.begin(), states.end(), [](const ModeState& s) { return std::isnan(s.frequency); });
-    if (free != states.end() && !taken(pair, used)) settle(pair, static_cast<std::size_t>(free - states.begin()));
+    if (free != states.end()) *free = state;
   }
   return states;
 }
