@@ -139,12 +139,13 @@ std::vector<ModeState> modes_by_name(const Stability& stability, int num_modes) 
       found = true;
     }
     take(pair, used);
-    const ModeState state{all[i].frequency, pair.growth, pair.growth_low, pair.locked};
-    const auto mode = static_cast<std::size_t>(all[i].mode);
-    if (mode < states.size() && std::isnan(states[mode].frequency))
-      states[mode] = state;
-    else
-      homeless.push_back(state);
+    bool housed = false;
+    for (std::size_t k = 0; k < 2 && !housed; ++k) {
+      const auto mode = static_cast<std::size_t>(pair.mode[k]);
+      housed = mode < states.size() && std::isnan(states[mode].frequency);
+      if (housed) states[mode] = {pair.frequency[k], pair.growth, pair.growth_low, pair.locked};
+    }
+    if (!housed) homeless.push_back({pair.frequency[0], pair.growth, pair.growth_low, pair.locked});
   }
   for (const ModeState& state : homeless) {
     const auto free =
