@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 
 #include "lib/hill_system.hpp"
 #include "lib/linkage/joint_forces.hpp"
@@ -64,5 +65,9 @@ struct RodField {
 };
 [[nodiscard]] RodField rod_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                                  const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index num_samples);
+// Its bending moment at any places: what depends on time alone is computed once.
+using MomentAlong = std::function<Eigen::MatrixXd(const Eigen::Ref<const Eigen::VectorXd>& x)>;
+[[nodiscard]] MomentAlong bending_moment_along(const Body& link, const RodCoefficients& rod, double speed,
+                                               const FourierSeries& q, Eigen::Index num_samples);
 
 }  // namespace hb

@@ -419,25 +419,41 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
   return result;
 }
 
+namespace {
+
+// Time functions at any number of angles: harmonics are folded onto the grid by sampling a multiple of it.
+Eigen::MatrixXd over_turn(const FourierSeries& functions, Eigen::Index num_samples) {
+  Eigen::Index multiple = 1;
+  while (multiple * num_samples < 2 * functions.num_harmonics() + 1) ++multiple;
+  const Eigen::MatrixXd fine = fourier::synthesise(functions, multiple * num_samples);
+  return fine(Eigen::all, Eigen::seqN(0, num_samples, multiple));
+}
+
+// Of these time functions of the deflection.
+MomentAlong moment_along(const Body& link, double speed, const FourierSeries& q, FourierSeries T,
+                         Eigen::Index num_samples) {
+  if (link.elastic->shear) T = moment_functions(link, speed, q, std::move(T));
+  const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
+  return
+      [shapes = RodShapes(link.length, q.num_components()), time = Eigen::MatrixXd(EJ * over_turn(T, num_samples))](
+          const Eigen::Ref<const Eigen::VectorXd>& x) -> Eigen::MatrixXd { return shape_matrix(shapes, x, 2) * time; };
+}
+
+}  // namespace
+
 RodField rod_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                    const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index num_samples) {
-  const FourierSeries T = time_functions(link, rod, speed, q);
-  // Any number of samples: harmonics are folded onto the grid by sampling a multiple of it.
-  Eigen::Index multiple = 1;
-  while (multiple * num_samples < 2 * T.num_harmonics() + 1) ++multiple;
-  const auto over_time = [&](const FourierSeries& functions) {
-    const Eigen::MatrixXd fine = fourier::synthesise(functions, multiple * num_samples);
-    Eigen::MatrixXd time(functions.num_components(), num_samples);
-    for (Eigen::Index j = 0; j < num_samples; ++j) time.col(j) = fine.col(multiple * j);
-    return time;
-  };
-  const Eigen::MatrixXd time = over_time(T);
-  const RodShapes shapes(link.length, q.num_components());
-  const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
-  if (!link.elastic->shear) return {shape_matrix(shapes, x, 0) * time, EJ * shape_matrix(shapes, x, 2) * time};
-  const RodShapes sheared(link.length, q.num_components(), shear_flexibility(link));
-  return {shape_matrix(sheared, x, 0) * time,
-          EJ * shape_matrix(shapes, x, 2) * over_time(moment_functions(link, speed, q, T))};
+  FourierSeries T = time_functions(link, rod, speed, q);
+  const RodShapes shapes(link.length, q.num_components(), shear_flexibility(link));
+  RodField field;
+  field.w = shape_matrix(shapes, x, 0) * over_turn(T, num_samples);
+  field.bending_moment = moment_along(link, speed, q, std::move(T), num_samples)(x);
+  return field;
+}
+
+MomentAlong bending_moment_along(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                                 Eigen::Index num_samples) {
+  return moment_along(link, speed, q, time_functions(link, rod, speed, q), num_samples);
 }
 
 }  // namespace hb
