@@ -12,19 +12,18 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// N along the rigid mechanism's rod and M of the response q; q and rod outlive it.
+// N along the rigid mechanism's rod and M of the response q; the link outlives it.
 StressField linear_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                          Index num_samples) {
-  return [&link, &rod, speed, &q, num_samples,
-          f = fourier::synthesise(axial_series(rod, speed), num_samples)](const Eigen::Ref<const Eigen::VectorXd>& x) {
+  return [&link, num_samples, f = fourier::synthesise(axial_series(rod, speed), num_samples),
+          moment = bending_moment_along(link, rod, speed, q, num_samples)](const Eigen::Ref<const Eigen::VectorXd>& x) {
     const Elastic& elastic = *link.elastic;
     const double EJ = elastic.youngs_modulus * elastic.second_moment;
     StressSamples field;
     field.axial.resize(x.size(), num_samples);
     for (Index i = 0; i < x.size(); ++i)
       field.axial.row(i) = EJ / elastic.area * (f.row(2) + x(i) * f.row(1) - 0.5 * x(i) * x(i) * f.row(0));
-    field.bending = elastic.section_height / 2 / elastic.second_moment *
-                    rod_field(link, rod, speed, q, x, num_samples).bending_moment;
+    field.bending = elastic.section_height / 2 / elastic.second_moment * moment(x);
     return field;
   };
 }
@@ -161,7 +160,7 @@ StressCycle stress_cycle(const Body& link, const RodCoefficients& rod, double sp
   double error = error_bound * I * (I + 1) * (2 * I + 1) / 6 * grid.bending.cwiseAbs().maxCoeff();
   if (more_modes.c.size() > 0) {
     const double per_moment = elastic.section_height / 2 / elastic.second_moment;
-    const MatrixXd finer = rod_field(link, rod, speed, more_modes, places, N).bending_moment;
+    const MatrixXd finer = bending_moment_along(link, rod, speed, more_modes, N)(places);
     error += 2 * (per_moment * finer - grid.bending).cwiseAbs().maxCoeff();
   }
   return stress_cycle(link, field, grid, error);
