@@ -193,10 +193,10 @@ std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuat
   text += fmt::format("  energy that a flywheel takes up and gives back: {:.{}g} J a turn",
                       drive.energy_fluctuation * moment, digits);
   if (fluctuation)
-    text +=
-        *fluctuation > 0.1
-            ? "; with the crank's inertia alone the speed would fluctuate by far more than 10 %: a flywheel is missing"
-            : fmt::format("; with the crank's inertia the speed would fluctuate by {:.3g} %", 100 * *fluctuation);
+    text += *fluctuation > 0.1
+                ? "; with the crank's inertia alone the speed would fluctuate by more than 10 %, beyond what this "
+                  "estimate tells"
+                : fmt::format("; with the crank's inertia the speed would fluctuate by {:.3g} %", 100 * *fluctuation);
   return text + "\n";
 }
 
