@@ -1,39 +1,39 @@
 #!/usr/bin/env bash
-# Random attacks on what hb claims, bounded in time.
+# Random attacks on what hb claims, bounded in time. Exit status 1: something did not hold, and the case is named.
 #   tools/attack.sh exponents [SECONDS [SEED]]   exponents, errors and verdicts against a reference in 113 bits
-#   tools/attack.sh sweeps [SECONDS [SEED]]      bands and gaps at several steps against each other and fine grids of verdicts
+#   tools/attack.sh sweeps [SECONDS [SEED]]      bands and gaps of sweeps at random steps against single verdicts
+#   tools/attack.sh maps [SECONDS [SEED]]        points and boundary curves of maps against single verdicts
+#   tools/attack.sh linkages [SECONDS [SEED]]    random linkages against a Newton-Euler model, growth rates three ways
+#   tools/attack.sh all [SECONDS [SEED]]         these four, a quarter of the time each
 #   tools/attack.sh faults [ARGUMENT...]         kills, full disks, limits, mutated inputs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
+# One program for so many seconds: run NAME SECONDS SEED [FLAG...].
+run() {
+  local name=$1 seconds=$2 seed=$3
+  shift 3
+  build/release/tools/attack/attack_"$name" --cases 1000000 --seconds "$seconds" --seed "$seed" "$@" || failed=1
+}
+
+exponents() {  # half of the time all exponents, a quarter each the leading ones and propagation alone
+  run exponents $(($1 / 2)) "$2"
+  run exponents $(($1 / 4)) $(($2 + 1)) --leading
+  run exponents $(($1 / 4)) $(($2 + 2)) --method propagation
+}
+
 part=${1:-exponents}
 shift || true
+failed=0
 case $part in
-  exponents)
+  exponents | sweeps | maps | linkages | all)
     seconds=${1:-120} seed=${2:-1}
-    [[ -f build/release/CMakeCache.txt ]] || cmake --preset release >/dev/null
-    cmake --build --preset release --target attack_exponents >/dev/null
-    program=build/release/tools/attack/attack_exponents
-    # Half of the time all exponents, a quarter each the leading ones and propagation alone.
-    failed=0
-    "$program" --cases 1000000 --seconds $((seconds / 2)) --seed "$seed" || failed=1
-    "$program" --cases 1000000 --seconds $((seconds / 4)) --seed "$((seed + 1))" --leading || failed=1
-    "$program" --cases 1000000 --seconds $((seconds / 4)) --seed "$((seed + 2))" --method propagation || failed=1
-    exit "$failed"
-    ;;
-  sweeps)
-    seconds=${1:-120} seed=${2:-1}
-    [[ -f build/release/CMakeCache.txt ]] || cmake --preset release >/dev/null
-    cmake --build --preset release --target test_stress >/dev/null
-    failed=0
-    # Seed after seed; what the time cuts off is not counted.
-    SECONDS=0
-    for ((; SECONDS < seconds; seed++)); do
-      echo "seed $seed"
-      status=0
-      HB_STRESS_SEED=$seed timeout "$((seconds - SECONDS))" build/release/tests/test_stress --gtest_filter='*Bands*' |
-        grep -E 'sweeps,|points:' || status=${PIPESTATUS[0]}
-      [[ $status == 0 || $status == 124 ]] || failed=1
+    parts=("$part")
+    [[ $part != all ]] || parts=(exponents sweeps maps linkages)
+    tools/build.sh release "${parts[@]/#/attack_}" >&2
+    for part in "${parts[@]}"; do
+      share=$((seconds / ${#parts[@]}))
+      if [[ $part == exponents ]]; then exponents "$share" "$seed"; else run "$part" "$share" "$seed"; fi
     done
     exit "$failed"
     ;;
@@ -41,7 +41,7 @@ case $part in
     exec tools/attack/faults.sh "$@"
     ;;
   *)
-    echo "tools/attack.sh: found $part, allowed: exponents, sweeps, faults" >&2
+    echo "tools/attack.sh: found $part, allowed: exponents, sweeps, maps, linkages, all, faults" >&2
     exit 2
     ;;
 esac

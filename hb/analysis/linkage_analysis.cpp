@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "hb/analysis/accuracy.hpp"
@@ -173,6 +174,7 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Settings& set
 // The tolerance is that of q: what is less known of the growth rate stands in its error and decides its verdict.
 std::vector<std::string> notes_of(const RodResult& rod) {
   if (!rod.stability || rod.stability->converged || rod.stability->method == StabilityMethod::bound) return {};
+  if (!std::isfinite(rod.stability->growth_rate)) return {fmt::format("{}: no growth rate was found", rod.name)};
   return {fmt::format("{}: the growth rate is known to {:.1e} only", rod.name, rod.stability->growth_error)};
 }
 

@@ -272,8 +272,14 @@ std::optional<std::vector<FourierSeries>> change_by_newton(const ExactModel& mod
   FourierSeries start(model.num_modes(), H);
   for (std::size_t r = 0; r < q.size(); ++r)
     start.c.middleRows(model.first_mode(r), q[r].num_components()) = fourier::resized(q[r], H).c;
+  // Seconds of work and some 30 MB: near a dead centre the turn has hundreds of harmonics, and the first correction
+  // stands.
+  constexpr Index most_unknowns = 1200;
+  const Index most_harmonics = (most_unknowns / model.num_modes() - 1) / 2;
+  if (H > most_harmonics) return std::nullopt;
   constexpr double part = 0.01;  // of the change
-  const MotionOptions options{.tolerance = part * expected, .max_factorisations = 20};
+  const MotionOptions options{
+      .tolerance = part * expected, .max_harmonics = static_cast<int>(most_harmonics), .max_factorisations = 20};
   const std::shared_ptr<const ExactModel> shared(std::shared_ptr<const void>(), &model);
   const PeriodicMotion motion = solve_periodic_motion(exact_system(shared), speed, start, options);
   if (motion.status != MotionStatus::converged) return std::nullopt;

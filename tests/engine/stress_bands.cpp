@@ -8,7 +8,7 @@
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
 #include "lib/rod/rod.hpp"
-#include "tests/support/random_hill_system.hpp"
+#include "tests/support/band_systems.hpp"
 #include "tests/support/random_linkage.hpp"
 
 namespace hb {
@@ -129,43 +129,7 @@ void report(const char* family, const Counts& counts) {
       100 * counts.open_share / std::max(counts.sweeps, 1));
 }
 
-// Modes w_i > 0 apart, modulated symmetrically, weakly damped.
-enum class Kind { nearly_conservative, undamped, one_way, gyroscopic, partly_driven };
-
-HillSystem random_system(Kind kind, stress::Random& random) {
-  using Eigen::Index;
-  const Index least = kind == Kind::one_way || kind == Kind::gyroscopic ? 2 : 1, I = random.integer(least, 4),
-              H = random.integer(1, 3);
-  HillSystem system;
-  system.mass = Eigen::MatrixXd::Identity(I, I);
-  system.damping = Eigen::MatrixXd::Zero(I, I);
-  system.stiffness[0] = FourierSeries(I * I, H);
-  const double modulation = random.power(-3, -0.3), damping = kind == Kind::undamped ? 0 : random.power(-7, -2);
-  std::vector<double> w = {random(0.7, 1.5)};
-  for (Index i = 1; i < I; ++i) w.push_back(w.back() * random(1.1, 2.5));
-  const auto frequency = [&](Index i) { return w[static_cast<std::size_t>(i)]; };
-  for (Index i = 0; i < I; ++i) {
-    system.stiffness[0].c(i + I * i, 0) = frequency(i) * frequency(i);
-    system.damping(i, i) = damping * random(0.5, 1.5);
-    if (kind == Kind::partly_driven && random.chance(0.3)) system.damping(i, i) *= -1;
-  }
-  for (Index k = 1; k <= H; ++k)
-    for (Index i = 0; i < I; ++i)
-      for (Index j = 0; j <= i; ++j) {
-        const double size = 0.5 * modulation * frequency(i) * frequency(j) * std::pow(0.5, k - 1);
-        const std::complex<double> value(size * random(-1, 1), size * random(-1, 1));
-        system.stiffness[0].c(i + I * j, k) = value;
-        if (i != j && kind != Kind::one_way) system.stiffness[0].c(j + I * i, k) = value;
-      }
-  if (kind == Kind::gyroscopic)
-    for (Index i = 0; i < I; ++i)
-      for (Index j = 0; j < i; ++j) {
-        const double g = random.power(-2, 0) * random(-1, 1);
-        system.damping(i, j) += g;
-        system.damping(j, i) -= g;
-      }
-  return system;
-}
+using Kind = stress::BandKind;
 
 class Bands : public testing::TestWithParam<std::pair<Kind, const char*>> {};
 
@@ -174,7 +138,7 @@ TEST_P(Bands, AreTheSameAtAnyStepAndOnAFineGrid) {
   Counts counts;
   for (int trial = 0; trial < stress::multiplied(2); ++trial) {
     stress::Random random(1000 * stress::seed() + 17 * static_cast<std::uint64_t>(trial) + std::uint64_t(kind));
-    const HillSystem system = random_system(kind, random);
+    const HillSystem system = band_system(kind, random);
     const double from = random(0.4, 1.5), to = from * random(1.3, 4);
     compare(system, from, to, {2, 40}, 200, std::string(name) + " " + std::to_string(trial), counts);
   }

@@ -205,6 +205,24 @@ TEST(Sweep, ExponentsThatMeetWithoutExcitingEachOtherMakeNoBand) {
   EXPECT_TRUE(found.not_excluded.empty());
 }
 
+// A gap was settled as none because two modes on one side of the axis do not excite each other: they share their
+// damping where they meet, w2 - w1 = Omega, and one that grows by itself is quenched there by the other.
+TEST(Sweep, FindsTheGapWhereAGrowingModeMeetsADampedOne) {
+  HillSystem system = two_oscillators(0, 0.05);
+  system.damping.diagonal() << -1e-4, 4e-4;
+  ASSERT_EQ(analyse_stability(system, 1).verdict, Verdict::stable);
+  ASSERT_EQ(analyse_stability(system, 0.9).verdict, Verdict::unstable);
+  ASSERT_EQ(analyse_stability(system, 1.1).verdict, Verdict::unstable);
+  for (const int intervals : {2, 3, 7, 20}) {
+    const Sweep found = sweep(system, 0.8317, 1.2113, intervals);
+    // Two thin bands stand in the gap, where both lock to their conjugates.
+    ASSERT_EQ(found.bands.size(), 4u) << intervals;
+    EXPECT_NEAR(found.bands[0].to, 0.986820965, 1e-8) << intervals;
+    EXPECT_TRUE(found.bands[1].to < 1 && found.bands[2].from > 1) << intervals;
+    EXPECT_NEAR(found.bands[3].from, 1.01333527, 1e-8) << intervals;
+  }
+}
+
 // A single exponent crosses by itself: damping that changes its sign along the parameter, twice within one step.
 TEST(Sweep, FindsABandThatASingleExponentMakesByItself) {
   HillSystem system = oscillator(0.01, 1, 0.01);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <exception>
 #include <string>
 #include <vector>
@@ -145,6 +146,7 @@ Tally run_case(Family family, std::uint64_t number, const Options& options) {
 }
 
 int run(const Options& options) {
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // what was found is not lost with the rest
   const Clock::time_point start = Clock::now();
   std::vector<Tally> tallies(num_families);
   for (int k = 0; k < options.cases && seconds_since(start) < options.seconds; ++k)

@@ -84,6 +84,7 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
   const int most = std::max(half, 0) + 1;
   // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.
   double certain_low = low, certain_high = high, g_low = f_low, g_high = f_high, growth_error = 0;
+  double largest_error = 0;  // of growth rates that are not certain
   for (int step = 0; step <= most && high - low > 2 * wanted; ++step) {
     const double middle = 0.5 * (low + high);
     const double radius = std::max(0.0, wanted * std::exp2(most - step) - 0.5 * (high - low));
@@ -110,12 +111,20 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
     if (std::abs(f) > 4 * growth_error) {
       (above ? certain_high : certain_low) = x;
       (above ? g_high : g_low) = f;
+    } else {
+      largest_error = std::max(largest_error, growth_error);
     }
   }
   boundary.x = 0.5 * (low + high);
   boundary.error = 0.5 * (high - low);
   const double slope = std::abs((g_high - g_low) / (certain_high - certain_low));
   if (by_sign && slope > 0) boundary.error += std::min(growth_error / slope, certain_high - certain_low);
+  // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
+  // from the boundary to where it is g.
+  if (const double g = unstable_above ? g_high : g_low; !by_sign && g > 0) {
+    const double certain = unstable_above ? certain_high : certain_low, part = std::min(5 * largest_error / g, 1.0);
+    boundary.error += part * part * std::abs(certain - boundary.x);
+  }
   boundary.converged = boundary.error <= boundary_tolerance * std::max(std::abs(low), std::abs(high));
   return boundary;
 }

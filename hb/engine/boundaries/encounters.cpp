@@ -7,17 +7,29 @@ namespace hb {
 
 namespace {
 
-// Growth of the exponents that belong to each mean exponent, the larger one of both places. One that is locked to
-// another belongs to either: while unstable those without any count as its partners.
-std::vector<double> growth_by_mean(const Place& p, const Place& q) {
-  std::vector<double> growth(p.mean.size(), -HUGE_VAL);
-  for (const Place* place : {&p, &q})
-    for (const Strand& strand : place->strands.all)
-      if (!strand.mean.empty()) growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
-  for (std::size_t k = 0; k < growth.size(); ++k)
-    if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
+// Growth of the exponents that belong to each mean exponent at one place; -infinite: none.
+std::vector<double> growth_at(const Place& place) {
+  std::vector<double> growth(place.mean.size(), -HUGE_VAL);
+  for (const Strand& strand : place.strands.all)
+    if (!strand.mean.empty()) growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
   return growth;
 }
+
+// The larger one of both places. One that is locked to another belongs to either: while unstable those without any
+// count as its partners.
+std::vector<double> growth_by_mean(const Place& p, const Place& q) {
+  std::vector<double> growth = growth_at(p);
+  const std::vector<double> at_q = growth_at(q);
+  for (std::size_t k = 0; k < growth.size(); ++k) {
+    growth[k] = std::max(growth[k], at_q[k]);
+    if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
+  }
+  return growth;
+}
+
+// Two of which one grows leave a gap only if they decay together: not if the sum of both, at two places, is larger than
+// it changes.
+bool grow_together(double sum_p, double sum_q) { return std::min(sum_p, sum_q) > std::abs(sum_p - sum_q); }
 
 // Imaginary part modulo 1/2 of where two strands meet.
 double meeting_point(const Strands& s, std::size_t a, std::size_t b) {
@@ -63,11 +75,28 @@ double apart(const Strands& strands, std::size_t a, std::size_t b) {
   return std::abs(folded(strands.all[a].s - strands.all[b].s).imag());
 }
 
+std::vector<double> unpredicted_motions(const Place& p, const Place& q) {
+  const std::vector<std::size_t> onward = continued(p.strands, q.strands);
+  std::vector<double> unpredicted(onward.size(), 0);
+  for (std::size_t k = 0; k < onward.size(); ++k) {
+    const Strand& strand = p.strands.all[k];
+    if (onward[k] == no_strand || strand.mean.empty() || p.mean.size() != q.mean.size()) continue;
+    const double moved = (q.strands.all[onward[k]].s - strand.s).imag();
+    double least = HUGE_VAL;
+    for (const std::size_t n : strand.mean) {
+      const double apart = moved - (q.mean[n].value - p.mean[n].value).imag();
+      least = std::min(least, std::abs(apart - std::round(apart)));
+    }
+    unpredicted[k] = least;
+  }
+  return unpredicted;
+}
+
 std::vector<double> motions(const Place& p, const Place& q) {
   const std::vector<std::size_t> onward = continued(p.strands, q.strands);
-  std::vector<double> motion(p.strands.all.size());
+  std::vector<double> motion = unpredicted_motions(p, q);
   for (std::size_t k = 0; k < motion.size(); ++k) {
-    motion[k] = 2 * mean_motion(p.strands, q.strands, k);
+    motion[k] = 2 * (motion[k] + mean_motion(p.strands, q.strands, k));
     if (onward[k] != no_strand) motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
   }
   return motion;
@@ -102,15 +131,14 @@ double Encounters::needed_coupling(double growth, double other) const {
 bool Encounters::resolved(Place& p, Place& q, double most) const {
   if (p.mean.size() != q.mean.size()) return true;
   const std::size_t n = p.mean.size();
-  const std::vector<double> growth = growth_by_mean(p, q);
+  const std::vector<double> growth = growth_by_mean(p, q), growth_p = growth_at(p), growth_q = growth_at(q);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       const double at_p = p.mean[j].value.imag() - p.mean[i].value.imag();
       const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
       if (!(std::abs(at_p - at_q) > most)) continue;
-      // Two of which one grows leave a gap only if they decay together.
       const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
-      if (p.unstable && (larger < 0 || larger + smaller > 0)) continue;
+      if (p.unstable && (larger < 0 || grow_together(growth_p[i] + growth_p[j], growth_q[i] + growth_q[j]))) continue;
       const double quenching = std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
       const double needed = p.unstable ? quenching : needed_coupling(larger, smaller);
       if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling), std::min(q.mean[i].coupling, q.mean[j].coupling)) <
@@ -120,16 +148,20 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
       if (of_p == nullptr || of_q == nullptr) return false;
       const int first = std::max(1, static_cast<int>(std::ceil(std::min(at_p, at_q) - 0.5)));
       const int last = std::min(options_.max_order, static_cast<int>(std::floor(std::max(at_p, at_q) + 0.5)));
+      const auto strength = [&](const ParametricCoupling& of, int k) {
+        return p.unstable ? of.either_way(i, j, k) : of(i, j, k);
+      };
       for (int k = first; k <= last; ++k)
-        if (!(std::max((*of_p)(i, j, k), (*of_q)(i, j, k)) < needed)) return false;
+        if (!(std::max(strength(*of_p, k), strength(*of_q, k)) < needed)) return false;
     }
   }
   return true;
 }
 
-// How far two strands of p that may excite each other move against each other on the way to q at most, twice as far
-// as their mean exponents; negative: they do not excite each other.
-double Encounters::exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const {
+// How far two strands of p that may excite each other (or one quench the other) move against each other on the way to q
+// at most, twice as far as their mean exponents; negative: they do not.
+double Encounters::motion_towards(Place& p, const Place& q, std::size_t a, std::size_t b, double needed,
+                                  Effect effect) const {
   const Strand &s = p.strands.all[a], &t = p.strands.all[b];
   const bool comparable = p.mean.size() == q.mean.size();
   double motion = s.mean.empty() || t.mean.empty() ? HUGE_VAL : -1;
@@ -143,9 +175,13 @@ double Encounters::exciting_motion(Place& p, const Place& q, std::size_t a, std:
       if (strength == nullptr) return HUGE_VAL;
       const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
       const int k = static_cast<int>(std::round(to - from));
-      const bool excites = k == 0 ? !(strength->symmetric() && in * ir > 0)
-                                  : !((k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k)) < needed);
-      if (excites) motion = moved;
+      const auto coupled = [&](std::size_t from_n, std::size_t to_r, int order) {
+        return effect == Effect::quenches ? strength->either_way(from_n, to_r, order)
+                                          : (*strength)(from_n, to_r, order);
+      };
+      const bool acts =
+          k == 0 ? !(strength->symmetric() && in * ir > 0) : !((k > 0 ? coupled(n, r, k) : coupled(r, n, -k)) < needed);
+      if (acts) motion = moved;
     }
   }
   return motion;
@@ -252,7 +288,15 @@ bool Encounters::locked_throughout(Place& p, const Place& q) const {
 }
 
 bool Encounters::lock_holds(Place& p, Place& q) const {
-  if (companion(p.strands) == no_strand || companion(q.strands) == no_strand) return false;
+  for (Place* place : {&p, &q}) {
+    const std::size_t b = companion(place->strands);
+    if (b == no_strand) return false;
+    // One that grows by itself is not held by a neighbour that does not excite it, nor by one that may quench it.
+    const Place& other = place == &p ? q : p;
+    if (!locked(*place, 0) &&
+        (exciting_motion(*place, other, 0, b, options_.least_growth) < 0 || quenched(*place, other, 0, b)))
+      return false;
+  }
   const double growth = std::min(p.growth(), q.growth());
   if (same_lock(p, q, growth) && same_lock(q, p, growth)) return true;
   return locked_throughout(p, q) || locked_throughout(q, p);
@@ -263,14 +307,25 @@ bool Encounters::locked_alike(const Place& p, const Place& q) {
          kind_of(p.strands.all[0]) == kind_of(q.strands.all[0]);
 }
 
-bool Encounters::alone(Place& p, const Place& q, std::size_t k) const {
-  if (locked(p, k)) return false;
+// Strand a grows like g by itself, b decays like d: where their mean decays a falls to zero if kappa^2 >= g d (B9).
+bool Encounters::quenched(Place& p, const Place& q, std::size_t a, std::size_t b) const {
+  const double g = p.strands.all[a].s.real(), d = -growth_by_itself(p.strands, b);
+  if (!(d > 0)) return false;
+  const std::vector<std::size_t> onward = continued(p.strands, q.strands);
+  if (onward[a] != no_strand && onward[b] != no_strand &&
+      grow_together(g - d, q.strands.all[onward[a]].s.real() + q.strands.all[onward[b]].s.real()))
+    return false;
+  return motion_towards(p, q, a, b, std::sqrt(g * d), Effect::quenches) >= 0;
+}
+
+std::vector<std::size_t> Encounters::neighbours(Place& p, const Place& q, std::size_t k) const {
   const std::vector<double> motion = motions(p, q);
+  std::vector<std::size_t> near;
   for (std::size_t c = 0; c < p.strands.all.size(); ++c) {
     if (c == k || apart(p.strands, k, c) > motion[k] + motion[c]) continue;
-    if (exciting_motion(p, q, k, c, options_.least_growth) >= 0) return false;
+    if (exciting_motion(p, q, k, c, options_.least_growth) >= 0 || quenched(p, q, k, c)) near.push_back(c);
   }
-  return true;
+  return near;
 }
 
 }  // namespace hb

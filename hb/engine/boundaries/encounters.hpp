@@ -36,9 +36,12 @@ struct Meeting {
 // Imaginary parts of two strands of one place apart, modulo 1: 0 .. 1/2.
 [[nodiscard]] double apart(const Strands& strands, std::size_t a, std::size_t b);
 
-// Twice what the mean exponents of each strand of p move on the way to q, and what the strand itself seems to have
-// moved.
+// Twice what the mean exponents of each strand of p move on the way to q, twice what the strand moves otherwise, and
+// what it seems to have moved.
 [[nodiscard]] std::vector<double> motions(const Place& p, const Place& q);
+
+// How far each strand of p moves on its way to q otherwise than its mean exponents tell, modulo 1.
+[[nodiscard]] std::vector<double> unpredicted_motions(const Place& p, const Place& q);
 
 // Refers to its arguments.
 class Encounters {
@@ -60,13 +63,18 @@ class Encounters {
   // The exponents that give the growth are locked, to multipliers of one kind.
   static bool locked_alike(const Place& p, const Place& q);
 
-  // No other strand of p that may excite strand k comes near it on the way to q.
-  bool alone(Place& p, const Place& q, std::size_t k) const;
+  // Other strands of p that may excite strand k, which grows, or quench it, and come near it on the way to q.
+  std::vector<std::size_t> neighbours(Place& p, const Place& q, std::size_t k) const;
 
  private:
   const ParametricCoupling* coupling(Place& p) const;
   double needed_coupling(double growth, double other) const;
-  double exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const;
+  enum class Effect { excites, quenches };
+  double motion_towards(Place& p, const Place& q, std::size_t a, std::size_t b, double needed, Effect effect) const;
+  double exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const {
+    return motion_towards(p, q, a, b, needed, Effect::excites);
+  }
+  bool quenched(Place& p, const Place& q, std::size_t a, std::size_t b) const;
   double largest_coupling(Place& p, std::size_t a, std::size_t b) const;
   bool same_lock(Place& p, const Place& q, double growth) const;
   bool locked_throughout(Place& p, const Place& q) const;

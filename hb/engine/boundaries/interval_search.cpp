@@ -18,7 +18,9 @@ using cplx = std::complex<double>;
 
 // Two exponents move by this part of a turn against each other at most from place to place, where they may excite each
 // other.
-constexpr double most_motion = 0.25, most_motion_while_unstable = 0.15;
+constexpr double most_motion = 0.25, most_motion_while_unstable = 0.15, most_motion_while_locked = 0.5;
+// ... and by this part at most otherwise than their means.
+constexpr double most_unpredicted_motion = 0.05;
 // Models take places no farther away than that.
 constexpr double most_motion_of_models = 0.5;
 // Intervals are not divided below this, relative to x: narrower bands are not looked for.
@@ -141,6 +143,9 @@ class Search {
     if (bounded(p, q)) return nan;
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
     if (!encounters_.resolved(p, q, most_motion)) return middle;
+    // Where it is the modulation that moves them, what they do between the places is not known from their means.
+    if (std::ranges::any_of(unpredicted_motions(p, q), [](double part) { return part > most_unpredicted_motion; }))
+      return middle;
     const double least = least_growth(p, q);
     double worst = least, where = nan;
     const auto meeting = encounters_.meetings(p, q, least);
@@ -181,30 +186,39 @@ class Search {
   double doubtful_while_unstable(Place& p, Place& q) {
     const double middle = 0.5 * (p.x() + q.x());
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
-    // While a pair is locked so much more deeply than it moves it stays so.
-    const double most = std::max(most_motion_while_unstable, std::min(p.growth(), q.growth()));
+    // While a pair is locked so much more deeply than it moves it stays so; half a turn farther it may have left one
+    // order, where multipliers are near +1, for the next, -1, but not for the one after that.
+    const double most =
+        std::clamp(std::min(p.growth(), q.growth()), most_motion_while_unstable, most_motion_while_locked);
     if (!encounters_.resolved(p, q, most)) return middle;
     if (encounters_.lock_holds(p, q) || level_lock(p, q)) return nan;
-    // Exponents that grow by themselves.
+    // Exponents that grow by themselves, or with one other.
     std::vector<GrowthModel> models;
     for (Place* place : {&p, &q}) {
       Place& other = place == &p ? q : p;
       for (std::size_t k = 0; k < place->strands.all.size() && place->strands.all[k].s.real() > 0; ++k) {
-        if (!encounters_.alone(*place, other, k)) continue;
-        if (const std::optional<GrowthModel> model = single_model(*place, k, other)) models.push_back(*model);
+        if (place->strands.all[k].partner != no_strand) continue;
+        const std::vector<std::size_t> near = encounters_.neighbours(*place, other, k);
+        if (near.size() > 1) continue;
+        const std::optional<GrowthModel> model =
+            near.empty() ? single_model(*place, k, other) : pair_model(*place, k, near.front(), other);
+        if (model) models.push_back(*model);
       }
     }
     if (models.empty()) return middle;
     double worst = HUGE_VAL, where = middle;
-    for (const double x : probes(p, q)) {
+    const auto look = [&](double x, double nearest) {
       double low = -HUGE_VAL;
       for (const GrowthModel& model : models) low = std::max(low, model(x).low);
       if (low < worst) {
         worst = low;
-        where = x;
+        where = clamped(x, p, q, nearest);
       }
-    }
-    return worst > 0 ? nan : clamped(where, p, q);
+    };
+    for (const double x : probes(p, q)) look(x, 0.02);
+    // A pair's growth has a notch where the two pass each other.
+    for (const GrowthModel& model : models) look(model.centre(), 1e-6);
+    return worst > 0 ? nan : where;
   }
 
   // A closed-form bound on the growth proves stability at both ends and between them with more to spare than it

@@ -18,7 +18,7 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-// Ways that turn back are not in the sums (chosen by experiment).
+// Ways that turn back are not in the sums (chosen by experiment), beside those of an exponent's own phase modulation.
 constexpr double margin = 3;
 // A way through a resonance counts much, not infinitely.
 constexpr double least_detuning = 0.25;
@@ -165,6 +165,19 @@ ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order
     conjugate_.push_back(nearest);
   }
   from_.resize(static_cast<std::size_t>(mu_.size()));
+  // exp(sum_m z_m y^m) = sum_j c_j y^j by c_j = sum_m m z_m c_(j-m)/j, down to where c_j is negligible.
+  constexpr double negligible = 1e-10, most = 1e100;
+  std::vector<double> slope;  // m z_m, z_m = 2 E_m,nn/m
+  for (const MatrixXd& E : E_) slope.push_back(2 * E.diagonal().maxCoeff());
+  past_ = {1};
+  turning_ = 1;
+  for (std::size_t j = 1; j < static_cast<std::size_t>(max_order_); ++j) {
+    double sum = 0;
+    for (std::size_t m = 1; m <= std::min(j, slope.size()); ++m) sum += slope[m - 1] * past_[j - m];
+    past_.push_back(std::min(sum / static_cast<double>(j), most));
+    turning_ += past_.back();
+  }
+  while (past_.back() < negligible && past_.size() > 1) past_.pop_back();
 }
 
 const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
@@ -192,11 +205,19 @@ const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
 }
 
 double ParametricCoupling::operator()(std::size_t n, std::size_t r, int k) const {
-  if (E_.empty() || k > max_order_) return 0;
   const auto p = static_cast<Index>(n), q = static_cast<Index>(r);
-  if (symmetric_ && mu_(p).imag() * mu_(q).imag() > 0) return 0;
-  const double forth = from(n, k)(q, k - 1), back = from(conjugate_[r], k)(static_cast<Index>(conjugate_[n]), k - 1);
-  return margin * std::sqrt(forth * back);
+  return symmetric_ && mu_(p).imag() * mu_(q).imag() > 0 ? 0 : either_way(n, r, k);
+}
+
+double ParametricCoupling::either_way(std::size_t n, std::size_t r, int k) const {
+  if (E_.empty() || k > max_order_) return 0;
+  double forth = 0, back = 0;
+  for (int j = 0; j < static_cast<int>(past_.size()) && k + j <= max_order_; ++j) {
+    const double weight = past_[static_cast<std::size_t>(j)];
+    forth += weight * from(n, k + j)(static_cast<Index>(r), k + j - 1);
+    back += weight * from(conjugate_[r], k + j)(static_cast<Index>(conjugate_[n]), k + j - 1);
+  }
+  return margin * turning_ * std::sqrt(forth) * std::sqrt(back);
 }
 
 }  // namespace hb

@@ -25,11 +25,12 @@ struct MeanExponent {
 //     a_k(r) = E_k,rn + sum_{0<m<k} sum_l E_k-m,rl a_m(l)/|mu_n + im - mu_l|
 // sums all ways of harmonics that add up to k; forth and back give the root of the product, with a margin for ways that
 // turn back. Where stiffness and damping are symmetric two exponents on the same side of the real axis do not excite
-// each other: zero.
+// each other: zero. They share their damping all the same, as `either_way` tells: one that grows may be quenched.
 class ParametricCoupling {
  public:
   ParametricCoupling(const ScaledSystem& system, int max_order);
   double operator()(std::size_t n, std::size_t r, int k) const;
+  double either_way(std::size_t n, std::size_t r, int k) const;
   // Exponents that meet in the mean (k = 0) are harmless.
   bool symmetric() const { return symmetric_; }
 
@@ -39,6 +40,10 @@ class ParametricCoupling {
   Eigen::VectorXcd mu_;
   std::vector<std::size_t> conjugate_;
   std::vector<Eigen::MatrixXd> E_;  // k = 1, 2, ...
+  // What an exponent's own phase modulation does, y a harmonic: exp(sum_k (2 E_k,nn/k) y^k) = sum_j past_[j] y^j takes
+  // a way past the order by j and back; turning_, the sum of all.
+  std::vector<double> past_;
+  double turning_ = 1;
   bool symmetric_ = false;
   int max_order_;
   mutable std::vector<Eigen::MatrixXd> from_;  // a_k(r) in (r, k - 1), as far as it was asked for

@@ -257,6 +257,10 @@ ExponentSearch search_by_determinant(const ScaledSystem& system) {
   }
   const HillDeterminant determinant(system);
   search.exponents = determinant.exponents();
+  if (search.exponents.s.empty() && !(search.exponents.others_below > -HUGE_VAL)) {
+    search.evidence = "Hill's determinant was not found: it needs too many unknowns or does not settle";
+    return search;
+  }
   name_modes(search.exponents, system, all_modes(system));
   // How many lie to the right of zero is known from the winding of the determinant as well, if none lies too near.
   const std::optional<int> growing = determinant.exponents_above(0);

@@ -222,6 +222,7 @@ HillDeterminant::Polynomial HillDeterminant::on_circle(double c) const {
   for (Index m = 0; m < M / 2; ++m) {
     const cplx s(c, (double(m) + 0.5) / double(M));
     const Value F = (*this)(s);
+    if (!std::isfinite(F.error)) return {};  // nor do the others help
     log_P(m) = F.log + cplx(0, 2 * pi * double(I_) * s.imag());
     error(m) = F.error;
   }
@@ -235,11 +236,11 @@ HillDeterminant::Polynomial HillDeterminant::on_circle(double c) const {
       a(r) += 2 / double(M) * (P(m) * std::polar(1.0, -2 * pi * double(r) * (double(m) + 0.5) / double(M))).real();
   const double change =
       (P.cwiseAbs().cwiseProduct(error).maxCoeff() + a.tail(M - degree - 1).cwiseAbs().maxCoeff()) * double(degree + 1);
-  return {a.head(degree + 1), change};
+  return {a.head(degree + 1), change, error.maxCoeff()};
 }
 
-Exponents HillDeterminant::roots_near(double c) const {
-  const auto [a, change] = on_circle(c);
+Exponents HillDeterminant::roots_near(double c, const Polynomial& polynomial) const {
+  const auto& [a, change, value_error] = polynomial;
   Exponents result;
   const Index degree = a.size() - 1;
   if (degree < 1 || !(change < 0.1 * std::abs(a(degree)))) return result;
@@ -261,7 +262,7 @@ Exponents HillDeterminant::roots_near(double c) const {
 }
 
 std::optional<int> HillDeterminant::exponents_above(double c) const {
-  const auto [a, change] = on_circle(c);
+  const auto [a, change, value_error] = on_circle(c);
   if (a.size() == 0) return std::nullopt;
   const Index degree = a.size() - 1;
   const auto P = [&](double angle) {
@@ -293,9 +294,13 @@ std::optional<int> HillDeterminant::exponents_above(double c) const {
 Exponents HillDeterminant::exponents() const {
   double c = std::max(p_.real().maxCoeff(), p_other_.real().maxCoeff());
   Exponents result;
+  if (!std::isfinite((*this)(cplx(c, 0.25)).error)) return result;  // too large, or it does not settle
   constexpr int most_circles = 6;
   for (int circle = 0; circle < most_circles; ++circle) {
-    result = roots_near(c);
+    const Polynomial polynomial = on_circle(c);
+    result = roots_near(c, polynomial);
+    // Values so inexact serve on no circle.
+    if (result.s.empty() && !(polynomial.value_error * double(2 * I_ + 1) < 0.1)) return result;
     double leading = result.others_below;
     for (const cplx s : result.s) leading = std::max(leading, s.real());
     if (!std::isfinite(leading)) {

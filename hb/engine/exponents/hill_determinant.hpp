@@ -43,11 +43,12 @@ class HillDeterminant {
   struct Polynomial {
     Eigen::VectorXd a;
     double change = 0;
+    double value_error = 0;  // the largest relative error of the determinant on the circle
   };
   class Matrix;
   Value truncated(std::complex<double> s, Eigen::Index H) const;
   Polynomial on_circle(double c) const;
-  Exponents roots_near(double c) const;
+  Exponents roots_near(double c, const Polynomial& polynomial) const;
 
   Eigen::Index I_, P_;
   FourierSeries K_;
