@@ -126,15 +126,22 @@ void check_nodes(const StabilityMap& map, const Plane& plane, const std::string&
     }
 }
 
-// On either side of each point of a curve, as far away as its error or 1e-7 of the map, the verdicts differ.
+// On either side of each point of a curve, twice as far away as its error, or 1e-10 of its coordinate, the verdicts
+// differ, unless another curve passes there (thin bands).
 void check_curves(const StabilityMap& map, const Plane& plane, const std::string& name, Random& random, Tally& tally) {
   constexpr double part = 0.2;  // of the points
   for (const BoundaryCurve& curve : map.boundaries) {
     ++tally.curves;
     for (const BoundaryPoint& p : curve.points) {
       if (!random.chance(part)) continue;
-      const double range = p.along_x ? plane.high_.x - plane.low_.x : plane.high_.y - plane.low_.y;
-      const double step = std::max(1.5 * p.error, 1e-7 * range);
+      const double step = std::max(2 * p.error, 1e-10 * (p.along_x ? p.x : p.y));
+      const bool thin = std::ranges::any_of(map.boundaries, [&](const BoundaryCurve& other) {
+        return std::ranges::any_of(other.points, [&](const BoundaryPoint& q) {
+          const double along = p.along_x ? q.x - p.x : q.y - p.y, across = p.along_x ? q.y - p.y : q.x - p.x;
+          return &q != &p && std::abs(along) < 4 * step && std::abs(across) < 4 * step;
+        });
+      });
+      if (thin) continue;
       const auto beside = [&](double side) {
         return p.along_x ? Point{p.x + side * step, p.y} : Point{p.x, p.y + side * step};
       };
