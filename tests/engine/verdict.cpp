@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/engine/exponents/imaginary_axis.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "lib/rod/rod.hpp"
 #include "tests/support/random_hill_system.hpp"
@@ -30,6 +31,15 @@ HillSystem oscillators(const Eigen::MatrixXd& damping, const Eigen::MatrixXd& me
 
 const Eigen::Matrix2d mean_stiffness = (Eigen::Matrix2d() << 1.3, 0.1, 0.1, 5.1).finished();
 const Eigen::Matrix2cd modulation = (Eigen::Matrix2cd() << 0.1, 0.05, 0.05, cplx(0.2, 0.1)).finished();
+
+// At the edge of an undamped tongue one growing exponent was found from both modes, its mirror image from neither, and
+// the verdict was `bounded`.
+TEST(Verdict, AnExponentFoundTwiceDoesNotLieOnTheImaginaryAxis) {
+  const std::array<cplx, 2> twice = {cplx(3e-7, 0.3), cplx(3.1e-7, 0.3)}, apart = {cplx(0, 0.3), cplx(1e-9, 0.4)};
+  const std::array<double, 2> error = {1.6e-7, 2e-9};
+  EXPECT_FALSE(images_apart(twice, error, 1));
+  EXPECT_TRUE(images_apart(apart, error, 1));
+}
 
 TEST(Verdict, TheWorstIsUnstableThenUndecidedThenBoundedThenStable) {
   using enum Verdict;

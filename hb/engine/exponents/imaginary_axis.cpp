@@ -9,7 +9,10 @@ bool images_apart(std::span<const std::complex<double>> s, std::span<const doubl
     for (std::size_t j = 0; j < s.size(); ++j) {
       if (i == j) continue;
       const double turn = std::remainder(s[i].imag() - s[j].imag(), period);
-      if (!(std::hypot(s[i].real() + s[j].real(), turn) > error[i] + error[j])) return false;
+      const double sum = error[i] + error[j];
+      // Nor may two be one exponent found twice, whose image is not among them.
+      if (!(std::hypot(s[i].real() + s[j].real(), turn) > sum && std::hypot(s[i].real() - s[j].real(), turn) > sum))
+        return false;
     }
   return true;
 }
