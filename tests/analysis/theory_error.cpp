@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/constants.hpp"
+#include "lib/scene/scene.hpp"
 #include "tests/support/linear_answer.hpp"
 #include "tests/support/six_link.hpp"
 #include "tests/support/slider_crank.hpp"
@@ -45,6 +46,23 @@ TEST(TheoryError, OfTheSliderCrankIsTheReferences) {
     const TheoryErrors errors = theory_errors(answer.model, speed, answer.rods());
     ASSERT_TRUE(errors.rods[0].q);
     EXPECT_NEAR(*errors.rods[0].q, expected, 5e-4 * expected + 4e-5);
+  }
+}
+
+// Too few points along the rods show as an error of the theory that is not there.
+TEST(TheoryError, OfSmallVibrationIsNotThatOfItsPointsAlongTheRod) {
+  const Scene scene = read_scene(HB_SOURCE_DIR "/results/first_steps/scene.toml");
+  const auto& linkage = std::get<Linkage>(scene.model);
+  const double speed = 300 * pi / 30;
+  for (const Index modes : {1, 2, 5, 8}) {
+    SCOPED_TRACE(modes);
+    const LinearAnswer answer = linear_answer(linkage, speed, modes);
+    const ExactModel fine(linkage, {{elastic_links(linkage).front(), modes}}, modes + 24);
+    const TheoryErrors errors = theory_errors(theory_model(linkage, {modes}), speed, answer.rods());
+    const TheoryErrors finer = theory_errors(fine, speed, answer.rods());
+    ASSERT_TRUE(errors.rods[0].q && finer.rods[0].q);
+    EXPECT_LE(*finer.rods[0].q, 2e-7);
+    EXPECT_NEAR(*errors.rods[0].q, *finer.rods[0].q, 2e-8);
   }
 }
 
