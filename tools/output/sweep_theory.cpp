@@ -75,7 +75,7 @@ std::string theory_rows(const SweepScene& scene, const SweepResult& result) {
                         quantity.is_rate ? units.rate : "of the largest",
                         is_speed(scene) ? "" : scene.axis().path + " = ", worst->x, unit.empty() ? "" : " " + unit,
                         without == 0 ? "" : fmt::format("; no value at {} of {} points", without, result.points.size()),
-                        above_rate == 0 ? "" : fmt::format("; not less than the rate itself at {}", above_rate));
+                        above_rate == 0 ? "" : fmt::format("; not less than the rate itself at {} points", above_rate));
   }
   return text.empty() ? text : "\nTheory errors of the whole mechanism, largest of all points\n" + text;
 }
