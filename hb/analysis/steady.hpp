@@ -1,6 +1,7 @@
 // A scene at one speed, with everything that the answer was computed from.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "hb/analysis/linkage_analysis.hpp"
@@ -15,7 +16,9 @@ struct SteadyResult : SpeedResult {
 };
 
 // Periodic steady state, stability, shape and joint forces, as far as asked for. Throws RequestError, and
-// UnresolvedLinkage where the linkage comes too near a dead centre.
-[[nodiscard]] SteadyResult steady(const Scene& scene, const Request& request = {});
+// UnresolvedLinkage where the linkage comes too near a dead centre. `expected` is called once the model is there, with
+// the seconds that the rest will take, about.
+[[nodiscard]] SteadyResult steady(const Scene& scene, const Request& request = {},
+                                  const std::function<void(double)>& expected = {});
 
 }  // namespace hb

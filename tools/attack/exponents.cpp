@@ -48,7 +48,7 @@ double quantile(std::vector<double> values, double part) {
 }
 
 struct Options {
-  int cases = 20;
+  int cases = 20, first = 0;
   double seconds = HUGE_VAL;
   std::uint64_t seed = 1;
   std::string family, method = "automatic";
@@ -149,7 +149,7 @@ int run(const Options& options) {
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // what was found is not lost with the rest
   const Clock::time_point start = Clock::now();
   std::vector<Tally> tallies(num_families);
-  for (int k = 0; k < options.cases && seconds_since(start) < options.seconds; ++k)
+  for (int k = options.first; k < options.first + options.cases && seconds_since(start) < options.seconds; ++k)
     for (int f = 0; f < num_families && seconds_since(start) < options.seconds; ++f)
       if (options.family.empty() || options.family == names[std::size_t(f)])
         tallies[std::size_t(f)].add(run_case(Family(f), options.seed * 1000000 + std::uint64_t(k), options));
@@ -184,6 +184,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> known;
   for (const auto& [name, method] : methods) known.push_back(name);
   app.add_option("--cases", options.cases, "of each family");
+  app.add_option("--first", options.first, "number of the first case");
   app.add_option("--seconds", options.seconds, "stop after");
   app.add_option("--seed", options.seed, "which cases");
   app.add_option("--family", options.family, "this one only")

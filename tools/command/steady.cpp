@@ -26,6 +26,7 @@
 #include "tools/pictures/band_figures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
+#include "tools/work/progress.hpp"
 #include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
@@ -90,7 +91,8 @@ int run_steady(const SteadyFlags& flags) {
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
-  const SteadyResult result = steady(scene, request);
+  const SteadyResult result = steady(
+      scene, request, [](double seconds) { say_expected("this speed", seconds, "--modes, --only and --time-limit"); });
   const SceneModel& model = *result.model;
   std::optional<MeasuredComparison> measured;
   if (!flags.measured.empty()) measured = compare_measured(flags.measured, model, result);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "hb/analysis/expected_time.hpp"
 #include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
 #include "lib/scene/scene_reader.hpp"
 #include "tools/command/asked.hpp"
@@ -27,6 +28,7 @@
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
+#include "tools/work/progress.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
 #include "tools/work/sweep_key.hpp"
@@ -64,6 +66,10 @@ int run_sweep_command(const SweepFlags& flags) {
   SweepResult result;
   const std::vector<BandRequest> bands_asked = bands_of(flags.bands, flags.theory);
   if (!flags.measured.empty()) (void)read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
+  say_expected(
+      "the sweep",
+      expected_seconds(swept.first(), swept.settings()) * static_cast<double>(swept.axis().values.size()) / out.threads,
+      "--modes, --only, --threads and --time-limit");
   KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
   std::vector<SweepBand> bands;

@@ -51,4 +51,7 @@ class Forecast {
   std::mutex mutex_;
 };
 
+// Says so where something will take more than ten seconds; `change`: the flags that change that.
+void say_expected(const std::string& what, double seconds, const std::string& change);
+
 }  // namespace hb::tools

@@ -11,9 +11,14 @@ using cplx = std::complex<double>;
 
 // A mean exponent this much farther than the nearest one is still a candidate: modulation shifts exponents.
 constexpr double doubt = 0.15;
+// Detuning of a resonance that shifts an exponent, (coupling)^2/detuning.
+constexpr double detuning = 0.25;
 // ... but not one that decays so many times faster or slower. What the solver names an exponent does not count: in a
 // group of coupled modes it is a guess.
 constexpr double unlike_decay = 3;
+
+// What modulation may shift an exponent by, of second order.
+double shift(const MeanExponent& mean) { return mean.coupling * mean.coupling / (9 * detuning); }
 
 std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mean) {
   std::vector<std::pair<double, std::size_t>> distances;
@@ -25,7 +30,7 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
   std::sort(distances.begin(), distances.end());
   std::vector<std::size_t> found;
   for (const auto& [distance, n] : distances)
-    if (distance <= distances.front().first + doubt) found.push_back(n);
+    if (distance <= distances.front().first + std::max(doubt, shift(mean[n]))) found.push_back(n);
   return found;
 }
 

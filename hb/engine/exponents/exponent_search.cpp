@@ -12,6 +12,7 @@
 #include "hb/engine/exponents/hill_determinant.hpp"
 #include "hb/engine/exponents/hill_exponents.hpp"
 #include "hb/engine/exponents/slaving.hpp"
+#include "lib/constants.hpp"
 #include "lib/dense.hpp"
 
 namespace hb {
@@ -43,15 +44,36 @@ void name_modes(Exponents& exponents, const ScaledSystem& system, const std::vec
   hb::name_modes(exponents, system.mean_diagonal(), system.damping_diagonal(), group);
 }
 
+// Whether two of the exponents may be one that was found twice.
+bool may_be_twice(const Exponents& found) {
+  for (std::size_t i = 0; i < found.s.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      const cplx apart = found.s[i] - found.s[k];
+      const double turn = apart.imag() - std::round(apart.imag());
+      if (!(std::hypot(apart.real(), turn) > found.error[i] + found.error[k])) return true;
+    }
+  return false;
+}
+
+// sum_j s_j = -tr G (Liouville): not so if an exponent was found twice and another one not at all.
+bool add_up(const ScaledSystem& system, const Exponents& found) {
+  if (Index(found.s.size()) != 2 * system.num_modes()) return true;
+  double sum = system.G.trace(), error = 8 * eps * system.G.diagonal().cwiseAbs().sum();
+  for (std::size_t i = 0; i < found.s.size(); ++i) {
+    sum += found.s[i].real();
+    error += found.error[i];
+  }
+  return std::isnan(error) || std::abs(sum) <= error;
+}
+
 // True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.
-bool spans(const ScaledSystem& system, MatrixXd states) {
+bool spans(const ScaledSystem& system, MatrixXd states, double least) {
   const Index I = system.num_modes();
   if (!states.allFinite()) return false;
   const VectorXd w2 = system.mean_diagonal();
   for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
   states.colwise().normalize();
-  // Far above the errors of the subspaces.
-  return dense::Lu<double>(states).rcond() > 1e-8;
+  return dense::Lu<double>(states).rcond() > least;
 }
 
 // Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
@@ -220,7 +242,11 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
       search.exponents.append(alone[std::size_t(g)]);
       search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
     }
-  search.complete = I == 1 || spans(system, std::move(states));  // one mode has the whole plane
+  // Subspaces are as far off as their exponents are from being told apart.
+  constexpr double above_errors = 1e-8, well_apart = 1e-3;
+  const double least = may_be_twice(search.exponents) ? well_apart : above_errors;
+  search.complete = I == 1 ||  // one mode has the whole plane
+                    (add_up(system, search.exponents) && spans(system, std::move(states), least));
   return search;
 }
 

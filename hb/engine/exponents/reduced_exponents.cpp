@@ -81,6 +81,9 @@ double fastest_frequency(const ReducedSystem& reduced, const VectorXd& W) {
   return std::sqrt(fastest2);
 }
 
+// The phase of one oscillator of that frequency comes out to so much of a turn (measured).
+double oscillator_error(double frequency, double cells) { return std::pow(0.61 * frequency / cells, 15); }
+
 // Cells to begin with.
 Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance) {
   // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
@@ -88,7 +91,7 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
   constexpr Index fewest_cells = 12;
   Index least =
       std::max({fewest_cells, Index(std::ceil(0.8 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance) + 1});
-  // The phase of one oscillator comes out to (0.61 w/cells)^15 of a turn (measured).
+  // As oscillator_error tells.
   if (reduced.num_modes == 1 && reduced.alpha.c(0, 0).real() > 0) {
     const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
     const double needed = 0.61 * w * std::pow(allowed(tolerance, -b / 2), -1.0 / 15);
@@ -148,7 +151,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   }
   const Index least = first_cells(reduced, fastest, tolerance), most = std::max<Index>(512, 12 * least);
   // The other exponents are wanted too, but for so much work only.
-  constexpr double further_tolerance = 1e-9;
+  constexpr double further_tolerance = 1e-9, most_further_work = 1e6;  // about a second's
   constexpr Index most_further = 4;
   Index enough = 0;  // cells for the leading one
   Exponents result;
@@ -169,6 +172,9 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
       result.s = fine.turn.s;
       result.others_below = fine.turn.others_below;
       result.error = errors_from(*coarse, fine);
+      // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
+      if (m == 1)
+        for (double& error : result.error) error = std::max(error, oscillator_error(fastest, double(cells)));
       for (double& error : result.error) error += damping_error;
       if (result.s.empty()) break;
       // At rounding more cells gain nothing.
@@ -176,7 +182,8 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
       result.converged = result.error[0] <= allowed(tolerance, fine.turn.s[0]);
       bool done = result.converged || at_rounding(0);
       if (done && enough == 0) enough = cells;
-      for (std::size_t i = 1; i < fine.turn.s.size() && !leading_only && cells < most_further * enough; ++i)
+      const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
+      for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
         done =
             done && (at_rounding(i) || result.error[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
       if (done) break;

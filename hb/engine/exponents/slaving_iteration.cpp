@@ -206,13 +206,13 @@ bool Iteration::run(double tolerance, int& iterations) {
   return false;
 }
 
-ReducedSystem Iteration::result(bool bounds_others) const {
+ReducedSystem Iteration::result(bool bounds_others) {
   ReducedSystem reduced;
   reduced.converged = true;
   reduced.num_modes = m_;
   reduced.alpha = fourier::analyse(alpha_.transpose());
   reduced.beta = fourier::analyse(beta_.transpose());
-  const double iteration = 2 * change_ * amplification_;
+  const double iteration = carried_change() * amplification_;
   reduced.alpha_error =
       iteration +
       2 * eps * (alpha_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * A_.cwiseAbs().maxCoeff()).reshaped(m_, m_);

@@ -46,7 +46,7 @@ class Iteration {
   // alpha's error but for that of too few samples.
   bool run(double tolerance, int& iterations);
 
-  ReducedSystem result(bool bounds_others) const;
+  ReducedSystem result(bool bounds_others);
 
  private:
   Iteration(const ScaledSystem& system, const SampledStiffness::Samples& samples, const Partition& p,
@@ -60,6 +60,8 @@ class Iteration {
   void weigh_residuals();
   // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
   double alpha_change() const { return effect_.cwiseProduct(residual_).sum(); }
+  // The same in the end, harmonic by harmonic and with rounding as independent; hb/engine/README.md (E7).
+  double carried_change();
   double others_below() const;
   Eigen::MatrixXd start() const;
 
