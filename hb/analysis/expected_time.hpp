@@ -6,7 +6,7 @@
 namespace hb {
 
 // Seconds of one processor, about: near a dead centre, where it takes long, by fits to measured times. Below a second
-// it says no more than that.
+// it says no more than that. With Hill's determinant an upper estimate.
 [[nodiscard]] double expected_seconds(const SceneModel& model, const Settings& settings);
 
 }  // namespace hb

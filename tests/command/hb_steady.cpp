@@ -380,4 +380,14 @@ TEST_F(Steady, LooseToleranceLoosensTheExponents) {
   }
 }
 
+TEST_F(Steady, SaysBeforehandWhatALongSpeedWillTake) {
+  ASSERT_EQ(hb("new slider-crank crank.toml").status, 0);
+  const std::string near = " crank.toml --set 'crank.length=144.999 mm' --time-limit 0.5";
+  EXPECT_NE(hb("steady" + near).err.find("hb: this speed takes about"), std::string::npos);
+  EXPECT_NE(hb("sweep" + near + " --rpm 300:600:100").err.find("hb: the sweep takes about"), std::string::npos);
+  EXPECT_NE(hb("steady crank.toml --stability-method determinant --time-limit 0.5").err.find("takes at most about"),
+            std::string::npos);
+  EXPECT_EQ(hb("steady crank.toml").err.find("takes"), std::string::npos);
+}
+
 }  // namespace

@@ -91,8 +91,10 @@ int run_steady(const SteadyFlags& flags) {
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
-  const SteadyResult result = steady(
-      scene, request, [](double seconds) { say_expected("this speed", seconds, "--modes, --only and --time-limit"); });
+  const SteadyResult result = steady(scene, request, [&](double seconds) {
+    say_expected("this speed", seconds, "--modes, --only and --time-limit",
+                 request.stability_method == StabilityMethod::determinant);
+  });
   const SceneModel& model = *result.model;
   std::optional<MeasuredComparison> measured;
   if (!flags.measured.empty()) measured = compare_measured(flags.measured, model, result);

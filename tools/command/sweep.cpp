@@ -45,6 +45,16 @@ void add_bands(const nlohmann::ordered_json& document, const SweepScene& swept, 
   }
 }
 
+// Shorter points are known by the first of them.
+void say_expected_of(const SweepScene& swept, int threads) {
+  constexpr double long_point = 1;
+  const double each = expected_seconds(swept.first(), swept.settings());
+  if (each < long_point) return;
+  say_expected("the sweep", each * static_cast<double>(swept.axis().values.size()) / threads,
+               "--modes, --only, --threads and --time-limit",
+               swept.settings().stability_method == StabilityMethod::determinant);
+}
+
 int run_sweep_command(const SweepFlags& flags) {
   const SceneInput input = scene_input(flags.scene_file);
   const std::vector<Override> set = overrides(flags);
@@ -66,10 +76,7 @@ int run_sweep_command(const SweepFlags& flags) {
   SweepResult result;
   const std::vector<BandRequest> bands_asked = bands_of(flags.bands, flags.theory);
   if (!flags.measured.empty()) (void)read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
-  say_expected(
-      "the sweep",
-      expected_seconds(swept.first(), swept.settings()) * static_cast<double>(swept.axis().values.size()) / out.threads,
-      "--modes, --only, --threads and --time-limit");
+  say_expected_of(swept, out.threads);
   KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
   std::vector<SweepBand> bands;

@@ -54,9 +54,10 @@ void Progress::advance(std::size_t steps) {
   fmt::print(stderr, "\r\033[K{}", progress_line(what_, done_, total_, spent, before));
 }
 
-void say_expected(const std::string& what, double seconds, const std::string& change) {
+void say_expected(const std::string& what, double seconds, const std::string& change, bool at_most) {
   if (!(seconds >= worth_saying)) return;
-  fmt::print(stderr, "hb: {} takes about {}; {} change that\n", what, duration(seconds), change);
+  fmt::print(stderr, "hb: {} takes {} {}; {} change that\n", what, at_most ? "at most about" : "about",
+             duration(seconds), change);
 }
 
 Forecast::Forecast(std::string what, std::size_t total, int num_threads, bool at_most)

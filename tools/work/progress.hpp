@@ -52,6 +52,6 @@ class Forecast {
 };
 
 // Says so where something will take more than ten seconds; `change`: the flags that change that.
-void say_expected(const std::string& what, double seconds, const std::string& change);
+void say_expected(const std::string& what, double seconds, const std::string& change, bool at_most = false);
 
 }  // namespace hb::tools
