@@ -19,15 +19,15 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Harmonics of q smaller than `negligible` of the largest are left out, but at least so many are kept; `stiffness` of C
-// is left out where the exact model is compared with the linear one; `tolerance` is asked of the correction.
+// Harmonics of q smaller than `negligible` of the largest are left out; products of three are looked at of those above
+// `cubed`, at least so many; `tolerance` is asked of the correction.
 struct Accuracy {
-  double negligible, stiffness, tolerance;
-  Index least_harmonics;
+  double negligible, cubed, tolerance;
+  Index least_cubed;
 };
-constexpr Accuracy of_theory_error{3e-6, 1e-13, 3e-5, 8};
+constexpr Accuracy of_theory_error{3e-6, 1e-4, 2e-4, 7};
 // Enough to see whether the second correction matters.
-constexpr Accuracy of_second_look{1e-3, 1e-7, 1e-2, 8};
+constexpr Accuracy of_second_look{1e-3, 1e-2, 1e-2, 5};
 // Below the first, of the correction times the amplification next to the nearest resonance, one correction shows the
 // change to within a tenth (by random linkages); so it does where the second one differs by less than the other.
 constexpr double harmless = 0.015, most_second = 0.085;
@@ -38,32 +38,46 @@ constexpr double sharp = 10;
 // The first correction's size is the theory error of q, (T2), where it is this near to that of the change followed.
 constexpr double same_size = 0.05;
 
+// Harmonics of q above so much of the largest.
+Index harmonics_above(const FourierSeries& q, double relative) {
+  const FourierSeries all(MatrixXd(q.c.cwiseAbs2().colwise().maxCoeff().cwiseSqrt()).cast<std::complex<double>>());
+  return fourier::significant_harmonics(all, relative);
+}
+
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods, double negligible) {
   std::vector<FourierSeries> q;
-  for (const LinearRod& rod : rods) {
-    const FourierSeries all(
-        MatrixXd(rod.q->c.cwiseAbs2().colwise().maxCoeff().cwiseSqrt()).cast<std::complex<double>>());
-    q.push_back(fourier::resized(*rod.q, fourier::significant_harmonics(all, negligible)));
-  }
+  for (const LinearRod& rod : rods) q.push_back(fourier::resized(*rod.q, harmonics_above(*rod.q, negligible)));
   return q;
 }
 
-// Products of three responses do not fold onto their own harmonics.
+// Angles at which the harmonics of q are apart, and products of three do not fold onto them.
 Index num_samples(const std::vector<FourierSeries>& q, const Accuracy& accuracy) {
-  Index H = accuracy.least_harmonics;
-  for (const FourierSeries& series : q) H = std::max(H, series.num_harmonics());
-  return fourier::fast_length(4 * H + 2);
+  Index H = 0, cubed = accuracy.least_cubed;
+  for (const FourierSeries& series : q) {
+    H = std::max(H, series.num_harmonics());
+    cubed = std::max(cubed, harmonics_above(series, accuracy.cubed));
+  }
+  return fourier::fast_length(std::max(2 * H + 2, 4 * cubed + 2));
 }
 
-// Values at N angles of a series with any number of harmonics, at a multiple of N angles if need be.
+// Values at N angles, an even number, of a series with any number of harmonics: at those angles harmonic k is k - N,
+// too.
 MatrixXd values(const FourierSeries& series, Index N) {
-  Index multiple = 1;
-  while (multiple * N < 2 * series.num_harmonics() + 2) ++multiple;
-  MatrixXd fine = fourier::synthesise(series, multiple * N);
-  if (multiple == 1) return fine;
-  MatrixXd picked(fine.rows(), N);
-  for (Index j = 0; j < N; ++j) picked.col(j) = fine.col(multiple * j);
-  return picked;
+  fourier::RealTransform& transform = fourier::thread_transform(N, series.num_components());
+  auto spectrum = transform.spectrum();
+  spectrum.setZero();
+  spectrum.row(0) = series.c.col(0).transpose();
+  for (Index k = 1; k <= series.num_harmonics(); ++k) {
+    const Index m = k % N;
+    if (m == 0 || 2 * m == N)
+      spectrum.row(m) += 2 * series.c.col(k).real().transpose();
+    else if (2 * m < N)
+      spectrum.row(m) += series.c.col(k).transpose();
+    else
+      spectrum.row(N - m) += series.c.col(k).adjoint();
+  }
+  transform.backward();
+  return transform.samples().transpose();
 }
 
 // C without the highest harmonics that are small beside the mean stiffnesses of the modes they couple.
@@ -77,15 +91,22 @@ FourierSeries without_small(const FourierSeries& C, Index I, double relative) {
   return H == C.num_harmonics() ? C : fourier::resized(C, H);
 }
 
+// A linear rod at one speed, without what shear adds: the exact model has none.
+struct Compared {
+  MatrixXd M, B;
+  FourierSeries C, h;
+
+  Compared(const HillSystem& system, double speed)
+      : M(system.mass), B(system.damping), C(stiffness_at(system, speed)), h(load_at(system, speed)) {}
+};
+
 // M q'' + B q' + C q - h at the samples.
-MatrixXd linear_residual(const HillSystem& system, double speed, const MatrixXd& q, const MatrixXd& q1,
-                         const MatrixXd& q2, double negligible_stiffness) {
-  const Index I = system.num_modes(), N = q.cols();
-  MatrixXd r = system.mass * q2 + system.damping * q1;
-  const MatrixXd C = values(without_small(stiffness_at(system, speed), I, negligible_stiffness), N);
-  for (Index j = 0; j < N; ++j) r.col(j).noalias() += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I) * q.col(j);
-  const FourierSeries h = load_at(system, speed);
-  if (h.c.size() > 0) r -= values(h, N);
+MatrixXd linear_residual(const Compared& rod, const MatrixXd& q, const MatrixXd& q1, const MatrixXd& q2) {
+  const Index I = q.rows(), N = q.cols();
+  MatrixXd r = rod.M * q2 + rod.B * q1;
+  const MatrixXd C = values(rod.C, N);
+  for (Index j = 0; j < N; ++j) r.col(j) += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I).lazyProduct(q.col(j));
+  if (rod.h.c.size() > 0) r -= values(rod.h, N);
   return r;
 }
 
@@ -130,14 +151,20 @@ double deflection_ratio(const MatrixXd& change, const MatrixXd& q) {
   return ratio(dense::largest(shapes * change), dense::largest(shapes * q));
 }
 
-// Largest |q_i| over the turn: of components that can have it, their values at four angles a wave being at least 0.7 of
-// their largest.
+// Values at four angles a wave are at least so much of the largest.
+constexpr double least_sampled = 0.7;
+
+// Largest |q_i| of each component at those.
+Eigen::VectorXd sampled_largest(const FourierSeries& q) {
+  return fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4)).cwiseAbs().rowwise().maxCoeff();
+}
+
+// Largest |q_i| over the turn, of components that can have it.
 double largest_value(const FourierSeries& q) {
-  const Eigen::VectorXd sampled =
-      fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4)).cwiseAbs().rowwise().maxCoeff();
+  const Eigen::VectorXd sampled = sampled_largest(q);
   double value = 0;
   for (Index i = 0; i < q.num_components(); ++i)
-    if (!(sampled(i) < 0.7 * sampled.maxCoeff())) value = std::max(value, fourier::max_abs(q, i).value);
+    if (!(sampled(i) < least_sampled * sampled.maxCoeff())) value = std::max(value, fourier::max_abs(q, i).value);
   return value;
 }
 
@@ -167,11 +194,17 @@ struct Question {
   const ExactModel& model;
   double speed;
   std::span<const LinearRod> rods;
+  std::vector<Compared> compared;
   std::vector<Answers> answers;
 
   Question(const ExactModel& exact, double at_speed, std::span<const LinearRod> linear)
       : model(exact), speed(at_speed), rods(linear) {
-    for (const LinearRod& rod : rods) answers.emplace_back(*rod.system, speed, of_theory_error.tolerance);
+    for (std::size_t r = 0; r < rods.size(); ++r) {
+      const HillSystem& system = *rods[r].system;
+      const Body& link = *body_at(model.linkage(), model.rods()[r].link);
+      compared.emplace_back(link.elastic->shear ? rigid_in_shear(link, system, system.num_modes()) : system, speed);
+      answers.emplace_back(system, speed, of_theory_error.tolerance);
+    }
   }
 };
 
@@ -192,16 +225,11 @@ Corrections corrections(Question& of, const CrankAngles& angles, const std::vect
   found.breakdown = exact.breakdown;
   for (std::size_t r = 0; r < of.rods.size() && !found.breakdown && !found.singular; ++r) {
     const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
-    const HillSystem& system = *of.rods[r].system;
-    const MatrixXd own = motion.q.middleRows(first, I), own1 = motion.q1.middleRows(first, I),
-                   own2 = motion.q2.middleRows(first, I);
-    const Body& link = *body_at(model.linkage(), model.rods()[r].link);
-    const MatrixXd linear = link.elastic->shear ? linear_residual(rigid_in_shear(link, system, I), speed, own, own1,
-                                                                  own2, accuracy.stiffness)
-                                                : linear_residual(system, speed, own, own1, own2, accuracy.stiffness);
+    const MatrixXd linear = linear_residual(of.compared[r], motion.q.middleRows(first, I),
+                                            motion.q1.middleRows(first, I), motion.q2.middleRows(first, I));
     std::optional<FourierSeries> dq = of.answers[r](linear - exact.r.middleRows(first, I), accuracy.tolerance);
     if (!dq) found.singular = r;
-    if (dq) found.dq.push_back(std::move(*dq));
+    if (dq) found.dq.push_back(fourier::resized(*dq, harmonics_above(*dq, 0.1 * accuracy.tolerance)));
   }
   return found;
 }
@@ -224,15 +252,25 @@ std::vector<double> sizes(const std::vector<FourierSeries>& dq) {
   return values;
 }
 
-// Largest change itself, relative to the rod's largest.
-double difference(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to) {
+// Largest change itself, relative to the rod's largest, by either measure of a series.
+template <class Measure>
+double difference(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to,
+                  const Measure& measure) {
   double largest = 0;
   for (std::size_t r = 0; r < from.size(); ++r) {
     const Index H = std::max(from[r].num_harmonics(), to[r].num_harmonics());
     const FourierSeries change(fourier::resized(to[r], H).c - fourier::resized(from[r], H).c);
-    largest = std::max(largest, ratio(largest_value(change), largest_value(to[r])));
+    largest = std::max(largest, ratio(measure(change), measure(to[r])));
   }
   return largest;
+}
+
+// Whether the change is larger than `most`: by samples where they leave no doubt.
+bool differs_by_more(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to, double most) {
+  const double sampled = difference(from, to, [](const FourierSeries& q) { return sampled_largest(q).maxCoeff(); });
+  if (sampled / least_sampled <= most) return false;
+  if (sampled * least_sampled > most) return true;
+  return difference(from, to, largest_value) > most;
 }
 
 // (T1) at q + dq, roughly, changes dq by more than `most` of itself.
@@ -240,7 +278,7 @@ bool second_matters(Question& of, const std::vector<FourierSeries>& dq, double m
   const std::vector<FourierSeries> q = cut_responses(of.rods, of_second_look.negligible);
   const CrankAngles angles(of.model.linkage(), num_samples(q, of_second_look));
   const Corrections second = corrections(of, angles, moved_by(q, dq, angles.size()), of_second_look);
-  return !second.breakdown && !second.singular && difference(dq, second.dq) > most;
+  return !second.breakdown && !second.singular && differs_by_more(dq, second.dq, most);
 }
 
 // (T1) at q + dq until dq settles; empty where it does not.
@@ -253,7 +291,7 @@ std::optional<std::vector<FourierSeries>> repeated_corrections(Question& of, con
   for (int step = 0; step < most; ++step) {
     Corrections next = corrections(of, angles, moved_by(q, dq, angles.size()), of_theory_error);
     if (next.breakdown || next.singular) return std::nullopt;
-    const double change = difference(dq, next.dq);
+    const double change = difference(dq, next.dq, largest_value);
     dq = std::move(next.dq);
     if (change <= settled) return dq;
     if (change > slow * last) return std::nullopt;
@@ -350,7 +388,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   std::vector<double> size, change = sizes(dq);
   double first_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    size.push_back(largest_value(*rods[r].q));
+    size.push_back(largest_value(q[r]));
     first_error = std::max(first_error, ratio(change[r], size[r]));
   }
   if (auto second = second_order(question, angles, q, dq, first_error)) {

@@ -37,6 +37,46 @@ TEST_F(Tune, StopsWhereTheConditionIsJustMet) {
   EXPECT_EQ(read(folder_ / "engine.toml"), engine);
 }
 
+// Relative there, here in the unit of the value; of the growth rate absolute in both.
+TEST_F(Tune, TheoryErrorsAreThoseOfSteadyAtTheWorstSpeed) {
+  const std::string question =
+      "--minimise mass --vary rod.section.height=0.005:0.02 --keep 'deflection<=2e-4' --keep stable "
+      "--keep 'force<=1e5' --keep 'torque-ripple<=1e5' --over rpm=1000:9000 ";
+  const Json found = document(question + "--out tuned --no-plots");
+  const CommandResult table = hb("tune engine.toml --speeds 6 --no-plots " + question);
+  EXPECT_NE(table.out.find("theory: what the exact model would change"), std::string::npos) << table.out;
+  int judged = 0;
+  for (const Json& row : found["metrics"]) {
+    const std::string name = row["metric"];
+    if (name == "mass" || name == "theory" || name.ends_with("stress")) continue;
+    SCOPED_TRACE(name);
+    for (const char* design : {"before", "after"}) {
+      const Json& value = row[design];
+      ASSERT_TRUE(value.contains("theory_error"));
+      if (value["theory_error"].is_null()) continue;
+      const std::string scene = std::string(design) == "before" ? "engine.toml" : "tuned/tuned.toml";
+      const Json there = steady(scene + " --rpm " + value["rpm"].dump());
+      const double size = std::abs(value["value"].get<double>());
+      const Json &force = there["joints"], &torque = there["torque"];
+      double expected = 0;
+      if (name.starts_with("deflection"))
+        expected = there["rods"]["rod"]["deflection_theory_error"].get<double>() * size;
+      else if (name.starts_with("stable"))
+        expected = there["growth_theory_error"];
+      else if (name.starts_with("force"))
+        expected = there["joints_theory_error"].get<double>() * size;
+      else if (name.starts_with("torque"))
+        expected = 2 * there["torque_theory_error"].get<double>() *
+                   std::max(std::abs(torque["min"].get<double>()), std::abs(torque["max"].get<double>()));
+      EXPECT_FALSE(force.empty());
+      EXPECT_NEAR(value["theory_error"], expected, 0.02 * expected);
+      EXPECT_GT(value["theory_error"], 0);
+      ++judged;
+    }
+  }
+  EXPECT_GE(judged, 6);
+}
+
 TEST_F(Tune, MultiplierIsWhatASecondSearchGains) {
   const Json strict = document(least_mass);
   const Json loose = document(

@@ -163,6 +163,7 @@ std::string bound_text(const Keep& keep, const Scene& scene) {
 
 Json metric_json(const TuneTask& task, const MetricValue& value, bool confirmed, const Units& units) {
   Json json = {{"value", number(value.value)}, {"error", number(value.error)}, {"confirmed", confirmed}};
+  if (value.theory_error) json["theory_error"] = number(*value.theory_error);
   if (!value.where.empty()) json["at"] = value.where;
   if (value.speed) json[task.in_rpm ? "rpm" : "omega"] = shown_speed(task, *value.speed, units);
   if (!value.against.empty()) json["against"] = value.against;
@@ -206,15 +207,23 @@ std::string variables_text(const TuneTask& task, const TuneResult& result) {
   return text;
 }
 
+std::string theory_text(const MetricValue& value) {
+  if (!value.theory_error) return "";
+  return std::isfinite(*value.theory_error) ? fmt::format("{:.1e}", *value.theory_error) : "beyond";
+}
+
 std::string worst_cases_text(const TuneTask& task, const TuneResult& result, const Scene& scene) {
-  std::string text = fmt::format("\n{:<34}{:>17}{:>17}{:>10}  {}\n", "worst case", "before", "after", "error", "unit");
-  bool confirmed = true, unstable_before = false, unstable_after = false;
+  std::string text =
+      fmt::format("\n{:<34}{:>17}{:>17}{:>10}{:>10}  {}\n", "worst case", "before", "after", "error", "theory", "unit");
+  bool confirmed = true, judged = false, unstable_before = false, unstable_after = false;
   for (const TuneRow& row : result.rows) {
     const MetricKind kind = row.metric.kind;
-    text += fmt::format("{:<34}{:>17}{:>17}{:>10}  {}\n", label(row.metric, scene),
+    text += fmt::format("{:<34}{:>17}{:>17}{:>10}{:>10}  {}\n", label(row.metric, scene),
                         worst_text(row.before, row.before_confirmed, kind),
                         worst_text(row.after, row.after_confirmed, kind),
-                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", unit_of(kind, scene));
+                        row.after.error > 0 ? fmt::format("{:.1e}", row.after.error) : "", theory_text(row.after),
+                        unit_of(kind, scene));
+    judged = judged || row.after.theory_error.has_value();
     confirmed = confirmed && row.before_confirmed && row.after_confirmed;
     unstable_before = unstable_before || (is_margin(row.metric) && !(row.before.value > 0));
     unstable_after = unstable_after || (is_margin(row.metric) && !(row.after.value > 0));
@@ -224,6 +233,7 @@ std::string worst_cases_text(const TuneTask& task, const TuneResult& result, con
                         trusted_digits(result.goal_after, result.goal_error), result.goal_error);
   if (!confirmed)
     text += "  > or <: another value on four times the speeds; the worst case is at least the one shown\n";
+  if (judged) text += "  theory: what the exact model would change there of the value after, in its unit\n";
   if (std::ranges::any_of(result.rows, [](const TuneRow& row) { return row.metric.kind == MetricKind::stress; }))
     text += "  bending alone: the axial force adds |N|/area to it (total-stress has both together)\n";
   for (const bool after : {false, true})
@@ -439,33 +449,6 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   json["units"] = units_json(units);
   if (stats) json["stats"] = stages_json(result.stages);
   return json;
-}
-
-CsvFile history_csv(const TuneTask& task, const TuneResult& result) {
-  CsvFile file;
-  file.name = "history.csv";
-  file.comment = {
-      "Designs in the order tried; goal nan: no such design.",
-      "excess: how far the value, with the room kept for its error, is beyond the bound (> 0: not met),",
-      "over the bound (margins: over the larger of bound and margin at the start); of all rods the largest"};
-  for (const TuneVariable& variable : task.variables) file.columns.push_back(variable.path);
-  file.columns.push_back("goal");
-  for (const Keep& keep : task.keeps) file.columns.push_back("excess of " + keep.text);
-  const auto n = static_cast<Eigen::Index>(task.variables.size()), m = static_cast<Eigen::Index>(task.keeps.size());
-  file.rows =
-      Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(result.design.trials.size()), n + 1 + m, std::nan(""));
-  for (std::size_t k = 0; k < result.design.trials.size(); ++k) {
-    const DesignTrial& trial = result.design.trials[k];
-    auto row = file.rows.row(static_cast<Eigen::Index>(k));
-    row.head(n) = trial.x.transpose();
-    if (!trial.values) continue;
-    row(n) = (task.goal.maximise ? -1 : 1) * trial.values->goal;
-    for (std::size_t j = 0; j < result.condition_of.size(); ++j) {
-      double& excess = row(n + 1 + static_cast<Eigen::Index>(result.condition_of[j]));
-      excess = std::fmax(excess, trial.values->conditions(static_cast<Eigen::Index>(j)));  // NaN at first
-    }
-  }
-  return file;
 }
 
 std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,

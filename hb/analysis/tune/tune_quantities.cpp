@@ -267,6 +267,41 @@ double theory_error_of_modes(const SceneModel& model, std::size_t rod, double sp
   return safety * std::abs(value(more_modes(I)) - value(I));
 }
 
+// In the unit of the value. A ripple is the difference of two extremes, each wrong by so much of the largest.
+std::optional<double> theory_error_of(const MetricValue& value, const SpeedResult& at, const Metric& metric) {
+  if (!at.theory) return std::nullopt;
+  const auto part_of = [](const std::optional<double>& part, double size) {
+    return part ? *part * std::abs(size) : HUGE_VAL;
+  };
+  switch (metric.kind) {
+    case MetricKind::deflection:
+      return part_of(at.theory->rods[value.index].deflection, value.value);
+    case MetricKind::force:
+      return part_of(at.theory->force, value.factor * std::ranges::max(joint_quantities(*at.forces).force));
+    case MetricKind::torque_ripple: {
+      const Range torque = joint_quantities(*at.forces).torque;
+      return part_of(at.theory->torque,
+                     2 * value.factor * std::max(std::abs(torque.min.value), std::abs(torque.max.value)));
+    }
+    case MetricKind::margin:
+      return at.theory->growth.value_or(HUGE_VAL);
+    case MetricKind::margin_per_turn:
+      return 2 * std::numbers::pi / at.speed * at.theory->growth.value_or(HUGE_VAL);
+    default:
+      return std::nullopt;
+  }
+}
+
+// Of a margin, which is not computed with the response.
+std::optional<double> theory_error_of_margin(const MetricValue& value, const SceneModel& model,
+                                             const Settings& settings, const Metric& metric) {
+  if (!model.linkage()) return std::nullopt;
+  Settings asked = settings;
+  asked.only = {.steady = true, .stability = true, .reactions = false, .shape = false, .growth = true};
+  asked.rods.clear();
+  return theory_error_of(value, analyse(model, *value.speed, asked), metric);
+}
+
 // What its error bar and the modes left out may change of the growth rate. Changes that do not shrink with more modes
 // are carried on in proportion to their number squared, to sixty: every mode may be damped less than the one before.
 // Where that leaves the sign open, the growth rate is computed with up to sixty modes instead.
@@ -332,12 +367,14 @@ void complete(MetricValue& value, const SceneModel& model, const SectionHeights&
       } else {
         complete_shape(value, model, at, metric.kind == MetricKind::stress);
       }
+      value.theory_error = theory_error_of(value, at, metric);
       break;
     }
     case MetricKind::margin:
     case MetricKind::margin_per_turn: {
       value.error = growth_error(model, rod, *value.speed, settings);
       if (metric.kind == MetricKind::margin_per_turn) value.error *= 2 * std::numbers::pi / *value.speed;
+      value.theory_error = theory_error_of_margin(value, model, settings, metric);
       break;
     }
     case MetricKind::theory:

@@ -25,6 +25,9 @@ struct MetricValue {
   std::optional<double> position = std::nullopt;  // from joint 0, over the rod's length
   std::optional<double> crank_angle = std::nullopt;  // rad
   std::string against = {};  // of a safety: yielding, fatigue
+  // What the exact model would change of the value (theory_error.hpp), in its unit: of deflections, joint forces,
+  // torque and margins of linkages; infinite beyond the linear theory.
+  std::optional<double> theory_error = std::nullopt;
 };
 
 // Section height across the rod, by name; "*" for all that are not named.

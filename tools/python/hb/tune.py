@@ -101,7 +101,7 @@ class Tune(Result):
 
     @property
     def metrics(self) -> Any:
-        """Quantities of the goal and the conditions before and after, with errors and places."""
+        """Quantities of the goal and the conditions before and after, with errors, theory errors (in their unit) and places."""
         return deepcopy(self._document.get("metrics"))
 
     @property
