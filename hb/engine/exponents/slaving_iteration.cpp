@@ -212,7 +212,9 @@ ReducedSystem Iteration::result(bool bounds_others) {
   reduced.num_modes = m_;
   reduced.alpha = fourier::analyse(alpha_.transpose());
   reduced.beta = fourier::analyse(beta_.transpose());
-  const double iteration = carried_change() * amplification_;
+  // Harmonic by harmonic where the bound of the iteration is more than rounding.
+  const double rounding = 4 * eps * alpha_.cwiseAbs().maxCoeff();
+  const double iteration = amplification_ * (2 * change_ <= rounding ? 2 * change_ : carried_change());
   reduced.alpha_error =
       iteration +
       2 * eps * (alpha_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * A_.cwiseAbs().maxCoeff()).reshaped(m_, m_);

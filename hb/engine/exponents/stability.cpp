@@ -46,6 +46,19 @@ Stability by_bound(const ScaledSystem& system) {
   return result;
 }
 
+// Cells of a turn that propagation begins with, about.
+double propagated_cells(const ScaledSystem& system) {
+  return 0.8 * std::sqrt(system.mean_diagonal().cwiseAbs().maxCoeff());
+}
+
+// Where damping or gyroscopic forces couple the modes slaving goes in circles, and few slow modes are propagated in
+// less time than that.
+bool propagates_at_once(const ScaledSystem& system) {
+  constexpr Index most_modes = 4;
+  constexpr double most_cells = 64;
+  return !system.diagonal_damping && system.num_modes() <= most_modes && propagated_cells(system) <= most_cells;
+}
+
 // The decision policy: hb/engine/README.md, "Which method when".
 Stability of_group(const ScaledSystem& system, const StabilityOptions& options) {
   const double tolerance = options.tolerance;
@@ -64,12 +77,15 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
       const Stability result = finished(system, *lead, tolerance);
       if (result.verdict != Verdict::undecided && result.converged) return result;
     }
+  if (options.method == StabilityMethod::automatic && propagates_at_once(system)) {
+    const Stability result = finished(system, search_by_propagation(system, tolerance), tolerance);
+    if (result.verdict != Verdict::undecided && result.converged) return result;
+  }
   const ExponentSearch search = search_by_slaving(system, tolerance);
   Stability result = finished(system, search, tolerance);
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
   // Beyond about a second's work the fastest modes turn so often that propagation is less accurate than what is there.
-  const double cells = 0.8 * std::sqrt(system.mean_diagonal().cwiseAbs().maxCoeff());
-  if (search.complete && cells * std::pow(double(system.num_modes()), 3) > 1e6) return result;
+  if (search.complete && propagated_cells(system) * std::pow(double(system.num_modes()), 3) > 1e6) return result;
   if (search.complete && result.verdict != Verdict::undecided && result.converged) return result;
   Stability second = finished(system, search_by_propagation(system, std::min(tolerance, 1e-11)), tolerance);
   if (second.growth_error >= result.growth_error && second.verdict != Verdict::bounded) return result;
