@@ -52,12 +52,13 @@ ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
   const Largest size = sizes(forces);
-  ForceErrors errors{forces.force_error, forces.torque_error, 0, 0};
+  const Largest elastic = elastic_part(forces);
+  ForceErrors errors{forces.force_error + response_error * elastic.force,
+                     forces.torque_error + response_error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
     const Largest change = difference(forces, joint_forces(linkage, speed, more_harmonics));
-    const Largest elastic = elastic_part(forces);
-    errors.force += safety * change.force + response_error * elastic.force;
-    errors.torque += safety * change.torque + response_error * elastic.torque;
+    errors.force += safety * change.force;
+    errors.torque += safety * change.torque;
   }
   if (!more_modes.empty()) {
     const Largest change = difference(forces, joint_forces(linkage, speed, more_modes));

@@ -373,11 +373,14 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     } else if (solved) {
       Stopwatch watch;
       entry.shape = rod_shape(link_of(model, rod), coefficients_of(model, rod), speed, entry.steady->q);
-      entry.stress =
-          rod_stress(link_of(model, rod), coefficients_of(model, rod), speed, entry.shape->bending_moment.max_abs);
-      if (entry.cut)
+      std::optional<double> moment_error;
+      if (entry.cut) {
         entry.peak_errors =
             peak_errors(link_of(model, rod), *entry.shape, entry.steady->q, entry.steady->error_bound, *entry.cut);
+        moment_error = entry.peak_errors->bending_moment;
+      }
+      entry.stress = rod_stress(link_of(model, rod), coefficients_of(model, rod), model.coefficients.tail, speed,
+                                entry.shape->bending_moment.max_abs, moment_error);
       stages.push_back({"shape of " + rod.name, watch.seconds(), ""});
     }
 

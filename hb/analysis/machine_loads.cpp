@@ -3,28 +3,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/constants.hpp"
+
 namespace hb {
 namespace {
 
 FourierSeries force_of_frame(const FourierSeries& frame) { return FourierSeries(Eigen::MatrixXcd(frame.c.topRows(2))); }
 
 // What is a sum over joints: each pivot and guide has the error of a joint force, at most that far from the crank.
-void add_frame_errors(MachineLoads& loads, const Linkage& linkage, const JointForces& forces,
-                      const ForceErrors& errors) {
-  double largest = 0, arm = 0;
-  for (const BearingLoad& load : loads.bearings) largest = std::max(largest, load.elastic.value);
+void add_frame_errors(MachineLoads& loads, const Linkage& linkage) {
+  double arm = 0;
   for (const Dyad& dyad : linkage.dyads) {
     const auto* rocker = std::get_if<Rocker>(&dyad.closing);
     const std::complex<double> place = rocker ? rocker->pivot : std::get<Slider>(dyad.closing).guide;
     arm = std::max(arm, std::abs(place - linkage.crank.pivot) + dyad.coupler.length + linkage.crank.body.length);
   }
   const double joints = 1 + static_cast<double>(linkage.dyads.size());
-  loads.shaking_force_error = std::sqrt(2.0) * joints * (errors.force + errors.force_cut) * largest;
-  loads.shaking_moment_error =
-      loads.shaking_force_error * arm + fourier::max_abs(forces.torque, 0).value * (errors.torque + errors.torque_cut);
+  loads.shaking_force_error = joints * loads.bearing_error;
+  loads.shaking_moment_error = loads.shaking_force_error * arm + loads.torque_error;
 }
 
 }  // namespace
+
+// Each component of a joint's force may be wrong by its error. The energy is an integral of T less its mean over the
+// shorter of two ways round, at most pi of each turn, its largest and its smallest value wrong by no more than that.
+void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int turns, const ForceErrors& errors) {
+  double largest = 0;
+  for (const BearingLoad& load : loads.bearings) largest = std::max(largest, load.elastic.value);
+  loads.bearing_error = std::sqrt(2.0) * (errors.force + errors.force_cut) * largest;
+  loads.torque_error = (errors.torque + errors.torque_cut) * fourier::max_abs(forces.torque, 0).value;
+  loads.energy_error = two_pi * turns * loads.torque_error;
+  loads.drive = drive_of(forces.torque, speed, turns);
+  loads.drive_rigid = drive_of(forces.torque_rigid, speed, turns);
+  if (!(loads.inertia > 0)) return;
+  loads.speed_fluctuation = speed_fluctuation(loads.drive, loads.inertia, speed);
+  loads.speed_fluctuation_error = loads.energy_error / (loads.inertia * speed * speed);
+}
 
 double crank_inertia(const Linkage& linkage) {
   const Body& crank = linkage.crank.body;
@@ -32,17 +46,16 @@ double crank_inertia(const Linkage& linkage) {
 }
 
 MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces,
-                           const std::vector<LinkResponse>& responses, const std::optional<ForceErrors>& errors) {
+                           const std::vector<LinkResponse>& responses, const ForceErrors& errors) {
   MachineLoads loads;
   loads.bearings = bearing_loads(forces);
   loads.frame = frame_forces(linkage, speed, responses);
   loads.shaking_force = largest_length(force_of_frame(loads.frame.elastic));
   loads.shaking_force_rigid = largest_length(force_of_frame(loads.frame.rigid));
-  if (errors) add_frame_errors(loads, linkage, forces, *errors);
-  loads.drive = drive_of(forces.torque, speed);
-  loads.drive_rigid = drive_of(forces.torque_rigid, speed);
   loads.inertia = crank_inertia(linkage);
-  if (loads.inertia > 0) loads.speed_fluctuation = speed_fluctuation(loads.drive, loads.inertia, speed);
+  constexpr int turns = 1;
+  add_drive(loads, forces, speed, turns, errors);
+  add_frame_errors(loads, linkage);
   return loads;
 }
 
@@ -50,7 +63,8 @@ std::optional<MachineLoads> machine_loads(const SceneModel& model, const SpeedRe
   if (!result.forces) return std::nullopt;
   std::vector<LinkResponse> responses;
   for (const RodResult& rod : result.rods) responses.push_back({rod.link, rod.steady->q});
-  return machine_loads(*model.linkage(), result.speed, *result.forces, responses, result.force_errors);
+  return machine_loads(*model.linkage(), result.speed, *result.forces, responses,
+                       result.force_errors.value_or(ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0}));
 }
 
 }  // namespace hb

@@ -17,19 +17,28 @@ struct MachineLoads {
   std::vector<BearingLoad> bearings;
   FrameForces frame;
   Extremum shaking_force, shaking_force_rigid;  // largest resultant
-  double shaking_force_error = 0, shaking_moment_error = 0;  // bounds from those of joint forces and torque
+  // Bounds from the estimated errors of joint forces and torque; infinite where these are.
+  double bearing_error = 0;  // of each resultant
+  double shaking_force_error = 0, shaking_moment_error = 0;
+  double torque_error = 0, energy_error = 0;  // of all of Drive's torques, and of its energy
   Drive drive, drive_rigid;
   double inertia = 0;  // of the crank about its pivot
-  std::optional<double> speed_fluctuation;  // where the crank has inertia
+  std::optional<double> speed_fluctuation, speed_fluctuation_error;  // where the crank has inertia
+
+  // Of all of Drive's powers.
+  [[nodiscard]] double power_error(double speed) const { return speed * torque_error; }
 };
+
+// Fills drives, speed fluctuation and what the errors of joint forces and torque leave of bearings and drive, of forces
+// over `turns` turns. Needs bearings and inertia.
+void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int turns, const ForceErrors& errors);
 
 // Moment of inertia of the crank about its pivot: what the torque's fluctuation accelerates.
 [[nodiscard]] double crank_inertia(const Linkage& linkage);
 
-// Of a linkage and its joint forces at this speed (rad per unit time). Without `errors` the bounds are 0.
+// Of a linkage and its joint forces at this speed (rad per unit time).
 [[nodiscard]] MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces,
-                                         const std::vector<LinkResponse>& responses,
-                                         const std::optional<ForceErrors>& errors);
+                                         const std::vector<LinkResponse>& responses, const ForceErrors& errors);
 // Empty where joint forces were not computed.
 [[nodiscard]] std::optional<MachineLoads> machine_loads(const SceneModel& model, const SpeedResult& result);
 

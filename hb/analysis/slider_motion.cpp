@@ -1,5 +1,7 @@
 #include "hb/analysis/slider_motion.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "lib/fourier/turn_sampling.hpp"
@@ -37,9 +39,17 @@ std::vector<SliderMotion> slider_motions(const Linkage& linkage, double speed) {
     }
   };
   const TurnSeries turn = sample_turn(std::vector<TurnComponent>(dyads.size()), fill, {.tolerance = 1e-15});
+  // What was cut off decays from the first coefficient left out, which counts (H + 1)^order times in a derivative.
+  constexpr double cut_sum = 8;
   std::vector<SliderMotion> sliders;
-  for (std::size_t k = 0; k < dyads.size(); ++k)
-    sliders.push_back({slider_of(dyads[k]).name, cut_rows(turn, static_cast<Eigen::Index>(k), 1), speed});
+  for (std::size_t k = 0; k < dyads.size(); ++k) {
+    SliderMotion slider{slider_of(dyads[k]).name, cut_rows(turn, static_cast<Eigen::Index>(k), 1), speed};
+    const double first_left = std::max(turn.tail, 1e-15) * slider.position.c.cwiseAbs().maxCoeff(),
+                 per_order = speed * static_cast<double>(slider.position.num_harmonics() + 1);
+    for (int order = 0; order < 3; ++order)
+      slider.errors[static_cast<std::size_t>(order)] = cut_sum * first_left * std::pow(per_order, order);
+    sliders.push_back(std::move(slider));
+  }
   return sliders;
 }
 

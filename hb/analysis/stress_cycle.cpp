@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "hb/analysis/golden_section.hpp"
 #include "hb/analysis/rod_stress.hpp"
 
 namespace hb {
@@ -32,23 +33,6 @@ StressField linear_field(const Body& link, const RodCoefficients& rod, double sp
 Range range_at(const StressField& field, double x, int side) {
   const StressSamples at = field(Eigen::VectorXd::Constant(1, x));
   return fourier::range(fourier::analyse(at.axial + side * at.bending), 0);
-}
-
-// The largest value of a smooth function between a and b by golden sections.
-double largest_between(double a, double b, const std::function<double(double)>& value) {
-  constexpr int steps = 24;  // to 1e-5 of the distance
-  const double golden = (std::sqrt(5.0) - 1) / 2;
-  double c = b - golden * (b - a), d = a + golden * (b - a), at_c = value(c), at_d = value(d);
-  for (int k = 0; k < steps; ++k) {
-    if (at_c > at_d) {
-      b = d, d = c, at_d = at_c;
-      at_c = value(c = b - golden * (b - a));
-    } else {
-      a = c, c = d, at_c = at_d;
-      at_d = value(d = a + golden * (b - a));
-    }
-  }
-  return at_c > at_d ? c : d;
 }
 
 double magnitude(const Range& range) { return std::max(range.max.value, -range.min.value); }

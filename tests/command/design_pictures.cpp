@@ -1,6 +1,7 @@
 // Pictures for a design report: measured values, verdicts as a strip, bent links, bands, names of axes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -79,6 +80,57 @@ TEST_F(DesignPictures, MeasuredValuesThatCannotBeShownAreRefused) {
   EXPECT_NE(refusal("speed,deflection rod [N]\n1,2\n").find("found the unit N of deflection rod"), std::string::npos);
   EXPECT_NE(refusal("1,2\n3,4\n").find("found no header line"), std::string::npos);
   EXPECT_NE(refusal("speed,torque\n1,x\n").find("m.csv:2"), std::string::npos);
+}
+
+// The motion's own values, shifted by what is then found; the linear theory's are elsewhere (10 % in deflection there).
+TEST_F(DesignPictures, MeasuredValuesAreComparedWithTheMotionWithoutLinearisation) {
+  const std::string about = scene("six_link") + " --modes 1 --theory nonlinear";
+  const std::string range = " --rpm 1500:1540:20 --only steady,stability,shape --no-search";
+  const Json branch = Json::parse(hb("sweep " + about + range + " --no-plots --json").out)["branches"][0];
+  const Json& AB = branch["rods"]["AB"];
+  std::ostringstream text;
+  text << std::setprecision(17) << "speed [rpm],deflection AB,q_1 AB,growth rate AB\n";
+  for (std::size_t k = 0; k < branch["x"].size(); ++k)
+    if (branch["asked"][k] && branch["verdict"][k] == "stable" && branch["x"][k] == 1520)
+      text << 1520 << ',' << AB["deflection"][k].get<double>() + 0.5 << ',' << AB["max_abs"][k][0] << ",0\n";
+  measured(text.str());
+  const CommandResult result = hb("sweep " + about + range + " --measured m.csv --format svg --out along");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("by the linear theory: growth rate AB"), std::string::npos) << result.out;
+  const Json list = Json::parse(read(folder_ / "along/sweep.json"))["measured"]["deviations"];
+  EXPECT_EQ(list[0]["theory"], "nonlinear");
+  EXPECT_EQ(list[2]["theory"], "linear");
+  EXPECT_NEAR(list[0]["largest"], 0.5, 1e-5);
+  EXPECT_NEAR(list[1]["largest"], 0, 1e-5);
+  EXPECT_NE(read(folder_ / "along/branches_AB.svg").find("measured"), std::string::npos);
+
+  const std::string one = "steady " + scene("slider_crank_units") + " --rpm 2000 --modes 1 --theory nonlinear";
+  measured("crank angle [deg],torque\n0,0\n90,0\n");
+  const Json found = Json::parse(hb(one + " --measured m.csv --json").out);
+  EXPECT_EQ(found["measured"]["deviations"][0]["values"], 2);
+  EXPECT_EQ(found["measured"]["deviations"][0]["theory"], "nonlinear");
+}
+
+TEST_F(DesignPictures, BandsOfAMotionAreTheMotionsAtTheirEnds) {
+  const std::string about = scene("slider_crank_units") + " --rpm 2000 --modes 1 --theory nonlinear";
+  const CommandResult result = hb("steady " + about + " --band E=0.5:1.5");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("E of the elastic links times 0.5 to 1.5"), std::string::npos) << result.out;
+  const Json found = Json::parse(hb("steady " + about + " --band E=0.5:1.5 --json").out);
+  const Json soft = Json::parse(hb("steady " + about + " --set rod.E=105GPa --json").out);
+  const Json quantities = found["bands"][0]["quantities"];
+  const auto row = std::ranges::find_if(quantities, [](const Json& q) { return q["name"] == "deflection"; });
+  ASSERT_NE(row, quantities.end());
+  const double metre_in_mm = 1000;
+  EXPECT_NEAR((*row)["from"].get<double>(), metre_in_mm * soft["rods"]["rod"]["deflection"]["max_abs"].get<double>(),
+              1e-6 * (*row)["from"].get<double>());
+  EXPECT_TRUE((*row)["slope"].is_null());
+  EXPECT_TRUE((*row)["error_from"].is_number());
+  EXPECT_EQ(found["bands"][0]["verdict_to"], "stable");
+  const CommandResult sweep =
+      hb("sweep " + scene("slider_crank_units") + " --rpm 1000:2000:500 --theory nonlinear --band E=0.5:1.5");
+  EXPECT_EQ(sweep.status, 2);
+  EXPECT_NE(sweep.err.find("--set"), std::string::npos) << sweep.err;
 }
 
 // Values that hb itself computed, some of them shifted by what is then found.

@@ -335,7 +335,7 @@ TEST_F(Machine, BandsThatCannotBeAreRefused) {
   }
   EXPECT_EQ(hb("steady " + scene("mathieu") + " --omega 1 --band E=0.9:1.1").status, 2);
   EXPECT_EQ(hb("steady " + scene("mathieu") + " --omega 1 --band damping=0.5:2").status, 0);
-  EXPECT_EQ(hb("steady " + scene("slider_crank") + " --rpm 800 --theory nonlinear --band E=0.9:1.1").status, 2);
+  EXPECT_EQ(hb("sweep " + scene("slider_crank") + " --rpm 800:900:100 --theory nonlinear --band E=0.9:1.1").status, 2);
 }
 
 // A measurement that is made up: milliseconds and micrometres, one column of two.

@@ -86,6 +86,8 @@ def test_every_key_of_one_speed_is_an_attribute(steady):
     for key in ("min", "max", "mean", "rms"):
         assert getattr(steady.torque, key) == document["torque"][key]
         assert getattr(steady.torque, f"{key}_rigid") == document["torque"]["rigid"][key]
+    assert steady.torque.error == pytest.approx(document["torque"]["error"], rel=1e-12)
+    assert 0 < steady.joints["rod.0"].error <= document["bearings"]["rod.0"]["error"]
     for name, components in document["joints"].items():
         joint = steady.joints[name]
         if "n" in components:
@@ -95,6 +97,16 @@ def test_every_key_of_one_speed_is_an_attribute(steady):
             assert list(joint.min) == [components["x"]["min"], components["y"]["min"]]
             assert list(joint.max_rigid) == [components["x_rigid"]["max"], components["y_rigid"]["max"]]
     assert steady.bearings["rod.0"].max >= abs(steady.joints["rod.0"].max).max()
+
+
+def test_modes_of_a_motion_have_frequencies_and_damping_ratios(compressor):
+    setting = dict(rpm=1000, modes=2, theory="nonlinear")
+    found = compressor.steady(**setting).system
+    document = command(
+        "steady", SCENES / "slider_crank_units.toml", "--rpm", 1000, "--modes", 2, "--theory", "nonlinear"
+    )["system"]
+    for key in ("frequencies_hz", "frequencies_hz_errors", "damping_ratios", "damping_ratio_errors"):
+        assert list(getattr(found, key)) == pytest.approx(document[key], rel=1e-12), key
 
 
 def test_what_was_not_asked_is_none_or_empty(compressor):
@@ -175,8 +187,15 @@ def test_bands_are_the_commands(compressor):
     assert s.bands[0]["verdict_to"] == "stable"
     with pytest.raises(hb.RequestError, match="band"):
         compressor.steady(rpm=3000, band="damping=2:0.5")
+    motion = compressor.steady(rpm=1000, modes=1, theory="nonlinear", band="E=0.9:1.1")
+    document = command(
+        "steady", SCENES / "slider_crank_units.toml", "--rpm", 1000, *SETTING, "--modes", 1, "--theory", "nonlinear",
+        "--band", "E=0.9:1.1",
+    )
+    assert motion.bands == document["bands"] and motion.bands[0]["verdict_from"] == "stable"
+    assert "E of the elastic links times 0.9 to 1.1" in str(motion)
     with pytest.raises(hb.RequestError, match="band"):
-        compressor.steady(rpm=3000, theory="nonlinear", band="E=0.9:1.1")
+        compressor.sweep(rpm=(1000, 2000, 500), theory="nonlinear", band="E=0.9:1.1")
 
 
 def test_bands_of_a_sweep_are_the_commands(compressor):

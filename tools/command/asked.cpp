@@ -114,4 +114,10 @@ void set_speed(Request& request, const SpeedRange& speed) {
   (speed.in_rpm ? request.rpm : request.omega) = speed.speeds.from;
 }
 
+std::vector<BandRequest> bands_of(const std::vector<std::string>& texts) {
+  std::vector<BandRequest> bands;
+  for (const std::string& text : texts) bands.push_back(parse_band(text));
+  return bands;
+}
+
 }  // namespace hb::tools

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "hb/analysis/request.hpp"
+#include "hb/analysis/sensitivity_band.hpp"
 #include "lib/scene/scene.hpp"
 #include "tools/command/common_flags.hpp"
 
@@ -22,5 +23,8 @@ namespace hb::tools {
 [[nodiscard]] Settings settings(const CommonFlags& flags, const Scene& scene);
 struct SpeedRange;
 void set_speed(Request& request, const SpeedRange& speed);  // the first of the range
+
+// Of --band, as written.
+[[nodiscard]] std::vector<BandRequest> bands_of(const std::vector<std::string>& texts);
 
 }  // namespace hb::tools

@@ -111,21 +111,24 @@ TableColumns columns_of_quantity(const Sweep& sweep, const std::string& quantity
 
 }  // namespace
 
-MeasuredComparison compare_measured(const std::string& file, const SceneModel& model, const SpeedResult& result) {
+MeasuredComparison compare_measured(const std::string& file, const SceneModel& model, const SpeedResult& result,
+                                    const std::string& theory, int turns) {
   const MeasuredQuantity axis{"crank angle", "deg"};
   const std::vector<MeasuredQuantity> known = measured_quantities(model, result);
-  return compared(file, axis, known, read_measured(file, axis, known), [&](const std::string& quantity) -> Computed {
-    return [series = measured_series(model, result, quantity)](double at, double) {
-      return series.c.size() > 0 ? fourier::evaluate(series, at / degrees_per_radian)(0) : nan;
-    };
-  });
+  MeasuredComparison found =
+      compared(file, axis, known, read_measured(file, axis, known), [&](const std::string& quantity) -> Computed {
+        return [series = measured_series(model, result, quantity), turns](double at, double) {
+          return series.c.size() > 0 ? fourier::evaluate(series, at / degrees_per_radian / turns)(0) : nan;
+        };
+      });
+  for (MeasuredDeviation& one : found.deviations) one.theory = theory;
+  return found;
 }
 
-MeasuredComparison compare_measured(const std::string& file, const SceneFamily& family, const SweepRequest& request,
-                                    const SweepScene& scene, Work& work) {
-  const MeasuredQuantity axis = measured_axis(scene);
-  const std::vector<MeasuredQuantity> known = measured_quantities(scene);
-  MeasuredOverlay overlay = read_measured(file, axis, known);
+namespace {
+
+// The request at the measured places within its range, and at its ends.
+SweepRequest at_measured(const SweepRequest& request, const MeasuredOverlay& overlay) {
   SweepRequest at_places = request;
   at_places.search = false;
   std::vector<double>& places = at_places.x.values;
@@ -135,20 +138,82 @@ MeasuredComparison compare_measured(const std::string& file, const SceneFamily& 
     if (place > low && place < high) places.push_back(place);
   std::ranges::sort(places);
   places.erase(std::ranges::unique(places).begin(), places.end());
-  const Sweep found = sweep(family, at_places, work);
-  return compared(file, axis, known, std::move(overlay), [&](const std::string& quantity) -> Computed {
-    return [here = columns_of_quantity(found, quantity)](double at, double measured) {
-      double nearest = nan;
-      for (Eigen::Index k = 0; k < here.table.rows.rows(); ++k)
-        for (const Eigen::Index column : here.columns) {
-          const double value = here.table.rows(k, column - 1);
-          if (here.table.rows(k, 0) == at && std::isfinite(value) &&
-              !(std::abs(nearest - measured) <= std::abs(value - measured)))
-            nearest = value;
-        }
-      return nearest;
+  return at_places;
+}
+
+Computed linear_values(const Sweep& found, const std::string& quantity) {
+  return [here = columns_of_quantity(found, quantity)](double at, double measured) {
+    double nearest = nan;
+    for (Eigen::Index k = 0; k < here.table.rows.rows(); ++k)
+      for (const Eigen::Index column : here.columns) {
+        const double value = here.table.rows(k, column - 1);
+        if (here.table.rows(k, 0) == at && std::isfinite(value) &&
+            !(std::abs(nearest - measured) <= std::abs(value - measured)))
+          nearest = value;
+      }
+    return nearest;
+  };
+}
+
+using OfMotion = std::function<double(const NonlinearPoint&)>;
+
+// Deflection, bending moment, stress or q_i of a rod, in the units of the pictures; empty: nothing of a motion.
+OfMotion of_motion(const NonlinearSweep& branches, const OutputUnits& units, const std::string& quantity) {
+  for (std::size_t r = 0; r < branches.rods.size(); ++r) {
+    if (!quantity.ends_with(" " + branches.rods[r])) continue;
+    const std::string what = quantity.substr(0, quantity.size() - branches.rods[r].size() - 1);
+    const auto loaded = [r](auto value) -> OfMotion {
+      return [=](const NonlinearPoint& p) { return p.loads.empty() ? nan : value(p.loads[r]); };
     };
-  });
+    if (what == "deflection") return loaded([](const BentLoads& l) { return l.deflection; });
+    if (what == "bending moment")
+      return loaded([f = units.moment](const BentLoads& l) { return f * l.bending_moment; });
+    if (what == "stress")
+      return loaded([f = units.megapascal](const BentLoads& l) { return l.cycle ? f * l.cycle->max_abs : nan; });
+    if (what.starts_with("q_")) {
+      const auto i = static_cast<std::size_t>(std::stoi(what.substr(2)) - 1);
+      return [r, i](const NonlinearPoint& p) { return p.max_abs[r][i]; };
+    }
+  }
+  return {};
+}
+
+Computed motion_values(const NonlinearSweep& branches, const OfMotion& of) {
+  return [&branches, of](double at, double measured) {
+    double nearest = nan;
+    for (const NonlinearBranch& branch : branches.branches)
+      for (const NonlinearPoint& point : branch.points) {
+        if (!point.asked || std::abs(point.x - at) > 1e-12 * std::abs(at)) continue;
+        if (point.stability && point.stability->verdict == Verdict::unstable) continue;
+        const double value = of(point);
+        if (std::isfinite(value) && !(std::abs(nearest - measured) <= std::abs(value - measured))) nearest = value;
+      }
+    return nearest;
+  };
+}
+
+}  // namespace
+
+MeasuredComparison compare_measured(const std::string& file, const SceneFamily& family, const SweepRequest& request,
+                                    const SweepScene& scene, const std::optional<NonlinearSweepOptions>& asked,
+                                    Work& work) {
+  const MeasuredQuantity axis = measured_axis(scene);
+  const std::vector<MeasuredQuantity> known = measured_quantities(scene);
+  MeasuredOverlay overlay = read_measured(file, axis, known);
+  const Sweep found = sweep(family, at_measured(request, overlay), work);
+  std::optional<NonlinearSweep> branches;
+  if (asked) branches = nonlinear_sweep(*found.scene, *asked);
+  const auto motion_of = [&, units = output_units(scene.scene())](const std::string& quantity) {
+    return branches ? of_motion(*branches, units, quantity) : OfMotion();
+  };
+  MeasuredComparison result =
+      compared(file, axis, known, std::move(overlay), [&](const std::string& quantity) -> Computed {
+        const OfMotion of = motion_of(quantity);
+        return of ? motion_values(*branches, of) : linear_values(found, quantity);
+      });
+  for (MeasuredDeviation& one : result.deviations)
+    if (motion_of(one.quantity)) one.theory = "nonlinear";
+  return result;
 }
 
 Json measured_json(const MeasuredComparison& comparison) {
@@ -156,6 +221,7 @@ Json measured_json(const MeasuredComparison& comparison) {
   for (const MeasuredDeviation& one : comparison.deviations)
     list.push_back({{"quantity", one.quantity},
                     {"unit", one.unit},
+                    {"theory", one.theory},
                     {"values", one.values},
                     {"left_out", one.left_out},
                     {"mean", number(one.mean)},
@@ -175,7 +241,11 @@ std::string measured_table(const MeasuredComparison& comparison) {
                                  comparison.file, "", "values", "mean", "rms", "largest", "at" + bracketed(axis.unit),
                                  "rms/largest measured");
   int left_out = 0;
+  std::string linear;
+  const bool some_nonlinear = std::ranges::any_of(
+      comparison.deviations, [](const MeasuredDeviation& one) { return one.theory == "nonlinear"; });
   for (const MeasuredDeviation& one : comparison.deviations) {
+    if (some_nonlinear && one.theory == "linear") linear += (linear.empty() ? "" : ", ") + one.quantity;
     left_out = std::max(left_out, one.left_out);
     const std::string name = one.quantity + bracketed(one.unit);
     if (one.values == 0)
@@ -187,6 +257,7 @@ std::string measured_table(const MeasuredComparison& comparison) {
   if (left_out > 0)
     text += fmt::format("  left out: {} outside the range or where nothing is computed\n",
                         left_out == 1 ? "1 value" : fmt::format("up to {} values of a column", left_out));
+  if (!linear.empty()) text += "  by the linear theory: " + linear + "; all else of the motion without linearisation\n";
   return text;
 }
 

@@ -59,7 +59,7 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
 }
 
 std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear, const NonlinearSweep& sweep,
-                                 OutputFolder& folder) {
+                                 OutputFolder& folder, const MeasuredOverlay& measured) {
   std::vector<Figure> figures;
   const CsvFile bifurcations = bifurcations_csv(scene, sweep);
   folder.write(bifurcations.name, csv_text(bifurcations));
@@ -67,7 +67,7 @@ std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& lin
     if (!sweep.reported[r]) continue;
     const CsvFile branches = branches_csv(scene, sweep, r);
     folder.write(branches.name, csv_text(branches));
-    figures.push_back(branch_figure(scene, linear, sweep, r, sweep_rod_csv(scene, linear, r), branches));
+    figures.push_back(branch_figure(scene, linear, sweep, r, sweep_rod_csv(scene, linear, r), branches, measured));
   }
   return figures;
 }

@@ -18,7 +18,8 @@ namespace hb::tools {
                                               const MeasuredOverlay& measured = {});
 // What `linear` has beside it without linearisation.
 [[nodiscard]] std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& linear,
-                                               const NonlinearSweep& sweep, OutputFolder& folder);
+                                               const NonlinearSweep& sweep, OutputFolder& folder,
+                                               const MeasuredOverlay& measured = {});
 [[nodiscard]] std::vector<Figure> map_files(const MapDocument& document, MapColour colour, OutputFolder& folder);
 
 // Pictures of a report for readers without script; `branches` and `map` may be null.

@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hb/analysis/nonlinear/nonlinear_analyses.hpp"
 #include "hb/analysis/sensitivity_band.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
@@ -18,70 +17,20 @@
 #include "tools/command/scene_input.hpp"
 #include "tools/command/speed_flags.hpp"
 #include "tools/command/steady_files.hpp"
+#include "tools/command/steady_motion.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/band_output.hpp"
 #include "tools/output/json_output.hpp"
-#include "tools/output/nonlinear_output.hpp"
 #include "tools/output/table_output.hpp"
 #include "tools/pictures/band_figures.hpp"
 #include "tools/report/report_data.hpp"
-#include "tools/work/interrupts.hpp"
 #include "tools/work/progress.hpp"
-#include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
 
-struct SteadyFlags : CommonFlags {
-  TheoryFlags theory;
-  bool multipliers = false;
-  std::string measured;
-  std::vector<std::string> bands;
-};
-
-// Motions of one turn have tables and pictures, longer ones the document alone.
-int run_nonlinear(const SteadyFlags& flags) {
-  if (!flags.measured.empty())
-    throw UsageError("--measured: found beside --theory nonlinear, allowed with the linear theory");
-  if (!flags.bands.empty()) throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
-  const SceneInput input = scene_input(flags.scene_file);
-  const Scene scene = input.source.with(overrides(flags));
-  Request request = asked_request(flags, scene);
-  const Output out = output(flags);
-  set_speed(request, first_speed(flags, scene));
-  const InterruptGuard guard(false);
-  NonlinearOptions asked;
-  asked.turns = turns_of(flags.theory);
-  asked.stop = stop_of();
-  std::optional<OutputFolder> folder;
-  const Provenance origin = provenance(flags.line, input);
-  if (out.folder) folder.emplace(*out.folder, "steady", origin);
-  NonlinearSteady result = nonlinear_steady(scene, request, asked);
-  const SceneModel& model = *result.model;
-  say_time_limit(flags.time_limit, asked.stop, result.shortfalls);
-  const nlohmann::ordered_json document =
-      out.json || folder ? nonlinear_json(model, result, result.settings, out.stats) : nlohmann::ordered_json();
-  Delivery delivery;
-  delivery.printed = out.json ? json_text(document) : nonlinear_table(model, result);
-  delivery.write_data = [&](OutputFolder& place) {
-    place.write("steady.json", json_file_text(document));
-    return result.turns == 1 ? steady_files(model, as_speed_result(result), machine_files(result), place)
-                             : std::vector<Figure>();
-  };
-  if (out.html)
-    delivery.page = [&](std::vector<PageText::Picture> pictures) {
-      ReportData data(model.scene);
-      data.add_speed(nonlinear_place(result.model, result, result.settings), result.settings);
-      return data.page(page_text(origin, std::move(pictures)));
-    };
-  const int status = deliver(folder ? &*folder : nullptr, out.pictures,
-                             ended_status(result.shortfalls.empty() ? exit_ok : exit_not_reached), delivery);
-  if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
-  return status;
-}
-
 int run_steady(const SteadyFlags& flags) {
-  if (is_nonlinear(flags.theory)) return run_nonlinear(flags);
+  if (is_nonlinear(flags.theory)) return run_steady_motion(flags);
   const SceneInput input = scene_input(flags.scene_file);
   const Scene scene = input.source.with(overrides(flags));
   Request request = asked_request(flags, scene);
@@ -98,8 +47,7 @@ int run_steady(const SteadyFlags& flags) {
   const SceneModel& model = *result.model;
   std::optional<MeasuredComparison> measured;
   if (!flags.measured.empty()) measured = compare_measured(flags.measured, model, result);
-  std::vector<BandRequest> asked;
-  for (const std::string& text : flags.bands) asked.push_back(parse_band(text));
+  const std::vector<BandRequest> asked = bands_of(flags.bands);
   nlohmann::ordered_json document = out.json || folder || !asked.empty()
                                         ? steady_json(model, result, result.settings, out.stats)
                                         : nlohmann::ordered_json();

@@ -87,7 +87,7 @@ int run_sweep_command(const SweepFlags& flags) {
   std::optional<MeasuredComparison> measured;
   if (!flags.measured.empty()) {
     SharedWork work(out.threads);
-    measured = compare_measured(flags.measured, SceneFamily(input.source, set), request, swept, work);
+    measured = compare_measured(flags.measured, {input.source, set}, request, swept, branches_asked, work);
   }
   std::optional<NonlinearSweep> branches;
   if (branches_asked) {
@@ -113,7 +113,9 @@ int run_sweep_command(const SweepFlags& flags) {
     std::vector<Figure> figures = sweep_files(swept, result, place, measured ? measured->overlay : MeasuredOverlay());
     if (!bands_asked.empty()) add_bands(document, swept, place, figures);
     if (branches)
-      for (Figure& figure : branch_files(swept, result, *branches, place)) figures.push_back(std::move(figure));
+      for (Figure& figure :
+           branch_files(swept, result, *branches, place, measured ? measured->overlay : MeasuredOverlay()))
+        figures.push_back(std::move(figure));
     return figures;
   };
   delivery.committed = [&] { run.delivered(); };

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "hb/analysis/along.hpp"
+#include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/output_flags.hpp"
@@ -35,11 +36,12 @@ void add_sweep_flags(CLI::App& command, SweepFlags& flags) {
 }
 
 std::vector<BandRequest> bands_of(const std::vector<std::string>& texts, const TheoryFlags& theory) {
-  std::vector<BandRequest> bands;
-  for (const std::string& text : texts) bands.push_back(parse_band(text));
-  if (!bands.empty() && is_nonlinear(theory))
-    throw UsageError("--band: found beside --theory nonlinear, allowed with the linear theory");
-  return bands;
+  if (!texts.empty() && is_nonlinear(theory))
+    throw UsageError(
+        "--band: found beside --theory nonlinear, allowed with the linear theory, and with hb steady; or run again "
+        "with "
+        "--set");
+  return bands_of(texts);
 }
 
 std::optional<NonlinearSweepOptions> branches_of(const SweepFlags& flags) {

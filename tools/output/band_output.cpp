@@ -8,6 +8,7 @@
 
 #include "tools/output/compare_output.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/nonlinear_output.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -29,7 +30,7 @@ const ComparedQuantity* same_quantity(const std::vector<ComparedQuantity>& list,
   return found == list.end() ? nullptr : &*found;
 }
 
-std::optional<double> slope_of(const SensitivityBand& band, const ComparedQuantity& quantity) {
+std::optional<double> slope_of(const BandSides& band, const ComparedQuantity& quantity) {
   for (const BandSlope& slope : band.slopes) {
     if (slope.quantity == "bearing" ? quantity.of == "bearings" && quantity.name == slope.of
                                     : quantity.of == slope.of && quantity.name == slope.quantity)
@@ -45,7 +46,7 @@ bool is_straight(double value, double slope, double factor, double computed) {
          std::max(straight * std::abs(computed - value), small_change * std::abs(value));
 }
 
-Json quantity_json(const SensitivityBand& band, const ComparedQuantity& low, const ComparedQuantity* high) {
+Json quantity_json(const BandSides& band, const ComparedQuantity& low, const ComparedQuantity* high) {
   Json json = {{"of", low.of},
                {"name", low.name},
                {"unit", low.unit},
@@ -80,12 +81,28 @@ std::string verdict_at(const Json& verdict) {
 }  // namespace
 
 Json bands_json(const Json& nominal, const std::vector<SensitivityBand>& bands) {
+  const auto document = [](const SteadyResult& result) {
+    return steady_json(*result.model, result, result.settings, false);
+  };
+  std::vector<BandSides> sides;
+  for (const SensitivityBand& band : bands)
+    sides.push_back({band.asked, document(band.low), document(band.high), band.slopes});
+  return bands_json(nominal, sides);
+}
+
+Json bands_json(const Json& nominal, const std::vector<NonlinearBand>& bands) {
+  const auto document = [](const NonlinearSteady& result) {
+    return nonlinear_json(*result.model, result, result.settings, false);
+  };
+  std::vector<BandSides> sides;
+  for (const NonlinearBand& band : bands) sides.push_back({band.asked, document(band.low), document(band.high)});
+  return bands_json(nominal, sides);
+}
+
+Json bands_json(const Json& nominal, const std::vector<BandSides>& bands) {
   Json list = Json::array();
-  for (const SensitivityBand& band : bands) {
-    const auto side = [](const SteadyResult& result) {
-      return ComparedSide{"", steady_json(*result.model, result, result.settings, false)};
-    };
-    const ComparedSide here{"", nominal}, low = side(band.low), high = side(band.high);
+  for (const BandSides& band : bands) {
+    const ComparedSide here{"", nominal}, low{"", band.low}, high{"", band.high};
     const auto of = [](const Json& document, const char* key) {
       return document.contains(key) ? document.at(key) : Json(nullptr);
     };

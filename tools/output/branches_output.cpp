@@ -87,10 +87,22 @@ void add_bent_loads(Json& rod, const std::vector<NonlinearPoint>& points, std::s
   };
   rod["deflection"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].deflection); });
   rod["bending_moment"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].bending_moment); });
+  const auto peak_error = [&](double PeakErrors::*error) {
+    return each([r, error](const NonlinearPoint& p) {
+      const std::optional<PeakErrors>& errors = p.loads[r].errors;
+      return errors ? number((*errors).*error) : Json(nullptr);
+    });
+  };
+  rod["deflection_error"] = peak_error(&PeakErrors::deflection);
+  rod["bending_moment_error"] = peak_error(&PeakErrors::bending_moment);
   rod["buckling_share"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.buckling_share()); });
+  rod["buckling_share_error"] =
+      each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.buckling_share_error()); });
   Json stress;
   stress["axial"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.axial); });
+  stress["axial_error"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.axial_error); });
   stress["bending"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.bending); });
+  stress["bending_error"] = each([r](const NonlinearPoint& p) { return number(p.loads[r].stress.bending_error); });
   add_cycles(stress, points, r);
   rod["stress"] = std::move(stress);
 }
@@ -257,7 +269,7 @@ void add_branches(Json& json, const SweepScene& scene, const NonlinearSweep& swe
   add_followed(json, scene, sweep);
 }
 
-std::string branches_verdict(const SweepScene& scene, const NonlinearSweep& sweep) {
+std::string branches_words(const NonlinearSweep& sweep) {
   std::vector<NamedVerdicts> points;
   std::size_t without = 0;
   for (const auto& place : sweep.followed) {
@@ -265,11 +277,16 @@ std::string branches_verdict(const SweepScene& scene, const NonlinearSweep& swee
     without += point == nullptr;
     if (point && point->stability) points.push_back({{"all rods together", point->stability->verdict}});
   }
+  const std::string rest =
+      without > 0 ? fmt::format("the branch followed does not come to {} of {}", without, sweep.followed.size()) : "";
   const std::string verdict = verdict_at_points(points, "points");
-  return fmt::format(
-      "{}, motion without linearisation{}{}{}\n", scene_name(scene.scene()), verdict.empty() ? "" : ": ", verdict,
-      without > 0 ? fmt::format("; the branch followed does not come to {} of {}", without, sweep.followed.size())
-                  : "");
+  return verdict + (verdict.empty() || rest.empty() ? "" : "; ") + rest;
+}
+
+std::string branches_verdict(const SweepScene& scene, const NonlinearSweep& sweep) {
+  const std::string words = branches_words(sweep);
+  return fmt::format("{}, motion without linearisation{}{}\n", scene_name(scene.scene()), words.empty() ? "" : ": ",
+                     words);
 }
 
 std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep) {

@@ -11,6 +11,8 @@ namespace hb::tools {
 
 // Adds "branches", "folds", "bifurcations" and "jumps" to the document of the linear sweep.
 void add_branches(nlohmann::ordered_json& json, const SweepScene& scene, const NonlinearSweep& sweep);
+// The verdict of the motion followed from the first value, and where it does not come.
+[[nodiscard]] std::string branches_words(const NonlinearSweep& sweep);
 // The first line: the verdict of the motion followed from the first value, "TITLE, motion without linearisation: ...".
 [[nodiscard]] std::string branches_verdict(const SweepScene& scene, const NonlinearSweep& sweep);
 [[nodiscard]] std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep);

@@ -123,8 +123,8 @@ class AlongSide {
 std::vector<Wanted> of_rod(const std::string& name, const ComparedFactors& f) {
   return {
       {name, "largest |q_1|", f.length_unit, f.length, {"first"}, {"error_bound"}, true},
-      {name, "deflection", f.length_unit, f.length, {"deflection"}, {"error_bound"}, true},
-      {name, "bending moment", "N m", f.moment, {"bending_moment"}, {}},
+      {name, "deflection", f.length_unit, f.length, {"deflection"}, {"deflection_error"}},
+      {name, "bending moment", "N m", f.moment, {"bending_moment"}, {"bending_moment_error"}},
       {name, "stress, together", "MPa", f.stress, {"stress", "max_abs"}, {"stress", "error"}},
       {name, "stress, amplitude", "MPa", f.stress, {"stress", "amplitude"}, {"stress", "error"}},
       {name, "safety, yield", "", 1, {"stress", "yield_safety"}, {"stress", "yield_safety_error"}, false, true, true},
@@ -137,7 +137,7 @@ std::vector<Wanted> of_rod(const std::string& name, const ComparedFactors& f) {
        false,
        true,
        true},
-      {name, "share of buckling load", "", 1, {"buckling_share"}, {}, false, false, true},
+      {name, "share of buckling load", "", 1, {"buckling_share"}, {"buckling_share_error"}, false, false, true},
       {name, "theory error", "", 1, {"theory_error"}, {}, false, false, true},
       {name, "growth rate", f.rate_unit, 1, {"growth_rate"}, {"growth_error"}, false, false, true}};
 }
@@ -146,12 +146,17 @@ std::vector<Wanted> of_machine(const Json& a, const ComparedFactors& f) {
   std::vector<Wanted> list;
   if (const Json* bearings = json_at(a, {"bearings"}))
     for (const auto& [name, bearing] : bearings->items())
-      list.push_back({"bearings", name, "N", f.force, {"bearings", name, "max"}, {}});
-  list.push_back({"frame", "shaking force", "N", f.force, {"frame", "max"}, {}});
-  list.push_back({"drive", "torque, largest", "N m", f.moment, {"torque", "max"}, {}});
-  list.push_back({"drive", "torque, rms", "N m", f.moment, {"torque", "rms"}, {}});
-  list.push_back({"drive", "power, largest", "W", f.power, {"power", "max"}, {}});
-  list.push_back({"drive", "energy of the flywheel", "J", f.moment, {"flywheel", "energy_fluctuation"}, {}});
+      list.push_back({"bearings", name, "N", f.force, {"bearings", name, "max"}, {"bearings", name, "error"}});
+  list.push_back({"frame", "shaking force", "N", f.force, {"frame", "max"}, {"frame", "force_error"}});
+  list.push_back({"drive", "torque, largest", "N m", f.moment, {"torque", "max"}, {"torque", "error"}});
+  list.push_back({"drive", "torque, rms", "N m", f.moment, {"torque", "rms"}, {"torque", "error"}});
+  list.push_back({"drive", "power, largest", "W", f.power, {"power", "max"}, {"power", "error"}});
+  list.push_back({"drive",
+                  "energy of the flywheel",
+                  "J",
+                  f.moment,
+                  {"flywheel", "energy_fluctuation"},
+                  {"flywheel", "energy_fluctuation_error"}});
   return list;
 }
 

@@ -38,6 +38,8 @@ class Entries {
   explicit Entries(const Json& document) : document_(document), factors_(compared_factors(document)) {
     for (const auto& [name, rod] : document.at("rods").items()) add_rod(name, rod);
     add_machine();
+    add("all rods", "growth rate", factors_.rate_unit, 1, compared_number_at(document_, {"system", "growth_rate"}),
+        compared_number_at(document_, {"system", "exponent_error"}));
   }
   const std::vector<Entry>& list() const { return list_; }
 
@@ -65,8 +67,10 @@ class Entries {
         compared_number_at(rod, {"static_deflection", "error"}));
     add(name, "bending moment", "N m", f.moment, compared_number_at(rod, {"bending_moment", "max_abs"}),
         compared_number_at(rod, {"bending_moment", "error"}));
-    add(name, "stress, axial", "MPa", f.stress, compared_number_at(rod, {"stress", "axial"}), std::nullopt);
-    add(name, "stress, bending", "MPa", f.stress, compared_number_at(rod, {"stress", "bending"}), std::nullopt);
+    add(name, "stress, axial", "MPa", f.stress, compared_number_at(rod, {"stress", "axial"}),
+        compared_number_at(rod, {"stress", "axial_error"}));
+    add(name, "stress, bending", "MPa", f.stress, compared_number_at(rod, {"stress", "bending"}),
+        compared_number_at(rod, {"stress", "bending_error"}));
     for (const char* key : {"max_abs", "amplitude"})
       add(name, std::string("stress, ") + (key[0] == 'm' ? "together" : "amplitude"), "MPa", f.stress,
           compared_number_at(rod, {"stress", key}), compared_number_at(rod, {"stress", "error"}));
@@ -75,7 +79,7 @@ class Entries {
           compared_number_at(rod, {"stress", (std::string(what) + "_safety").c_str()}),
           compared_number_at(rod, {"stress", (std::string(what) + "_safety_error").c_str()}));
     add(name, "share of buckling load", "", 1, compared_number_at(rod, {"axial_force", "buckling_share"}),
-        std::nullopt);
+        compared_number_at(rod, {"axial_force", "buckling_share_error"}));
     const std::optional<double> theory = compared_number_at(rod, {"theory_error"});
     constexpr double share_of_estimate = 0.1;  // what it may be off by itself
     add(name, "theory error", "", 1, theory, theory ? std::optional(share_of_estimate * *theory) : std::nullopt);
@@ -88,35 +92,19 @@ class Entries {
 
   void add_machine() {
     const ComparedFactors& f = factors_;
-    const auto sum = [&](const char* one, const char* other) -> std::optional<double> {
-      const std::optional<double> a = compared_number_at(document_, {one}), b = compared_number_at(document_, {other});
-      return a ? std::optional(*a + b.value_or(0)) : std::nullopt;
-    };
-    const std::optional<double> force = sum("joints_error", "joints_modes_error"),
-                                torque = sum("torque_error", "torque_modes_error");
-    if (document_.contains("bearings")) {
-      double largest = 0;
-      for (const auto& [name, bearing] : document_["bearings"].items())
-        largest = std::max(largest, compared_number_at(bearing, {"max"}).value_or(0));
+    const auto number_at = [&](std::initializer_list<const char*> path) { return compared_number_at(document_, path); };
+    if (document_.contains("bearings"))
       for (const auto& [name, bearing] : document_["bearings"].items())
         add("bearings", name, "N", f.force, compared_number_at(bearing, {"max"}),
-            force ? std::optional(std::sqrt(2.0) * *force * largest) : std::nullopt);
-    }
-    add("frame", "shaking force", "N", f.force, compared_number_at(document_, {"frame", "max"}),
-        compared_number_at(document_, {"frame", "force_error"}));
-    const std::optional<double> low = compared_number_at(document_, {"torque", "min"}),
-                                high = compared_number_at(document_, {"torque", "max"});
-    const double size = std::max(std::abs(low.value_or(0)), std::abs(high.value_or(0)));
-    const std::optional<double> error = torque ? std::optional(*torque * size) : std::nullopt;
-    add("drive", "torque, largest", "N m", f.moment, high, error);
-    add("drive", "torque, smallest", "N m", f.moment, low, error);
-    add("drive", "torque, rms", "N m", f.moment, compared_number_at(document_, {"torque", "rms"}), error);
-    const double omega = compared_number_at(document_, {"omega"}).value_or(0);
-    add("drive", "power, mean", "W", f.power, compared_number_at(document_, {"power", "mean"}),
-        error ? std::optional(omega * *error) : std::nullopt);
-    add("drive", "energy of the flywheel", "J", f.moment,
-        compared_number_at(document_, {"flywheel", "energy_fluctuation"}),
-        error ? std::optional(2 * std::numbers::pi * *error) : std::nullopt);
+            compared_number_at(bearing, {"error"}));
+    add("frame", "shaking force", "N", f.force, number_at({"frame", "max"}), number_at({"frame", "force_error"}));
+    const std::optional<double> error = number_at({"torque", "error"});
+    add("drive", "torque, largest", "N m", f.moment, number_at({"torque", "max"}), error);
+    add("drive", "torque, smallest", "N m", f.moment, number_at({"torque", "min"}), error);
+    add("drive", "torque, rms", "N m", f.moment, number_at({"torque", "rms"}), error);
+    add("drive", "power, mean", "W", f.power, number_at({"power", "mean"}), number_at({"power", "error"}));
+    add("drive", "energy of the flywheel", "J", f.moment, number_at({"flywheel", "energy_fluctuation"}),
+        number_at({"flywheel", "energy_fluctuation_error"}));
   }
 
   const Json& document_;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/json_parts.hpp"
@@ -48,35 +47,10 @@ void add_resonance(Json& json, const RodModel& model, const RodResult& rod, doub
   if (slow && !rod.max_abs.empty()) json["amplification"] = largest / *slow;
 }
 
-// Of each exponent the frequency in Hz and the damping ratio -Re lambda/|Re lambda + i nu|, nu the frequency. What
-// bounds the error of lambda bounds both: by error/(2 pi), and by error/|Re lambda + i nu|.
-void add_mode_words(Json& json, const std::vector<Exponent>& exponents, const Units& units) {
-  Json hertz = Json::array(), hertz_errors = Json::array(), ratios = Json::array(), ratio_errors = Json::array();
-  for (const Exponent& exponent : exponents) {
-    const double per_second = 1 / (2 * std::numbers::pi * units.time_in_s);
-    const double size = std::hypot(exponent.value.real(), exponent.frequency);
-    hertz.push_back(number(exponent.frequency * per_second));
-    hertz_errors.push_back(number(exponent.error * per_second));
-    ratios.push_back(size > 0 ? number(-exponent.value.real() / size + 0.0) : Json(nullptr));
-    ratio_errors.push_back(size > 0 ? number(exponent.error / size) : Json(nullptr));
-  }
-  json["frequencies_hz"] = std::move(hertz);
-  json["frequencies_hz_errors"] = std::move(hertz_errors);
-  json["damping_ratios"] = std::move(ratios);
-  json["damping_ratio_errors"] = std::move(ratio_errors);
-}
-
 void add_stability(Json& json, const RodResult& rod, double speed, const Units& units) {
   json.update(stability_json(*rod.stability, rod.num_exponents));
   json["exponents_unresolved"] = unresolved_exponents(rod);
-  Json frequencies = Json::array(), multipliers = Json::array();
-  for (const Exponent& exponent : rod.stability->exponents) {
-    frequencies.push_back(exponent.frequency);
-    multipliers.push_back(pair(exponent.multiplier(speed)));
-  }
-  json["frequencies"] = std::move(frequencies);
-  add_mode_words(json, rod.stability->exponents, units);
-  json["multipliers"] = std::move(multipliers);
+  add_modes(json, rod.stability->exponents, speed, units);
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 

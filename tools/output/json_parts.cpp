@@ -1,5 +1,8 @@
 #include "tools/output/json_parts.hpp"
 
+#include <cmath>
+#include <numbers>
+
 #include "tools/output/output_units.hpp"
 
 namespace hb::tools {
@@ -55,6 +58,29 @@ Json stability_json(const Stability& stability, Eigen::Index num_exponents) {
   json["stability_method"] = to_string(stability.method);
   json["stability_converged"] = stability.converged;
   return json;
+}
+
+// Of each exponent the frequency in Hz and the damping ratio -Re lambda/|Re lambda + i nu|, nu the frequency. What
+// bounds the error of lambda bounds both: by error/(2 pi), and by error/|Re lambda + i nu|.
+void add_modes(Json& json, const std::vector<Exponent>& exponents, double speed, const Units& units) {
+  Json frequencies = Json::array(), multipliers = Json::array();
+  Json hertz = Json::array(), hertz_errors = Json::array(), ratios = Json::array(), ratio_errors = Json::array();
+  for (const Exponent& exponent : exponents) {
+    const double per_second = 1 / (2 * std::numbers::pi * units.time_in_s);
+    const double size = std::hypot(exponent.value.real(), exponent.frequency);
+    frequencies.push_back(exponent.frequency);
+    multipliers.push_back(pair(exponent.multiplier(speed)));
+    hertz.push_back(number(exponent.frequency * per_second));
+    hertz_errors.push_back(number(exponent.error * per_second));
+    ratios.push_back(size > 0 ? number(-exponent.value.real() / size + 0.0) : Json(nullptr));
+    ratio_errors.push_back(size > 0 ? number(exponent.error / size) : Json(nullptr));
+  }
+  json["frequencies"] = std::move(frequencies);
+  json["frequencies_hz"] = std::move(hertz);
+  json["frequencies_hz_errors"] = std::move(hertz_errors);
+  json["damping_ratios"] = std::move(ratios);
+  json["damping_ratio_errors"] = std::move(ratio_errors);
+  json["multipliers"] = std::move(multipliers);
 }
 
 Json joints_json(const JointForces& forces) {

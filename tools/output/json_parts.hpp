@@ -27,6 +27,8 @@ void add_shape(Json& rod, const RodShape& shape, const std::optional<PeakErrors>
 [[nodiscard]] Json exponents_json(const std::vector<Exponent>& exponents);
 // Exponents with their errors, growth rate, verdict; of `num_exponents` that there are.
 [[nodiscard]] Json stability_json(const Stability& stability, Eigen::Index num_exponents);
+// Frequencies, damping ratios and multipliers of each; `speed` that of the period: the crank's, over T turns 1/T of it.
+void add_modes(Json& json, const std::vector<Exponent>& exponents, double speed, const Units& units);
 // By joint and component, elastic beside rigid.
 [[nodiscard]] Json joints_json(const JointForces& forces);
 

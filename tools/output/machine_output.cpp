@@ -166,21 +166,29 @@ std::string static_row(const SceneModel& model, const SpeedResult& result, std::
 
 namespace {
 
-std::string bearing_rows(const std::vector<BearingLoad>& loads, const OutputUnits& units) {
+// "; error 1.2e-07 N"; nothing where it is not known.
+std::string error_words(double error, const char* unit) {
+  return error > 0 && std::isfinite(error) ? fmt::format("; error {:.1e} {}", error, unit) : std::string();
+}
+
+std::string bearing_rows(const MachineLoads& loads, const OutputUnits& units) {
   std::string text = fmt::format("\n  {:<22}  {:>12}  {:>12}  {:>12}  {:>12}\n", "largest resultant [N]", "rigid",
                                  "elastic", "at [deg]", "mean");
-  for (const BearingLoad& load : loads)
+  for (const BearingLoad& load : loads.bearings)
     text += fmt::format("  {:<22}  {:>12.6g}  {:>12.6g}  {:>12.2f}  {:>12.6g}\n", load.joint,
                         load.rigid.value * units.force, load.elastic.value * units.force,
                         load.elastic.crank_angle * degrees_per_radian, load.mean * units.force);
+  if (std::isfinite(loads.bearing_error))
+    text += fmt::format("  error of each elastic value {:.1e} N\n", loads.bearing_error * units.force);
   return text;
 }
 
-std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuation, double torque_error, double speed,
-                       const Scene& scene) {
+std::string drive_rows(const MachineLoads& loads, double speed, const Scene& scene) {
+  const Drive& drive = loads.drive;
+  const std::optional<double>& fluctuation = loads.speed_fluctuation;
   const double moment = output_units(scene).moment, W = watt(scene.units);
   const double size = std::max(std::abs(drive.largest_power), std::abs(drive.smallest_power)) / speed;
-  const double error = size * std::max(1e-13, torque_error);
+  const double error = std::max(1e-13 * size, loads.torque_error);
   // The mean comes near its error where nothing but damping takes power; the others are as large as the torque.
   const double mean = std::abs(drive.mean) > error ? drive.mean : 0;  // what its error hides
   const int digits = std::min(6, trusted_digits(size, error)), of_mean = std::min(6, trusted_digits(mean, error));
@@ -202,23 +210,20 @@ std::string drive_rows(const Drive& drive, const std::optional<double>& fluctuat
 
 }  // namespace
 
-std::string machine_rows(const MachineLoads& loads, const std::vector<SliderMotion>& sliders, double torque_error,
-                         double speed, const Scene& scene) {
+std::string machine_rows(const MachineLoads& loads, const std::vector<SliderMotion>& sliders, double speed,
+                         const Scene& scene) {
   const OutputUnits units = output_units(scene);
   const FrameForces& frame = loads.frame;
   const Extremum &shaking = loads.shaking_force, &rigid = loads.shaking_force_rigid;
-  std::string text = bearing_rows(loads.bearings, units);
-  const auto error = [](double value, const char* unit) {
-    return value > 0 && std::isfinite(value) ? fmt::format("; error {:.1e} {}", value, unit) : std::string();
-  };
+  std::string text = bearing_rows(loads, units);
   text += fmt::format(
       "  shaking force on the frame: x {} N, y {} N, resultant up to {:.6g} N at {:.2f} deg (rigid {:.6g} N){}\n"
       "  shaking moment about the crank's pivot: {} N m (rigid {} N m){}\n",
       range_of(frame.elastic, 0, units.force, 6), range_of(frame.elastic, 1, units.force, 6),
       shaking.value * units.force, shaking.crank_angle * degrees_per_radian, rigid.value * units.force,
-      error(loads.shaking_force_error * units.force, "N"), range_of(frame.elastic, 2, units.moment, 6),
-      range_of(frame.rigid, 2, units.moment, 6), error(loads.shaking_moment_error * units.moment, "N m"));
-  text += drive_rows(loads.drive, loads.speed_fluctuation, torque_error, speed, scene);
+      error_words(loads.shaking_force_error * units.force, "N"), range_of(frame.elastic, 2, units.moment, 6),
+      range_of(frame.rigid, 2, units.moment, 6), error_words(loads.shaking_moment_error * units.moment, "N m"));
+  text += drive_rows(loads, speed, scene);
   for (const SliderMotion& slider : sliders) {
     const Range position = fourier::range(slider.position, 0);
     text += fmt::format("  {}: stroke {:.6g} {} ({:.6g} .. {:.6g}), velocity {} {}/{}, acceleration {} {}/{}^2\n",
@@ -232,9 +237,7 @@ std::string machine_rows(const MachineLoads& loads, const std::vector<SliderMoti
 std::string machine_rows(const SceneModel& model, const SpeedResult& result) {
   const std::optional<MachineLoads> loads = machine_loads(model, result);
   if (!loads) return "";
-  const std::optional<ForceErrors>& errors = result.force_errors;
-  return machine_rows(*loads, slider_motions(*model.linkage(), result.speed),
-                      errors ? errors->torque + errors->torque_cut : 0.0, result.speed, model.scene);
+  return machine_rows(*loads, slider_motions(*model.linkage(), result.speed), result.speed, model.scene);
 }
 
 Json static_json(const SceneModel& model, const SpeedResult& result, std::size_t rod) {
@@ -247,7 +250,7 @@ Json static_json(const SceneModel& model, const SpeedResult& result, std::size_t
 
 namespace {
 
-Json frame_json(const MachineLoads& loads, bool errors, const Units& units) {
+Json frame_json(const MachineLoads& loads, const Units& units) {
   Json on_frame;
   const char* const names[] = {"x", "y", "moment"};
   for (Index c = 0; c < 3; ++c) {
@@ -257,66 +260,69 @@ Json frame_json(const MachineLoads& loads, bool errors, const Units& units) {
   on_frame["max"] = loads.shaking_force.value;
   on_frame["crank_angle"] = scene_angle(loads.shaking_force.crank_angle, units);
   on_frame["max_rigid"] = loads.shaking_force_rigid.value;
-  if (errors) {
-    on_frame["force_error"] = number(loads.shaking_force_error);
-    on_frame["moment_error"] = number(loads.shaking_moment_error);
-  }
+  on_frame["force_error"] = number(loads.shaking_force_error);
+  on_frame["moment_error"] = number(loads.shaking_moment_error);
   return on_frame;
 }
 
-Json bearings_json(const std::vector<BearingLoad>& loads, const Units& units) {
+Json bearings_json(const MachineLoads& loads, const Units& units) {
   Json bearings = Json::object();
-  for (const BearingLoad& load : loads)
+  for (const BearingLoad& load : loads.bearings)
     bearings[load.joint] = {{"max", load.elastic.value},
                             {"crank_angle", scene_angle(load.elastic.crank_angle, units)},
                             {"mean", load.mean},
                             {"rms", load.rms},
+                            {"error", number(loads.bearing_error)},
                             {"max_rigid", load.rigid.value},
                             {"crank_angle_rigid", scene_angle(load.rigid.crank_angle, units)}};
   return bearings;
 }
 
-void add_drive(Json& document, const Drive& drive, const Drive& rigid, double inertia,
-               const std::optional<double>& fluctuation) {
+void add_drive(Json& document, const MachineLoads& loads, double speed) {
+  const Drive &drive = loads.drive, &rigid = loads.drive_rigid;
   document["torque"]["mean"] = drive.mean;
   document["torque"]["rms"] = drive.rms;
+  document["torque"]["error"] = number(loads.torque_error);
   document["torque"]["rigid"]["mean"] = rigid.mean;
   document["torque"]["rigid"]["rms"] = rigid.rms;
   document["power"] = {{"min", drive.smallest_power},
                        {"max", drive.largest_power},
                        {"mean", drive.mean_power},
-                       {"rms", drive.rms_power}};
+                       {"rms", drive.rms_power},
+                       {"error", number(loads.power_error(speed))}};
   document["flywheel"] = {{"energy_fluctuation", drive.energy_fluctuation},
-                          {"inertia", inertia},
-                          {"speed_fluctuation", fluctuation ? Json(*fluctuation) : Json()}};
+                          {"energy_fluctuation_error", number(loads.energy_error)},
+                          {"inertia", loads.inertia},
+                          {"speed_fluctuation", number(loads.speed_fluctuation)},
+                          {"speed_fluctuation_error", number(loads.speed_fluctuation_error)}};
+}
+
+Json slider_json(const SliderMotion& slider) {
+  Json json;
+  const char* const names[] = {"position", "velocity", "acceleration"};
+  const FourierSeries series[] = {slider.position, slider.velocity(), slider.acceleration()};
+  for (std::size_t k = 0; k < 3; ++k) {
+    json[names[k]] = range_json(series[k], 0);
+    json[names[k]]["error"] = number(slider.errors[k]);
+  }
+  return json;
 }
 
 }  // namespace
 
-void add_machine(Json& document, const MachineLoads& loads, const std::vector<SliderMotion>& sliders,
-                 const JointForces& forces, const std::optional<ForceErrors>& errors, const Units& units) {
-  document["bearings"] = bearings_json(loads.bearings, units);
-  document["frame"] = frame_json(loads, errors.has_value(), units);
-  add_drive(document, loads.drive, loads.drive_rigid, loads.inertia, loads.speed_fluctuation);
-  if (errors) {
-    // An integral of T less its mean over the shorter of two ways round, at most pi, each wrong by no more than
-    // epsilon.
-    const Range torque = fourier::range(forces.torque, 0);
-    const double size = std::max(std::abs(torque.max.value), std::abs(torque.min.value));
-    document["flywheel"]["energy_fluctuation_error"] = number(two_pi * (errors->torque + errors->torque_cut) * size);
-  }
+void add_machine(Json& document, const MachineLoads& loads, const std::vector<SliderMotion>& sliders, double speed,
+                 const Units& units) {
+  document["bearings"] = bearings_json(loads, units);
+  document["frame"] = frame_json(loads, units);
+  add_drive(document, loads, speed);
   Json motions = Json::object();
-  for (const SliderMotion& slider : sliders)
-    motions[slider.name] = {{"position", range_json(slider.position, 0)},
-                            {"velocity", range_json(slider.velocity(), 0)},
-                            {"acceleration", range_json(slider.acceleration(), 0)}};
+  for (const SliderMotion& slider : sliders) motions[slider.name] = slider_json(slider);
   if (!motions.empty()) document["sliders"] = std::move(motions);
 }
 
 void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
   if (const std::optional<MachineLoads> loads = machine_loads(model, result))
-    add_machine(document, *loads, slider_motions(*model.linkage(), result.speed), *result.forces, result.force_errors,
-                model.scene.units);
+    add_machine(document, *loads, slider_motions(*model.linkage(), result.speed), result.speed, model.scene.units);
 }
 
 MachineFiles machine_files(const SceneModel& model, const SpeedResult& result) {

@@ -19,12 +19,11 @@
 namespace hb::tools {
 
 // Parts of the table and the document that all theories have.
-// `torque_error`: relative, below which a mean is 0.
 [[nodiscard]] std::string machine_rows(const MachineLoads& loads, const std::vector<SliderMotion>& sliders,
-                                       double torque_error, double speed, const Scene& scene);
-// Adds bearings, frame, power, drive and sliders to the document, mean and rms to its torque.
+                                       double speed, const Scene& scene);
+// Adds bearings, frame, power, drive and sliders to the document; mean, rms and error to its torque.
 void add_machine(nlohmann::ordered_json& document, const MachineLoads& loads, const std::vector<SliderMotion>& sliders,
-                 const JointForces& forces, const std::optional<ForceErrors>& errors, const Units& units);
+                 double speed, const Units& units);
 // Axial and bending stress together: the largest, the widest cycle and the safeties.
 [[nodiscard]] std::string stress_rows(const StressCycle& cycle, const Body& link, const OutputUnits& units);
 void add_stress_cycle(nlohmann::ordered_json& stress, const StressCycle& cycle, const Body& link, const Units& units);

@@ -84,21 +84,11 @@ void add_rod(Text& text, const NonlinearRod& rod, const Linkage& linkage, const 
 }
 
 void add_stability(Text& text, const NonlinearResult& result, const Scene& scene) {
-  constexpr std::size_t most = 8;
   const Stability& stability = *result.stability;
   const OutputUnits units = output_units(scene);
-  add(text, "All rods together\n  {:<16}  {:>18}  {:>18}  {:>8}\n", fmt::format("exponents [{}]", units.rate),
-      "real part", "imaginary, folded", "error");
-  for (std::size_t k = 0; k < std::min(most, stability.exponents.size()); ++k) {
-    const Exponent& exponent = stability.exponents[k];
-    const auto shown = [&](double value) {
-      return fmt::format("{:.{}g}", value + 0.0, trusted_digits(value, exponent.error));
-    };
-    add(text, "  {:>16}  {:>18}  {:>18}  {:>8.1e}\n", "", shown(exponent.value.real()), shown(exponent.value.imag()),
-        exponent.error);
-  }
-  if (stability.exponents.size() > most)
-    add(text, "    ... {} more (--json has all)\n", stability.exponents.size() - most);
+  const Eigen::Index unresolved =
+      2 * result.motion.q.num_components() - static_cast<Eigen::Index>(stability.exponents.size());
+  add(text, "All rods together\n{}", exponents_rows(stability, unresolved, result.speed, scene));
   add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
       stability.converged ? "" : "  NOT REACHED");
   add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene));
@@ -140,9 +130,7 @@ void add_forces(Text& text, const SceneModel& model, const NonlinearResult& resu
   add(text, "  estimated errors: forces {:.1e} of the largest, torque {:.1e}", errors.force, errors.torque);
   if (cut_known(result))
     add(text, "; from the cut of the modes {:.1e} and {:.1e}", errors.force_cut, errors.torque_cut);
-  add(text, "\n{}",
-      machine_rows(*machine_loads(*model.linkage(), result), result.sliders, errors.torque + errors.torque_cut,
-                   result.speed, model.scene));
+  add(text, "\n{}", machine_rows(*machine_loads(*model.linkage(), result), result.sliders, result.speed, model.scene));
 }
 
 }  // namespace
@@ -177,6 +165,7 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
     if (rod.reported) rods[rod.name] = rod_json(rod, *model.linkage(), result, units);
   if (result.stability) {
     json["system"] = stability_json(*result.stability, 2 * result.motion.q.num_components());
+    add_modes(json["system"], result.stability->exponents, result.speed / result.turns, units);
     json["verdict"] = to_string(result.stability->verdict);
   }
   if (result.forces) {
@@ -189,8 +178,7 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
       json["joints_modes_error"] = number(result.force_errors->force_cut);
       json["torque_modes_error"] = number(result.force_errors->torque_cut);
     }
-    add_machine(json, *machine_loads(*model.linkage(), result), result.sliders, *result.forces, result.force_errors,
-                units);
+    add_machine(json, *machine_loads(*model.linkage(), result), result.sliders, result.speed, units);
   }
   Json& others = json["other_motions"] = Json::array();
   for (const OtherMotion& other : result.others) {

@@ -43,7 +43,9 @@ const std::vector<StressQuantity>& stress_quantities() {
   using enum StressKind;
   static const std::vector<StressQuantity> list = {
       {"axial", "axial stress [MPa]", [](const StressPoint& p) { return p.axial; }, stress},
+      {"axial_error", "axial stress error [MPa]", [](const StressPoint& p) { return p.axial_error; }, stress},
       {"bending", "bending stress [MPa]", [](const StressPoint& p) { return p.bending; }, stress},
+      {"bending_error", "bending stress error [MPa]", [](const StressPoint& p) { return p.bending_error; }, stress},
       {"max_abs", "stress [MPa]", [](const StressPoint& p) { return p.max_abs; }, stress},
       {"x", "", [](const StressPoint& p) { return p.x; }, length},
       {"crank_angle", "", [](const StressPoint& p) { return p.crank_angle; }, angle},
@@ -154,6 +156,13 @@ std::vector<MachineColumn> machine_columns(const SweepScene& scene, const SweepR
   add("power largest [W]", watt, [](const MachinePoint& m) { return m.drive.largest_power; });
   add("energy fluctuation [J]", units.moment, [](const MachinePoint& m) { return m.drive.energy_fluctuation; });
   add("speed fluctuation", 1, [](const MachinePoint& m) { return or_none(m.speed_fluctuation); });
+  add("error of resultants [N]", units.force, [](const MachinePoint& m) { return m.bearing_error; });
+  add("error of the shaking force [N]", units.force, [](const MachinePoint& m) { return m.shaking_force_error; });
+  add("error of the shaking moment [N m]", units.moment, [](const MachinePoint& m) { return m.shaking_moment_error; });
+  add("error of torques [N m]", units.moment, [](const MachinePoint& m) { return m.torque_error; });
+  add("error of powers [W]", watt, [](const MachinePoint& m) { return m.power_error; });
+  add("error of the energy fluctuation [J]", units.moment, [](const MachinePoint& m) { return m.energy_error; });
+  add("error of the speed fluctuation", 1, [](const MachinePoint& m) { return or_none(m.speed_fluctuation_error); });
   return columns;
 }
 
@@ -173,22 +182,29 @@ void add_stress(Json& rod, std::size_t r, const std::vector<SweepPoint>& points,
 void add_machine(Json& document, const SweepResult& result) {
   Json& bearings = document["bearings"] = Json::object();
   const std::vector<std::string> names = bearing_names(result);
-  for (std::size_t j = 0; j < names.size(); ++j)
-    bearings[names[j]]["max"] = of_machine(result, [j](const MachinePoint& m) { return m.bearings[j]; });
   const auto of = [&](const MachineValue& value) { return of_machine(result, value); };
+  for (std::size_t j = 0; j < names.size(); ++j)
+    bearings[names[j]] = {{"max", of([j](const MachinePoint& m) { return m.bearings[j]; })},
+                          {"error", of([](const MachinePoint& m) { return m.bearing_error; })}};
   document["frame"] = {{"max", of([](const MachinePoint& m) { return m.shaking_force; })},
+                       {"force_error", of([](const MachinePoint& m) { return m.shaking_force_error; })},
+                       {"moment_error", of([](const MachinePoint& m) { return m.shaking_moment_error; })},
                        {"moment",
                         {{"min", of([](const MachinePoint& m) { return m.shaking_moment.min; })},
                          {"max", of([](const MachinePoint& m) { return m.shaking_moment.max; })}}}};
   document["torque"]["mean"] = of([](const MachinePoint& m) { return m.drive.mean; });
   document["torque"]["rms"] = of([](const MachinePoint& m) { return m.drive.rms; });
+  document["torque"]["error"] = of([](const MachinePoint& m) { return m.torque_error; });
   document["power"] = {{"min", of([](const MachinePoint& m) { return m.drive.smallest_power; })},
                        {"max", of([](const MachinePoint& m) { return m.drive.largest_power; })},
                        {"mean", of([](const MachinePoint& m) { return m.drive.mean_power; })},
-                       {"rms", of([](const MachinePoint& m) { return m.drive.rms_power; })}};
+                       {"rms", of([](const MachinePoint& m) { return m.drive.rms_power; })},
+                       {"error", of([](const MachinePoint& m) { return m.power_error; })}};
   document["flywheel"] = {
       {"energy_fluctuation", of([](const MachinePoint& m) { return m.drive.energy_fluctuation; })},
-      {"speed_fluctuation", of([](const MachinePoint& m) { return or_none(m.speed_fluctuation); })}};
+      {"energy_fluctuation_error", of([](const MachinePoint& m) { return m.energy_error; })},
+      {"speed_fluctuation", of([](const MachinePoint& m) { return or_none(m.speed_fluctuation); })},
+      {"speed_fluctuation_error", of([](const MachinePoint& m) { return or_none(m.speed_fluctuation_error); })}};
 }
 
 std::string stress_rows(const SweepScene& scene, const SweepResult& result, std::size_t rod) {

@@ -59,8 +59,11 @@ Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
   }
   if (result.computed.shape) {
     json["deflection"] = of_rod([](const RodPoint& rod) { return number(rod.deflection); });
+    json["deflection_error"] = of_rod([](const RodPoint& rod) { return number(rod.deflection_error); });
     json["bending_moment"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment); });
+    json["bending_moment_error"] = of_rod([](const RodPoint& rod) { return number(rod.bending_moment_error); });
     json["buckling_share"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share); });
+    json["buckling_share_error"] = of_rod([](const RodPoint& rod) { return number(rod.buckling_share_error); });
     json["strain"] = of_rod([](const RodPoint& rod) { return number(rod.strain); });
     add_stress(json, r, points, scene.scene().units);
   }
@@ -108,6 +111,15 @@ void add_forces(Json& json, const SweepResult& result) {
   json["torque"] = ranges_json(result.points, [](const SweepPoint& p) { return p.torque ? &*p.torque : nullptr; });
   json["torque"]["rigid"] =
       ranges_json(result.points, [](const SweepPoint& p) { return p.torque_rigid ? &*p.torque_rigid : nullptr; });
+  const auto errors = [&](const char* key, double ForceErrors::*error) {
+    json[key] = over_points(result.points, [&](const SweepPoint& p) {
+      return p.force_errors ? number((*p.force_errors).*error) : Json(nullptr);
+    });
+  };
+  errors("joints_error", &ForceErrors::force);
+  errors("torque_error", &ForceErrors::torque);
+  errors("joints_modes_error", &ForceErrors::force_cut);
+  errors("torque_modes_error", &ForceErrors::torque_cut);
   add_machine(json, result);
 }
 
@@ -212,6 +224,8 @@ void fill_rod_point(Eigen::MatrixXd::RowXpr row, const SweepScene& scene, const 
   if (only.shape) {
     row(column++) = here.deflection.value_or(nan);
     row(column++) = here.bending_moment.value_or(nan) * units.moment;
+    row(column++) = here.deflection_error.value_or(nan);
+    row(column++) = here.bending_moment_error.value_or(nan) * units.moment;
   }
   if (has_theory(scene, result)) {
     row(column++) = here.theory_error.value_or(nan);
@@ -301,6 +315,7 @@ SweepColumns sweep_columns(const SweepScene& scene, const SweepResult& result, s
   if (result.computed.shape) {
     columns.deflection = next++;
     columns.bending_moment = next++;
+    next += 2;  // their errors
   }
   if (has_theory(scene, result)) {
     columns.beyond = next + 1;
@@ -332,6 +347,8 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   if (only.shape) {
     file.columns.push_back("deflection [" + units.length + "]");
     file.columns.push_back("bending moment [N m]");
+    file.columns.push_back("deflection error [" + units.length + "]");
+    file.columns.push_back("bending moment error [N m]");
   }
   if (has_theory(scene, result)) {
     file.columns.push_back("theory error");

@@ -9,11 +9,12 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/wording.hpp"
+#include "tools/pictures/figure_text.hpp"
 
 namespace hb::tools {
 
 Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const NonlinearSweep& sweep, std::size_t r,
-                     const CsvFile& linear_csv, const CsvFile& branches) {
+                     const CsvFile& linear_csv, const CsvFile& branches, const MeasuredOverlay& measured) {
   Figure figure;
   figure.name = file_name("branches_" + sweep.rods[r]);
   std::string& text = figure.commands;
@@ -21,8 +22,14 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
   double top = 0;
   for (const NonlinearBranch& branch : sweep.branches)
     for (const NonlinearPoint& point : branch.points) top = std::max(top, point.max_abs[r].front());
-  text += "set title heading('{/:Bold " + literal(scene_name(scene.scene()) + ", " + sweep.rods[r]) +
-          "}'.\"\\n\".'solid stable, dashed unstable; dots folds, circles bifurcations; grey linear')\n";
+  const std::string q_1 = "q_1 " + sweep.rods[r];
+  for (const double value : measured.values(q_1)) top = std::max(top, value);
+  text += "set title " +
+          figure_title(scene.scene(), {sweep.rods[r], branches_words(sweep)},
+                       "motion without linearisation: solid stable, dashed unstable, dots folds" +
+                           std::string(sweep.bifurcations.empty() ? "" : ", circles bifurcations") +
+                           "; grey: linear theory") +
+          "\n";
   text += fmt::format(
       "set xrange [{}:{}]\nset xlabel {}\nset ylabel 'largest |q_1| [{}]'\nset yrange [0:{}]\n"
       "set key outside right top Left reverse samplen 2\nplot ",
@@ -43,6 +50,7 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
         turns == 1 ? fmt::format("branch {}", b + 1) : fmt::format("branch {}, {} turns", b + 1, turns),
         b + 1 < sweep.branches.size() ? ", " : "");
   }
+  text += measured.layer(q_1, true);
   const auto marks = [&](const std::vector<NonlinearEvent>& events, int pointtype) {
     std::string labels;
     for (const NonlinearEvent& event : events)

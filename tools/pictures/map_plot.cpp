@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
@@ -37,7 +39,24 @@ struct ColourScale {
   std::string label;
   double scale = 1;  // values up to about here are shown linearly, larger ones by their logarithm
   double largest = 1;
+  // Where all points are of one verdict, stable or unstable: the values that there are, signed.
+  std::optional<std::array<double, 2>> one_sided;
 };
+
+// The range of the values where the verdict is the same everywhere.
+std::optional<std::array<double, 2>> one_sided_range(const MapDocument& document, bool per_turn) {
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const MapPoint& p : document.result.worst) {
+    if (p.source == MapSource::missing) continue;
+    if (p.verdict != Verdict::stable && p.verdict != Verdict::unstable) return std::nullopt;
+    const double value = per_turn ? growth_per_turn(p) : p.growth_rate;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (!(low <= high) || !(low * high > 0)) return std::nullopt;
+  const double room = std::max(0.0, 0.01 * std::abs(low) - (high - low)) / 2;
+  return std::array{low - room, high + room};
+}
 
 ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   const std::string time = document.scene.units.time;
@@ -57,6 +76,7 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   // The median of what is not zero in sight of the largest.
   const auto first = std::upper_bound(sizes.begin(), sizes.end(), 1e-6 * result.largest);
   result.scale = first == sizes.end() ? result.largest : *(first + (sizes.end() - first) / 2);
+  result.one_sided = one_sided_range(document, per_turn);
   return result;
 }
 
@@ -82,6 +102,41 @@ std::string ticks(const ColourScale& c, MapColour colour) {
     text += fmt::format(", \"{}\" {}, \"{}\" {}", up, place, down, -place);
   }
   return text + ")\n";
+}
+
+// What gnuplot colours by, and the bar beside it.
+struct ColourBar {
+  std::string value, settings;
+};
+
+// Of one sign: its half of the colours over the values that there are, those next to 0 light.
+ColourBar one_sided_bar(const ColourScale& c, MapColour colour) {
+  const auto [low, high] = *c.one_sided;
+  ColourBar bar{c.value, fmt::format("set cbrange [{}:{}]\nset cbtics autofreq\n", low, high)};
+  if (colour == MapColour::tenfold_time) {
+    constexpr int most = 5;
+    std::string places;
+    for (int k = 0; k < most; ++k) {
+      const double v = low + (high - low) * k / (most - 1);
+      places += fmt::format("{}\"{:.3g}\" {}", k == 0 ? "" : ", ", std::log(10.0) / std::abs(v), v);
+    }
+    bar.settings += "set cbtics (" + places + ")\n";
+  }
+  bar.settings += high < 0 ? "set palette defined (0 '#2166ac', 0.5 '#67a9cf', 1 '#d1e5f0')\n"
+                           : "set palette defined (0 '#fddbc7', 0.5 '#ef8a62', 1 '#b2182b')\n";
+  return bar;
+}
+
+ColourBar colour_bar(const ColourScale& c, MapColour colour) {
+  // Beyond this ratio of the values a linear scale shows the largest alone.
+  constexpr double most_ratio = 20;
+  if (c.one_sided) {
+    const double a = std::abs((*c.one_sided)[0]), b = std::abs((*c.one_sided)[1]);
+    if (std::max(a, b) < most_ratio * std::min(a, b)) return one_sided_bar(c, colour);
+  }
+  const double limit = std::asinh(c.largest / c.scale);
+  return {fmt::format("asinh({}/{})", c.value, c.scale),
+          fmt::format("set cbrange [{}:{}]\n", -limit, limit) + ticks(c, colour) + palette};
 }
 
 // Names of the lines where they leave the picture, or at their middle when that place is taken.
@@ -165,7 +220,7 @@ std::vector<std::string> boundary_layers(const MapResult& r, const MapFiles& fil
 Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour colour) {
   const MapResult& r = document.result;
   const ColourScale c = colour_scale(document, colour);
-  const double limit = std::asinh(c.largest / c.scale);
+  const ColourBar bar = colour_bar(c, colour);
   Figure figure;
   figure.name = "map";
   name_axes(document, figure);
@@ -181,13 +236,13 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
   };
   figure.commands = fmt::format(
       "set title heading('{{/:Bold {}}}'.\"\\n\".{})\n{}set cblabel {}\n"
-      "set cbrange [{}:{}]\n{}{}unset grid\nset border 15\nset tics out nomirror\n"
+      "{}unset grid\nset border 15\nset tics out nomirror\n"
       "{}set key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
       "samplen 3 width -4 font ',12'\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(short_name(document.scene) + ", " + map_verdict(document)),
-      quoted("stability of the steady motion" + rods), map_axes(document), quoted(c.label), -limit, limit,
-      ticks(c, colour), palette, map_frame, line_labels(r));
+      quoted("stability of the steady motion" + rods), map_axes(document), quoted(c.label), bar.settings, map_frame,
+      line_labels(r));
   if (some_missing) {
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
@@ -204,7 +259,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                                    value, style));
     layers.push_back(fmt::format("'{}' using {}:({}) with {}{} notitle", files.grid, columns, value, style, pixels));
   };
-  add_cells("1:2", fmt::format("asinh({}/{})", c.value, c.scale), "NaN", "image");
+  add_cells("1:2", bar.value, "NaN", "image");
   if (some(Verdict::bounded)) {
     add_cells("1:2:(190):(174):(212)", fmt::format("($6 == {} ? 255 : 0)", verdict_number(Verdict::bounded)), "0",
               "rgbalpha");

@@ -1,9 +1,24 @@
 #include "tools/python/stability.hpp"
 
+#include <cmath>
+
+#include "lib/constants.hpp"
 #include "tools/python/arrays.hpp"
 #include "tools/python/tables.hpp"
 
 namespace hb::python {
+namespace {
+
+template <class Value>
+py::array of_each(const StabilityView& view, Value value) {
+  const std::vector<Exponent>& exponents = view.stability->exponents;
+  py::array_t<double> array(static_cast<py::ssize_t>(exponents.size()));
+  for (std::size_t k = 0; k < exponents.size(); ++k)
+    array.mutable_at(static_cast<py::ssize_t>(k)) = value(exponents[k]);
+  return read_only(std::move(array));
+}
+
+}  // namespace
 
 void add_stability(py::module_& module) {
   py::class_<StabilityView>(module, "Stability",
@@ -20,6 +35,31 @@ void add_stability(py::module_& module) {
             return view(self.cast<const StabilityView&>().stability->exponents, &Exponent::error, self);
           },
           "Error of each exponent, 1/time. Read-only.")
+      .def_property_readonly(
+          "frequencies_hz",
+          [](const StabilityView& v) {
+            return of_each(v, [&v](const Exponent& e) { return e.frequency / (two_pi * v.time_in_s); });
+          },
+          "Frequency of each exponent, unfolded, Hz. Read-only.")
+      .def_property_readonly(
+          "frequencies_hz_errors",
+          [](const StabilityView& v) {
+            return of_each(v, [&v](const Exponent& e) { return e.error / (two_pi * v.time_in_s); });
+          },
+          "Their errors, Hz. Read-only.")
+      .def_property_readonly(
+          "damping_ratios",
+          [](const StabilityView& v) {
+            return of_each(
+                v, [](const Exponent& e) { return -e.value.real() / std::hypot(e.value.real(), e.frequency) + 0.0; });
+          },
+          "-Re/|exponent| of each at its frequency. Read-only.")
+      .def_property_readonly(
+          "damping_ratio_errors",
+          [](const StabilityView& v) {
+            return of_each(v, [](const Exponent& e) { return e.error / std::hypot(e.value.real(), e.frequency); });
+          },
+          "Their errors. Read-only.")
       .def_property_readonly(
           "growth_rate", [](const StabilityView& v) { return v.stability->growth_rate + 0.0; },
           "Largest real part, 1/time: above 0 disturbances grow.")

@@ -13,6 +13,7 @@ struct StabilityView {
   py::object owner;
   const Stability* stability;
   std::unique_ptr<const Stability> own = {};
+  double time_in_s = 1;  // the unit of time
 };
 
 }  // namespace hb::python

@@ -24,7 +24,27 @@ struct ForceView {
   py::object owner;
   const Answer* answer;
   const FourierSeries *elastic, *rigid;
+  std::optional<double> error;  // of the elastic values
 };
+
+double largest_of(const FourierSeries& series) {
+  double largest = 0;
+  for (Eigen::Index c = 0; c < series.num_components(); ++c)
+    largest = std::max(largest, fourier::max_abs(series, c).value);
+  return largest;
+}
+
+// Of any component of any joint's force, and of the torque.
+std::optional<double> joints_error(const SpeedResult& result) {
+  if (!result.force_errors) return std::nullopt;
+  double largest = 0;
+  for (const JointForce& joint : result.forces->joints) largest = std::max(largest, largest_of(joint.elastic));
+  return (result.force_errors->force + result.force_errors->force_cut) * largest;
+}
+std::optional<double> torque_error(const SpeedResult& result) {
+  if (!result.force_errors) return std::nullopt;
+  return (result.force_errors->torque + result.force_errors->torque_cut) * largest_of(result.forces->torque);
+}
 
 // Angles as given, in rad over the period of `turns` turns that a series stands for; whether one or several.
 struct Angles {
@@ -127,7 +147,8 @@ std::shared_ptr<Answer> linear(const SceneCore& core, const py::dict& arguments)
   return linear_answer(core.scene, read_request(arguments), arguments);
 }
 
-std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& arguments, int turns) {
+std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& arguments, int turns,
+                                  const std::vector<BandRequest>& bands) {
   const Request request = read_request(arguments);
   PythonWork work(arguments, py::none());
   NonlinearOptions options;
@@ -138,6 +159,8 @@ std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& argumen
     if (work.stopped()) throw Stopped();
     work.say_time_limit(found.shortfalls);
     auto answer = std::make_shared<Answer>();
+    answer->nonlinear_bands = nonlinear_bands(core.scene, request, options, bands);
+    if (work.stopped()) throw Stopped();
     answer->settings = std::move(found.settings);
     answer->model = std::move(found.model);
     answer->nonlinear = std::move(static_cast<NonlinearResult&>(found));
@@ -153,10 +176,7 @@ std::shared_ptr<Answer> nonlinear(const SceneCore& core, const py::dict& argumen
 std::shared_ptr<Answer> answer_of(const SceneCore& core, const py::dict& written) {
   const py::dict arguments = plain_speeds(written, core.scene.units);
   const std::vector<BandRequest> bands = read_bands(arguments);
-  if (const std::optional<int> turns = read_turns(arguments)) {
-    if (!bands.empty()) throw RequestError("band", "beside theory = \"nonlinear\"", "band with the linear theory");
-    return nonlinear(core, arguments, *turns);
-  }
+  if (const std::optional<int> turns = read_turns(arguments)) return nonlinear(core, arguments, *turns, bands);
   std::shared_ptr<Answer> answer = linear(core, arguments);
   if (bands.empty()) return answer;
   const Request request = read_request(arguments);
@@ -178,7 +198,8 @@ std::optional<Verdict> verdict_of(const Answer& answer) {
 
 py::object stability_of(const RodView& rod) {
   const std::optional<Stability>& stability = rod.result().stability;
-  return stability ? py::cast(StabilityView{rod.owner, &*stability}) : py::none();
+  return stability ? py::cast(StabilityView{rod.owner, &*stability, {}, rod.answer->model->scene.units.time_in_s})
+                   : py::none();
 }
 
 // An attribute of the rod's stability; None where that was not computed.
@@ -191,8 +212,10 @@ auto of_stability(Value value) {
 }
 
 nlohmann::ordered_json document_of(const Answer& answer) {
-  if (answer.nonlinear) return tools::nonlinear_json(*answer.model, *answer.nonlinear, answer.settings, false);
-  nlohmann::ordered_json document = tools::steady_json(*answer.model, answer.result, answer.settings, false);
+  nlohmann::ordered_json document =
+      answer.nonlinear ? tools::nonlinear_json(*answer.model, *answer.nonlinear, answer.settings, false)
+                       : tools::steady_json(*answer.model, answer.result, answer.settings, false);
+  if (!answer.nonlinear_bands.empty()) document["bands"] = tools::bands_json(document, answer.nonlinear_bands);
   if (!answer.bands.empty()) document["bands"] = tools::bands_json(document, answer.bands);
   return document;
 }
@@ -357,6 +380,9 @@ void add_force(py::module_& module) {
   add_numbers(force, "", "", &ForceView::elastic);
   add_numbers(force, "_rigid", " of the rigid mechanism", &ForceView::rigid);
   force
+      .def_property_readonly(
+          "error", [](const ForceView& f) { return optional(f.error); },
+          "Estimated error of the elastic values, modes left out included; None: not known.")
       .def(
           "elastic", [](const ForceView& f, const py::object& angle) { return force_at(f, *f.elastic, angle); },
           py::arg("angle"), "With the links' elasticity: (2, len(angle)); guides and torque (len(angle),).")
@@ -403,7 +429,8 @@ void add_steady(py::module_& module) {
                              [](const py::object& self) -> py::object {
                                const auto& answer = self.cast<const Answer&>();
                                if (!answer.nonlinear || !answer.nonlinear->stability) return py::none();
-                               return py::cast(StabilityView{self, &*answer.nonlinear->stability});
+                               return py::cast(StabilityView{
+                                   self, &*answer.nonlinear->stability, {}, answer.model->scene.units.time_in_s});
                              })
       .def("rods",
            [](const py::object& self) {
@@ -424,22 +451,24 @@ void add_steady(py::module_& module) {
              py::dict joints;
              if (answer.result.forces)
                for (const JointForce& joint : answer.result.forces->joints)
-                 joints[decoded(joint.name)] = ForceView{self, &answer, &joint.elastic, &joint.rigid};
+                 joints[decoded(joint.name)] =
+                     ForceView{self, &answer, &joint.elastic, &joint.rigid, joints_error(answer.result)};
              return joints;
            })
       .def("torque",
            [](const py::object& self) -> py::object {
              const auto& answer = self.cast<const Answer&>();
              if (!answer.result.forces) return py::none();
-             return py::cast(
-                 ForceView{self, &answer, &answer.result.forces->torque, &answer.result.forces->torque_rigid});
+             return py::cast(ForceView{self, &answer, &answer.result.forces->torque,
+                                       &answer.result.forces->torque_rigid, torque_error(answer.result)});
            })
       .def("json", [](const Answer& answer) { return decoded(answer.json()); })
       .def("words",
            [](const Answer& answer) {
-             if (answer.nonlinear) return decoded(tools::nonlinear_table(*answer.model, *answer.nonlinear));
-             std::string table = tools::steady_table(*answer.model, answer.result, answer.settings);
-             if (!answer.bands.empty()) table += tools::bands_table(document_of(answer)["bands"]);
+             std::string table = answer.nonlinear ? tools::nonlinear_table(*answer.model, *answer.nonlinear)
+                                                  : tools::steady_table(*answer.model, answer.result, answer.settings);
+             if (!answer.bands.empty() || !answer.nonlinear_bands.empty())
+               table += tools::bands_table(document_of(answer)["bands"]);
              return decoded(table);
            })
       .def("table", [](const Answer& answer, const std::string& what) { return table_of(table(answer, what)); });

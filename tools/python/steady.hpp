@@ -19,6 +19,7 @@ struct Answer {
   SpeedResult result;  // of a motion without linearisation in the form of a linear answer
   std::optional<NonlinearResult> nonlinear;
   std::vector<SensitivityBand> bands;
+  std::vector<NonlinearBand> nonlinear_bands;  // instead
 
   int turns() const { return nonlinear ? nonlinear->turns : 1; }
   std::string json() const;  // as the command prints it

@@ -47,13 +47,24 @@ BentStresses::BentStresses(const ExactModel& exact, double speed, int turns, std
 }
 
 // With the axial force along the bent rod instead of the rigid mechanism's.
-RodStress BentStresses::largest(std::size_t rod, const RodCoefficients& coefficients, double bending_moment) const {
+RodStress BentStresses::largest(std::size_t rod, const RodCoefficients& coefficients, double bending_moment,
+                                std::optional<double> moment_error, const std::vector<BentStresses>& better) const {
   const Body& link = *body_at(samples_->linkage, samples_->links[rod]);
-  const MatrixXd& N = samples_->tension[rod].N;
-  RodStress stress = rod_stress(link, coefficients, samples_->base, bending_moment);
-  stress.tension = std::max(0.0, N.maxCoeff());
-  stress.compression = std::max(0.0, -N.minCoeff());
+  const RodTension& tension = samples_->tension[rod];
+  constexpr double no_tail = 0;
+  RodStress stress = rod_stress(link, coefficients, no_tail, samples_->base, bending_moment, moment_error);
+  stress.tension = stress.compression = 0;
+  const FourierSeries over_motion = fourier::analyse(tension.N);
+  for (Index i = 0; i < over_motion.num_components(); ++i) {
+    const Range range = fourier::range(over_motion, i);
+    stress.tension = std::max(stress.tension, range.max.value);
+    stress.compression = std::max(stress.compression, -range.min.value);
+  }
+  stress.force_error = better.empty() ? HUGE_VAL : 0;
+  for (const BentStresses& other : better)
+    stress.force_error += 2 * (other.samples_->tension[rod].at(tension.x) - tension.N).cwiseAbs().maxCoeff();
   stress.axial = std::max(stress.tension, stress.compression) / link.elastic->area;
+  stress.axial_error = stress.force_error / link.elastic->area;
   stress.strain = (stress.axial + stress.bending) / link.elastic->youngs_modulus;
   return stress;
 }

@@ -18,9 +18,11 @@ class BentStresses {
   BentStresses(const ExactModel& exact, double speed, int turns, std::vector<FourierSeries> q,
                Eigen::Index num_samples);
 
-  // `bending_moment`: the largest EJ kappa over rod and motion. `rod` counts as those of the model; `coefficients` are
-  // over the T turns, with powers of Omega/T.
-  [[nodiscard]] RodStress largest(std::size_t rod, const RodCoefficients& coefficients, double bending_moment) const;
+  // `bending_moment`: the largest EJ kappa over rod and motion, `moment_error` its error. `rod` counts as those of the
+  // model; `coefficients` are over the T turns, with powers of Omega/T. The error of the axial force is twice what the
+  // motions `better` change, infinite without any.
+  [[nodiscard]] RodStress largest(std::size_t rod, const RodCoefficients& coefficients, double bending_moment,
+                                  std::optional<double> moment_error, const std::vector<BentStresses>& better) const;
   // Crank angles of what is found in it are 1/T of those of the motion. `coefficients` outlives it. Needs
   // elastic.section_height.
   [[nodiscard]] StressField field(std::size_t rod, const RodCoefficients& coefficients) const;

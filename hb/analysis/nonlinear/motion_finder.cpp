@@ -94,25 +94,28 @@ std::optional<PeriodicMotion> MotionFinder::with_more_harmonics() const {
   return motion;
 }
 
-// The same motion with more modes of every rod, from this one.
-std::optional<std::vector<FourierSeries>> MotionFinder::with_more_modes() const {
-  std::vector<Index> more;
-  for (const Index I : modes_) more.push_back(more_modes(I));
-  const auto finer = with_modes(more);
+std::optional<std::vector<FourierSeries>> motion_with_more_modes(const ExactModel& exact, double speed,
+                                                                 const PeriodicMotion& motion, MotionOptions options) {
+  std::vector<ExactModel::Rod> rods;
   std::vector<FourierSeries> start;
-  for (std::size_t r = 0; r < modes_.size(); ++r) {
-    FourierSeries q(more[r], result_.motion.q.num_harmonics());
-    q.c.topRows(modes_[r]) = result_.motion.q.c.middleRows(exact_->first_mode(r), modes_[r]);
-    start.push_back(std::move(q));
+  for (std::size_t r = 0; r < exact.rods().size(); ++r) {
+    const auto& [link, I] = exact.rods()[r];
+    rods.push_back({link, more_modes(I)});
+    start.emplace_back(more_modes(I), motion.q.num_harmonics());
+    start.back().c.topRows(I) = motion.q.c.middleRows(exact.first_mode(r), I);
   }
-  MotionOptions options = motion_options_;
-  options.turns = options_.turns;
-  const PeriodicMotion motion = solve_periodic_motion(exact_system(finer), speed_, stacked(start), options);
-  if (motion.status != MotionStatus::converged && motion.status != MotionStatus::not_reached) return std::nullopt;
+  const auto finer = std::make_shared<const ExactModel>(exact.linkage(), rods);
+  options.turns = motion.turns;
+  const PeriodicMotion found = solve_periodic_motion(exact_system(finer), speed, stacked(start), options);
+  if (found.status != MotionStatus::converged && found.status != MotionStatus::not_reached) return std::nullopt;
   std::vector<FourierSeries> q;
-  for (std::size_t r = 0; r < more.size(); ++r)
-    q.emplace_back(Eigen::MatrixXcd(motion.q.c.middleRows(finer->first_mode(r), more[r])));
+  for (std::size_t r = 0; r < rods.size(); ++r)
+    q.emplace_back(Eigen::MatrixXcd(found.q.c.middleRows(finer->first_mode(r), rods[r].num_modes)));
   return q;
+}
+
+std::optional<std::vector<FourierSeries>> MotionFinder::with_more_modes() const {
+  return motion_with_more_modes(*exact_, speed_, result_.motion, motion_options_);
 }
 
 std::shared_ptr<const ExactModel> MotionFinder::with_modes(const std::vector<Index>& modes) const {

@@ -77,6 +77,11 @@ class MotionFinder {
   MotionOptions motion_options_;
 };
 
+// A motion of this model at this speed once more with more modes of every rod; by rod. Empty where none is found.
+[[nodiscard]] std::optional<std::vector<FourierSeries>> motion_with_more_modes(const ExactModel& exact, double speed,
+                                                                               const PeriodicMotion& motion,
+                                                                               MotionOptions options);
+
 // Rows of the rods one above the other.
 [[nodiscard]] FourierSeries stacked(const std::vector<FourierSeries>& q);
 

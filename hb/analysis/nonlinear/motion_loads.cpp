@@ -18,10 +18,8 @@ std::optional<MachineLoads> machine_loads(const Linkage& linkage, const Nonlinea
     loads.shaking_force_error = result.frame_errors->force;
     loads.shaking_moment_error = result.frame_errors->moment;
   }
-  loads.drive = drive_of(result.forces->torque, result.speed, result.turns);
-  loads.drive_rigid = drive_of(result.forces->torque_rigid, result.speed, result.turns);
   loads.inertia = crank_inertia(linkage);
-  if (loads.inertia > 0) loads.speed_fluctuation = speed_fluctuation(loads.drive, loads.inertia, result.speed);
+  add_drive(loads, *result.forces, result.speed, result.turns, *result.force_errors);
   return loads;
 }
 

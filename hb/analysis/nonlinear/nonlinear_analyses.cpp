@@ -22,6 +22,18 @@ NonlinearSteady nonlinear_steady(const Scene& scene, const Request& request, con
   return {nonlinear_steady(*model, speed.omega, settings, options), speed, settings, model};
 }
 
+std::vector<NonlinearBand> nonlinear_bands(const Scene& scene, const Request& request, const NonlinearOptions& options,
+                                           const std::vector<BandRequest>& bands) {
+  std::vector<NonlinearBand> found;
+  for (const BandRequest& band : bands) {
+    const auto at = [&](double factor) {
+      return nonlinear_steady(scaled_scene(scene, band.parameter, factor), request, options);
+    };
+    found.push_back({band, at(band.from), at(band.to)});
+  }
+  return found;
+}
+
 NonlinearAlong nonlinear_sweep(const SceneFamily& family, const SweepRequest& request,
                                const NonlinearSweepOptions& options, Work& work) {
   Sweep linear = sweep(family, request, work);

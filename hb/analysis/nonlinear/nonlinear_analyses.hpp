@@ -10,6 +10,7 @@
 #include "hb/analysis/nonlinear/nonlinear_check.hpp"
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
 #include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
+#include "hb/analysis/sensitivity_band.hpp"
 
 namespace hb {
 
@@ -21,6 +22,16 @@ struct NonlinearSteady : NonlinearResult {
 };
 [[nodiscard]] NonlinearSteady nonlinear_steady(const Scene& scene, const Request& request = {},
                                                const NonlinearOptions& options = {});
+
+// The same with the links' numbers at both ends of a band, without slopes.
+struct NonlinearBand {
+  BandRequest asked;
+  NonlinearSteady low, high;
+};
+// Throws RequestError.
+[[nodiscard]] std::vector<NonlinearBand> nonlinear_bands(const Scene& scene, const Request& request,
+                                                         const NonlinearOptions& options,
+                                                         const std::vector<BandRequest>& bands);
 
 // The linear sweep and the branches over the same values.
 struct NonlinearAlong {

@@ -110,7 +110,10 @@ void add_rods(const SceneModel& model, const ExactModel& exact, const std::optio
       rod.shape = rod_shape(body, coefficients, base, rod.q);
       bend(rod.shape->bending_moment, rod.q, body.length);
       if (rod.cut) rod.peak_errors = peak_errors(body, *rod.shape, rod.q, rod.error_bound, *rod.cut);
-      rod.stress = stresses.own->largest(r, coefficients, rod.shape->bending_moment.max_abs);
+      std::optional<double> moment_error;
+      if (rod.peak_errors) moment_error = rod.peak_errors->bending_moment;
+      rod.stress =
+          stresses.own->largest(r, coefficients, rod.shape->bending_moment.max_abs, moment_error, stresses.better);
       rod.cycle = bent_cycle(body, *stresses.own, r, coefficients, I, result.turns, stresses.better);
       if (rod.cycle) rod.envelope = stress_envelope(body, stresses.own->field(r, coefficients), envelope_points);
     }
@@ -127,8 +130,10 @@ std::vector<SliderMotion> sliders_of(const Linkage& linkage, const FourierSeries
   std::vector<SliderMotion> sliders;
   for (const Dyad& dyad : linkage.dyads)
     if (const auto* slider = std::get_if<Slider>(&dyad.closing))
-      sliders.push_back(
-          {slider->name, FourierSeries(Eigen::MatrixXcd(positions.c.row(static_cast<Index>(sliders.size())))), base});
+      sliders.push_back({slider->name,
+                         FourierSeries(Eigen::MatrixXcd(positions.c.row(static_cast<Index>(sliders.size())))),
+                         base,
+                         {HUGE_VAL, HUGE_VAL, HUGE_VAL}});
   return sliders;
 }
 
@@ -186,6 +191,8 @@ void add_force_errors(const ExactModel& exact, const std::vector<BetterMotion>& 
   result.frame_errors = FrameErrors{};
   const bool finer = result.motion.q_finer.c.size() > 0;
   if (!finer) result.force_errors = {HUGE_VAL, HUGE_VAL, 0, 0}, result.frame_errors = {HUGE_VAL, HUGE_VAL};
+  if (finer)
+    for (SliderMotion& slider : result.sliders) slider.errors = {};
   for (std::size_t k = 0; k < better.size(); ++k) {
     const ForceSamples there = samples_of(better[k].exact, better[k].q);
     constexpr double safety = 2;
@@ -198,6 +205,13 @@ void add_force_errors(const ExactModel& exact, const std::vector<BetterMotion>& 
     const Eigen::Matrix3Xd frame = safety * (there.frame - here.frame);
     result.frame_errors->force += frame.topRows(2).colwise().norm().maxCoeff();
     result.frame_errors->moment += frame.row(2).cwiseAbs().maxCoeff();
+    if (result.sliders.empty()) continue;
+    const FourierSeries moved = fourier::analyse(safety * (there.sliders - here.sliders));
+    for (std::size_t s = 0; s < result.sliders.size(); ++s)
+      for (int order = 0; order < 3; ++order)
+        result.sliders[s].errors[static_cast<std::size_t>(order)] +=
+            std::pow(result.speed / result.turns, order) *
+            fourier::max_abs(fourier::derivative(moved, order), static_cast<Index>(s)).value;
   }
 }
 
@@ -339,8 +353,8 @@ NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Se
 }
 
 NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
-                                 const std::optional<Stability>& stability, double tolerance,
-                                 const Settings& settings) {
+                                 const std::optional<Stability>& stability, double tolerance, const Settings& settings,
+                                 const std::function<bool()>& stop) {
   NonlinearResult result;
   result.speed = motion.speed;
   result.turns = motion.turns;
@@ -354,8 +368,10 @@ NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& 
   std::vector<ExactModel::Rod> modes;
   for (const RodModel& rod : model.rods) modes.push_back({rod.link, rod.system.num_modes()});
   const ExactModel exact(*model.linkage(), modes);
-  const std::vector<BetterMotion> better = better_motions(exact, motion, std::nullopt);
-  add_rods(model, exact, std::nullopt, better, result);
+  const MotionOptions options{.tolerance = std::max(tolerance, least_motion_tolerance), .stop = stop};
+  const std::optional<std::vector<FourierSeries>> finer = motion_with_more_modes(exact, motion.speed, motion, options);
+  const std::vector<BetterMotion> better = better_motions(exact, motion, finer);
+  add_rods(model, exact, finer, better, result);
   if (settings.only.stability) result.stability = stability;
   if (settings.only.reactions) {
     add_forces(exact, result);

@@ -95,10 +95,11 @@ void require_nonlinear(const SceneModel& model, int turns);
 [[nodiscard]] NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                                const NonlinearOptions& options = {});
 
-// A motion that is known already, solved to `tolerance` at its speed, as such an answer: shape, forces and their errors
-// of this motion alone; cut and other motions, which take further motions, are left out.
+// A motion that is known already, solved to `tolerance` at its speed, as such an answer; other motions, which take
+// further searches, are left out. `stop`: as of NonlinearOptions; without the motion with more modes errors of the cut
+// are missing.
 [[nodiscard]] NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,
                                                const std::optional<Stability>& stability, double tolerance,
-                                               const Settings& settings);
+                                               const Settings& settings, const std::function<bool()>& stop = {});
 
 }  // namespace hb

@@ -341,10 +341,10 @@ class Sweeper {
         const ScenePlace place = scene_.at(point.x);
         if (!place.model) continue;
         const NonlinearResult answer =
-            nonlinear_answer(*place.model, *point.motion, std::nullopt, result_.tolerance, settings);
+            nonlinear_answer(*place.model, *point.motion, std::nullopt, result_.tolerance, settings, asked_.stop);
         for (const NonlinearRod& rod : answer.rods)
-          point.loads.push_back(
-              {rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, *rod.stress, rod.cycle});
+          point.loads.push_back({rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, rod.peak_errors,
+                                 *rod.stress, rod.cycle});
       }
     result_.stages.push_back({"shape and stress of the bent rods", watch.seconds(), ""});
   }

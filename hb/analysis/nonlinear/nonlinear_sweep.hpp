@@ -19,8 +19,9 @@ namespace hb {
 // Of a bent rod over the motion, as NonlinearRod has them.
 struct BentLoads {
   double deflection = 0, bending_moment = 0;
+  std::optional<PeakErrors> errors;  // of both; empty: no motion with more modes was found
   RodStress stress;
-  std::optional<StressCycle> cycle;  // with a section; the error without that of the modes left out
+  std::optional<StressCycle> cycle;  // with a section
 };
 
 struct NonlinearPoint {

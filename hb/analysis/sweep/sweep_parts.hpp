@@ -14,8 +14,9 @@ void visit_range(Visit& visit, TurnRange& range) {
 
 template <class Visit>
 void visit_stress(Visit& visit, StressPoint& stress) {
-  for (double* value : {&stress.axial, &stress.bending, &stress.max_abs, &stress.mean, &stress.amplitude, &stress.x,
-                        &stress.crank_angle, &stress.error, &stress.yield_safety_error, &stress.fatigue_safety_error})
+  for (double* value : {&stress.axial, &stress.bending, &stress.axial_error, &stress.bending_error, &stress.max_abs,
+                        &stress.mean, &stress.amplitude, &stress.x, &stress.crank_angle, &stress.error,
+                        &stress.yield_safety_error, &stress.fatigue_safety_error})
     visit(*value);
   visit_if_there(visit, stress.yield_safety, visit);
   visit_if_there(visit, stress.fatigue_safety, visit);
@@ -31,6 +32,10 @@ void visit_machine(Visit& visit, MachinePoint& machine) {
                         &drive.smallest_power, &drive.energy_fluctuation})
     visit(*value);
   visit_if_there(visit, machine.speed_fluctuation, visit);
+  visit_if_there(visit, machine.speed_fluctuation_error, visit);
+  for (double* value : {&machine.bearing_error, &machine.shaking_force_error, &machine.shaking_moment_error,
+                        &machine.torque_error, &machine.power_error, &machine.energy_error})
+    visit(*value);
 }
 
 template <class Visit>
@@ -50,7 +55,10 @@ void visit_point(Visit& visit, SweepPoint& point) {
     visit_elements(visit, rod.max_abs, visit);
     visit_if_there(visit, rod.deflection, visit);
     visit_if_there(visit, rod.bending_moment, visit);
+    visit_if_there(visit, rod.deflection_error, visit);
+    visit_if_there(visit, rod.bending_moment_error, visit);
     visit_if_there(visit, rod.buckling_share, visit);
+    visit_if_there(visit, rod.buckling_share_error, visit);
     visit_if_there(visit, rod.strain, visit);
     visit_if_there(visit, rod.stress, [&](StressPoint& stress) { visit_stress(visit, stress); });
     visit_if_there(visit, rod.theory_error, visit);
@@ -61,6 +69,9 @@ void visit_point(Visit& visit, SweepPoint& point) {
   visit_elements(visit, point.joints_rigid, [&](TurnRange& range) { visit_range(visit, range); });
   visit_if_there(visit, point.torque, [&](TurnRange& range) { visit_range(visit, range); });
   visit_if_there(visit, point.torque_rigid, [&](TurnRange& range) { visit_range(visit, range); });
+  visit_if_there(visit, point.force_errors, [&](ForceErrors& errors) {
+    for (double* value : {&errors.force, &errors.torque, &errors.force_cut, &errors.torque_cut}) visit(*value);
+  });
   visit_if_there(visit, point.machine, [&](MachinePoint& machine) { visit_machine(visit, machine); });
 }
 

@@ -25,6 +25,8 @@ StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
   StressPoint point;
   point.axial = stress.axial;
   point.bending = stress.bending;
+  point.axial_error = stress.axial_error;
+  point.bending_error = stress.bending_error.value_or(HUGE_VAL);
   point.x = cycle.x;
   point.crank_angle = cycle.crank_angle;
   point.max_abs = cycle.max_abs;
@@ -42,27 +44,68 @@ StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
   return point;
 }
 
-// The response with more modes, for the error of the stress: what that adds is not seen below this part of it.
+// The response with more modes, for errors by comparison. Where q is accurate, what more modes add is not seen below
+// `accuracy` of it; else it is so much more accurate that the difference shows the error of q, whose highest harmonics
+// count most in joint forces. Empty where there is none.
 FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings) {
-  constexpr double accuracy = 1e-6;
+  constexpr double accuracy = 1e-6, better = 1e-2;
   SteadyOptions options = response_options(settings);
-  options.tolerance = std::max(options.tolerance, accuracy);
+  const bool accurate = options.tolerance <= better * accuracy;
+  options.tolerance = accurate ? accuracy : std::min(accuracy, better * options.tolerance);
   SteadyState state = solve_rod(rod.finer, comparison_modes(rod.num_modes), speed, options);
   return state.status == SteadyStatus::singular ? FourierSeries() : std::move(state.q);
 }
 
-MachinePoint machine_point(const MachineLoads& loads) {
+MachinePoint machine_point(const MachineLoads& loads, double speed) {
   MachinePoint point;
   for (const BearingLoad& bearing : loads.bearings) point.bearings.push_back(bearing.elastic.value);
   point.shaking_force = loads.shaking_force.value;
   point.shaking_moment = turn_range(loads.frame.elastic, 2);
   point.drive = loads.drive;
   point.speed_fluctuation = loads.speed_fluctuation;
+  point.speed_fluctuation_error = loads.speed_fluctuation_error;
+  point.bearing_error = loads.bearing_error;
+  point.shaking_force_error = loads.shaking_force_error;
+  point.shaking_moment_error = loads.shaking_moment_error;
+  point.torque_error = loads.torque_error;
+  point.power_error = loads.power_error(speed);
+  point.energy_error = loads.energy_error;
   return point;
 }
 
+// Periodic responses of one rod: as asked for, and with more modes where the error of the cut is looked at.
+struct Responses {
+  FourierSeries q, finer;
+};
+
+// Deflection, bending moment and stress with their errors.
+void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, double speed,
+               const Responses& responses) {
+  const Body& link = *body_at(*model.linkage(), rod.link);
+  const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
+  const auto& [q, finer] = responses;
+  const RodShape shape = rod_shape(link, coefficients, speed, q);
+  point.deflection = shape.deflection.max_abs;
+  point.bending_moment = shape.bending_moment.max_abs;
+  const bool compared = finer.c.size() > 0;
+  if (compared) {
+    const PeakErrors errors =
+        peak_errors(link, shape, q, point.error_bound, cut_error(link, coefficients, speed, q, finer));
+    point.deflection_error = errors.deflection;
+    point.bending_moment_error = errors.bending_moment;
+  }
+  const RodStress stress =
+      rod_stress(link, coefficients, model.coefficients.tail, speed, *point.bending_moment, point.bending_moment_error);
+  point.buckling_share = stress.buckling_share();
+  point.buckling_share_error = stress.buckling_share_error();
+  point.strain = stress.strain;
+  if (stress.height_known)
+    point.stress = stress_point(
+        stress, stress_cycle(link, coefficients, speed, q, finer, compared ? point.error_bound : HUGE_VAL));
+}
+
 RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
-                     const Only& only, FourierSeries& q) {
+                     const Only& only, Responses& responses) {
   RodPoint point;
   if (wants_steady(only)) {
     SteadyState state = solve_rod(rod.system, rod.num_modes, speed, response_options(settings));
@@ -73,22 +116,9 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     if (state.status != SteadyStatus::singular) {
       for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
         point.max_abs.push_back(fourier::max_abs(state.q, i).value);
-      if (only.shape && rod.reported) {
-        const Body& link = *body_at(*model.linkage(), rod.link);
-        const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
-        const RodShape shape = rod_shape(link, coefficients, speed, state.q);
-        point.deflection = shape.deflection.max_abs;
-        point.bending_moment = shape.bending_moment.max_abs;
-        const RodStress stress = rod_stress(link, coefficients, speed, *point.bending_moment);
-        point.buckling_share = stress.buckling_share();
-        point.strain = stress.strain;
-        if (stress.height_known) {
-          const FourierSeries finer = with_more_modes(rod, speed, settings);
-          point.stress = stress_point(stress, stress_cycle(link, coefficients, speed, state.q, finer,
-                                                           finer.c.size() > 0 ? state.error_bound : HUGE_VAL));
-        }
-      }
-      q = std::move(state.q);
+      responses.q = std::move(state.q);
+      if (rod.finer.num_modes() > 0) responses.finer = with_more_modes(rod, speed, settings);
+      if (only.shape && rod.reported) add_shape(point, model, rod, speed, responses);
     }
   }
   if (only.stability) {  // of every rod: the mechanism is stable where all are
@@ -105,10 +135,21 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   return point;
 }
 
-JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::vector<FourierSeries>& q) {
-  std::vector<LinkResponse> responses;
-  for (std::size_t r = 0; r < q.size(); ++r) responses.push_back({model.rods[r].link, q[r]});
+JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::vector<Responses>& solved) {
+  std::vector<LinkResponse> responses, more_modes;
+  double response_error = 0;
+  bool compared = true;
+  for (std::size_t r = 0; r < solved.size(); ++r) {
+    const int link = model.rods[r].link;
+    responses.push_back({link, solved[r].q});
+    more_modes.push_back({link, solved[r].finer});
+    compared = compared && solved[r].finer.c.size() > 0;
+    response_error = std::max(response_error, point.rods[r].error_bound);
+  }
   JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
+  point.force_errors = compared || solved.empty()
+                           ? force_errors(*model.linkage(), point.speed, forces, response_error, {}, more_modes)
+                           : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   for (const JointForce& joint : forces.joints) {
     for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
       point.joints.push_back(turn_range(joint.elastic, c));
@@ -117,17 +158,18 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
   }
   point.torque = turn_range(forces.torque, 0);
   point.torque_rigid = turn_range(forces.torque_rigid, 0);
-  point.machine = machine_point(machine_loads(*model.linkage(), point.speed, forces, responses, std::nullopt));
+  point.machine =
+      machine_point(machine_loads(*model.linkage(), point.speed, forces, responses, *point.force_errors), point.speed);
   return forces;
 }
 
 // `forces` may be null.
-void add_theory(SweepPoint& point, const SceneModel& model, const std::vector<FourierSeries>& q,
+void add_theory(SweepPoint& point, const SceneModel& model, const std::vector<Responses>& solved,
                 const JointForces* forces, const Only& only) {
   std::vector<LinearRod> linear;
-  for (std::size_t r = 0; r < q.size(); ++r) linear.push_back({&model.rods[r].system, &q[r]});
+  for (std::size_t r = 0; r < solved.size(); ++r) linear.push_back({&model.rods[r].system, &solved[r].q});
   const TheoryErrors errors = theory_errors(*model.exact, point.speed, linear, forces);
-  for (std::size_t r = 0; r < q.size(); ++r) {
+  for (std::size_t r = 0; r < solved.size(); ++r) {
     point.rods[r].theory_error = errors.rods[r].q;
     if (only.shape) point.rods[r].deflection_theory_error = errors.rods[r].deflection;
   }
@@ -148,13 +190,13 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
   if (!place.model) return point;
   const Only only = available(*place.model, wanted);
   const std::vector<RodModel>& rods = place.model->rods;
-  std::vector<FourierSeries> q(rods.size());
+  std::vector<Responses> solved(rods.size());
   for (std::size_t r = 0; r < rods.size(); ++r)
-    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only, q[r]));
+    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only, solved[r]));
   std::optional<JointForces> forces;
-  if (only.reactions && std::ranges::none_of(q, [](const FourierSeries& series) { return series.c.size() == 0; }))
-    forces = add_forces(point, *place.model, q);
-  if (place.model->exact) add_theory(point, *place.model, q, forces ? &*forces : nullptr, only);
+  if (only.reactions && std::ranges::none_of(solved, [](const Responses& rod) { return rod.q.c.size() == 0; }))
+    forces = add_forces(point, *place.model, solved);
+  if (place.model->exact) add_theory(point, *place.model, solved, forces ? &*forces : nullptr, only);
   return point;
 }
 

@@ -19,9 +19,10 @@ struct TurnRange {
 // StressCycle and RodStress in short, scene's units; safeties infinite without stress.
 struct StressPoint {
   double axial = 0, bending = 0;  // the largest of each, at their own places and times
+  double axial_error = 0, bending_error = 0;
   double max_abs = 0, mean = 0, amplitude = 0;
   double x = 0, crank_angle = 0;  // of max_abs; rad
-  double error = 0;  // of each of these, an estimate; infinite where no more modes were looked at
+  double error = 0;  // of these four, an estimate; infinite where no more modes were looked at
   std::optional<double> yield_safety, fatigue_safety;
   double yield_safety_error = 0, fatigue_safety_error = 0;
 };
@@ -32,7 +33,9 @@ struct MachinePoint {
   double shaking_force = 0;  // largest resultant
   TurnRange shaking_moment;
   Drive drive;
-  std::optional<double> speed_fluctuation;
+  std::optional<double> speed_fluctuation, speed_fluctuation_error;
+  double bearing_error = 0, shaking_force_error = 0, shaking_moment_error = 0, torque_error = 0, power_error = 0;
+  double energy_error = 0;
 };
 
 struct RodPoint {
@@ -41,7 +44,8 @@ struct RodPoint {
   double error_bound = 0, resonance_distance = 0;
   std::vector<double> max_abs;  // of each q_i over the turn; empty if singular
   std::optional<double> deflection, bending_moment;  // largest over rod and turn
-  std::optional<double> buckling_share, strain;  // RodStress, beside them
+  std::optional<double> deflection_error, bending_moment_error;  // PeakErrors; empty: no more modes were looked at
+  std::optional<double> buckling_share, buckling_share_error, strain;  // RodStress, beside them
   std::optional<StressPoint> stress;  // with a section
   // TheoryErrors::Rod::q and deflection; empty: beyond the linear theory, or not asked for.
   std::optional<double> theory_error, deflection_theory_error;
@@ -56,6 +60,7 @@ struct SweepPoint {
   std::optional<double> force_theory_error, torque_theory_error, growth_theory_error;  // TheoryErrors, where asked for
   std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
   std::optional<TurnRange> torque, torque_rigid;
+  std::optional<ForceErrors> force_errors;  // beside them
   std::optional<MachinePoint> machine;
 };
 

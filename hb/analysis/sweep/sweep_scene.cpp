@@ -12,16 +12,15 @@ std::size_t next_id() {
   return next++;
 }
 
-// The error of the cut is no part of a sweep but for stresses, of rods with a section: finer Ritz matrices of these.
+// The error of the cut is looked at where shapes or joint forces are asked for: these need finer Ritz matrices.
 std::shared_ptr<SceneModel> sweep_model(Scene scene, const Settings& settings) {
   auto model = std::make_shared<SceneModel>(make_model(std::move(scene), settings, false));
-  if (!settings.only.shape || !model->linkage()) return model;
-  for (RodModel& rod : model->rods) {
-    const Body& link = *body_at(*model->linkage(), rod.link);
-    if (rod.reported && link.elastic->section_height > 0)
-      rod.finer = ritz_system(link, model->coefficients.rods[static_cast<std::size_t>(rod.coefficients)],
+  if (!model->linkage()) return model;
+  for (RodModel& rod : model->rods)
+    if (settings.only.reactions || (settings.only.shape && rod.reported))
+      rod.finer = ritz_system(*body_at(*model->linkage(), rod.link),
+                              model->coefficients.rods[static_cast<std::size_t>(rod.coefficients)],
                               comparison_modes(rod.num_modes));
-  }
   return model;
 }
 

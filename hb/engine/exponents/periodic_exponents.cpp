@@ -1,12 +1,14 @@
 #include "hb/engine/exponents/periodic_exponents.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "hb/engine/exponents/exponent_summary.hpp"
 #include "hb/engine/exponents/reduced_exponents.hpp"
 #include "lib/constants.hpp"
+#include "lib/dense.hpp"
 #include "lib/fourier/fourier.hpp"
 
 namespace hb {
@@ -47,6 +49,37 @@ Coefficients series_of(const MatrixXd& samples, const VectorXd& weights) {
   return result;
 }
 
+// Of the system averaged over the period: pairs of roots of z^2 + b z + w2, ascending w2.
+struct MeanModes {
+  VectorXd w2, b;
+};
+
+// x'' + beta x' + alpha x = 0 with the means: eigenvalues of its companion matrix, real ones by two in their order.
+MeanModes mean_modes(const NormalForm& form) {
+  const Index n = form.num_modes();
+  MatrixXd companion = MatrixXd::Zero(2 * n, 2 * n);
+  const VectorXd alpha = form.alpha.rowwise().mean(), beta = form.beta.rowwise().mean();
+  companion.topRightCorner(n, n).setIdentity();
+  companion.bottomLeftCorner(n, n) = -Eigen::Map<const MatrixXd>(alpha.data(), n, n);
+  companion.bottomRightCorner(n, n) = -Eigen::Map<const MatrixXd>(beta.data(), n, n);
+  const Eigen::VectorXcd roots = dense::eigenvalues(companion);
+  std::vector<std::array<double, 2>> pairs;
+  std::vector<double> real;
+  for (Index k = 0; k < 2 * n; ++k) {
+    if (roots(k).imag() > 0) pairs.push_back({std::norm(roots(k)), -2 * roots(k).real()});
+    if (roots(k).imag() == 0) real.push_back(roots(k).real());
+  }
+  std::ranges::sort(real);
+  for (std::size_t k = 1; k < real.size(); k += 2) pairs.push_back({real[k - 1] * real[k], -real[k - 1] - real[k]});
+  std::ranges::sort(pairs);
+  MeanModes modes{VectorXd(n), VectorXd(n)};
+  for (Index i = 0; i < n; ++i) {
+    modes.w2(i) = pairs[std::size_t(i)][0];
+    modes.b(i) = pairs[std::size_t(i)][1];
+  }
+  return modes;
+}
+
 }  // namespace
 
 Stability analyse_stability(const NormalForm& form, double speed, const StabilityOptions& options,
@@ -68,11 +101,8 @@ Stability analyse_stability(const NormalForm& form, double speed, const Stabilit
   search.complete = true;
   search.kept.resize(std::size_t(n));
   std::iota(search.kept.begin(), search.kept.end(), Index(0));
-  const auto mean_diagonal = [n](const MatrixXd& samples) {
-    const VectorXd means = samples.rowwise().mean();
-    return VectorXd(means(Eigen::seqN(0, n, n + 1)));
-  };
-  name_modes(search.exponents, mean_diagonal(form.alpha), mean_diagonal(form.beta), search.kept);
+  const MeanModes modes = mean_modes(form);
+  name_modes(search.exponents, modes.w2, modes.b, search.kept);
   return summary(search, speed, options.tolerance);
 }
 

@@ -53,6 +53,18 @@ class Stability:
     def exponent_errors(self) -> NDArray[Any]:
         """Error of each exponent, 1/time. Read-only."""
     @property
+    def frequencies_hz(self) -> NDArray[Any]:
+        """Frequency of each exponent, unfolded, Hz. Read-only."""
+    @property
+    def frequencies_hz_errors(self) -> NDArray[Any]:
+        """Their errors, Hz. Read-only."""
+    @property
+    def damping_ratios(self) -> NDArray[Any]:
+        """-Re/|exponent| of each at its frequency. Read-only."""
+    @property
+    def damping_ratio_errors(self) -> NDArray[Any]:
+        """Their errors. Read-only."""
+    @property
     def growth_rate(self) -> float:
         """Largest real part, 1/time: above 0 disturbances grow."""
     @property
@@ -219,6 +231,9 @@ class Rod:
 class Force:
     """A joint's force, or the driving torque, over the turn, in the scene's units."""
 
+    @property
+    def error(self) -> Optional[float]:
+        """Estimated error of the elastic values, modes left out included; None: not known."""
     def elastic(self, angle: ArrayLike) -> Any:
         """With the links' elasticity: (2, len(angle)); guides and torque (len(angle),)."""
     def rigid(self, angle: ArrayLike) -> Any:

@@ -19,6 +19,8 @@ class Range:
 
     min: Any
     max: Any
+    error: Any = None
+    """Of both; None: see where the range belongs to."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,9 @@ class AxialForce:
     """pi^2 EJ/l^2, of the rod pinned at both ends."""
     buckling_share: Any
     """compression/buckling_load."""
+    error: Any = None
+    """Of tension and compression."""
+    buckling_share_error: Any = None
 
 
 @dataclass(frozen=True)
@@ -53,8 +58,11 @@ class Stress:
 
     axial: Any = None
     """Largest |N|/F."""
+    axial_error: Any = None
     bending: Any = None
     """Largest |M| e/J."""
+    bending_error: Any = None
+    """An estimate, from the modes left out; None where they were not looked at."""
     height_known: Optional[bool] = None
     """Whether the scene gives a `section`; else e is that of a rectangle, and what follows is None."""
     max_abs: Any = None
@@ -71,7 +79,7 @@ class Stress:
     amplitude_x: Any = None
     amplitude_side: Optional[int] = None
     error: Any = None
-    """Of each of these stresses, an estimate."""
+    """Of max_abs, mean and amplitude, an estimate."""
     yield_safety: Any = None
     """S_y/max_abs, with the key `yield`. None (sweeps: NaN, or infinite stresses' absence) where there is none."""
     yield_safety_error: Any = None
@@ -99,12 +107,14 @@ class NearestResonance:
 
 @dataclass(frozen=True)
 class Bearing:
-    """Length of a joint's force. Relative error: joints_error + joints_modes_error, of the largest of all joints."""
+    """Length of a joint's force."""
 
     max: Any
     crank_angle: Any = None
     mean: Any = None
     rms: Any = None
+    error: Any = None
+    """Of these lengths, from joints_error + joints_modes_error."""
     max_rigid: Any = None
     crank_angle_rigid: Any = None
 
@@ -130,12 +140,14 @@ class Frame:
 
 @dataclass(frozen=True)
 class Power:
-    """Power of the drive, torque times speed. Relative error: torque_error + torque_modes_error."""
+    """Power of the drive, torque times speed."""
 
     min: Any
     max: Any
     mean: Any
     rms: Any
+    error: Any = None
+    """Of each of these."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +161,7 @@ class Flywheel:
     inertia: Any = None
     """The crank's, about its pivot."""
     energy_fluctuation_error: Any = None
-    """Of the energy; None of sweeps."""
+    speed_fluctuation_error: Any = None
 
 
 @dataclass(frozen=True)
@@ -169,6 +181,8 @@ class Torque:
     max: Any
     mean: Any = None
     rms: Any = None
+    error: Any = None
+    """Of each of these."""
     rigid: Optional["Torque"] = None
     """The same of the rigid mechanism."""
 

@@ -79,6 +79,21 @@ class SweepRod:
         return floats(self._list("deflection"))
 
     @cached_property
+    def deflection_error(self) -> "NDArray[Any]":
+        """Estimated error of the deflection, modes left out included, (points,)."""
+        return floats(self._list("deflection_error"))
+
+    @cached_property
+    def bending_moment_error(self) -> "NDArray[Any]":
+        """Estimated error of the bending moment, modes left out included, (points,)."""
+        return floats(self._list("bending_moment_error"))
+
+    @cached_property
+    def buckling_share_error(self) -> "NDArray[Any]":
+        """Error of buckling_share, (points,)."""
+        return floats(self._list("buckling_share_error"))
+
+    @cached_property
     def bending_moment(self) -> "NDArray[Any]":
         """Largest bending moment over rod and turn, (points,)."""
         return floats(self._list("bending_moment"))
@@ -281,23 +296,43 @@ class Sweep(Result):
 
         return made(Torque, self._document.get("torque"), floats)
 
-    def _theory(self, key: str) -> "NDArray[Any]":
+    def _of_mechanism(self, key: str) -> "NDArray[Any]":
         return floats(self._document.get(key) or [None] * len(self))
+
+    @cached_property
+    def joints_error(self) -> "NDArray[Any]":
+        """Estimated error of joint forces for the modes kept, relative to the largest, (points,); NaN: not computed."""
+        return self._of_mechanism("joints_error")
+
+    @cached_property
+    def torque_error(self) -> "NDArray[Any]":
+        """The same of the torque, (points,)."""
+        return self._of_mechanism("torque_error")
+
+    @cached_property
+    def joints_modes_error(self) -> "NDArray[Any]":
+        """Estimated error of joint forces from the modes left out, relative to the largest, (points,)."""
+        return self._of_mechanism("joints_modes_error")
+
+    @cached_property
+    def torque_modes_error(self) -> "NDArray[Any]":
+        """The same of the torque, (points,)."""
+        return self._of_mechanism("torque_modes_error")
 
     @cached_property
     def joints_theory_error(self) -> "NDArray[Any]":
         """What the linear theory leaves out of the joint forces, of the largest, (points,); NaN: none, or not computed."""
-        return self._theory("joints_theory_error")
+        return self._of_mechanism("joints_theory_error")
 
     @cached_property
     def torque_theory_error(self) -> "NDArray[Any]":
         """The same of the driving torque, (points,)."""
-        return self._theory("torque_theory_error")
+        return self._of_mechanism("torque_theory_error")
 
     @cached_property
     def growth_theory_error(self) -> "NDArray[Any]":
         """What the nonlinear correction changes of the mechanism's growth rate, 1/time, (points,)."""
-        return self._theory("growth_theory_error")
+        return self._of_mechanism("growth_theory_error")
 
     @cached_property
     def bearings(self) -> "dict[str, Bearing]":

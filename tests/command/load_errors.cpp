@@ -1,0 +1,131 @@
+// Errors beside what a machine's designer reads: they hold, of one speed, along a sweep and of a bent motion.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/run_command.hpp"
+
+namespace {
+
+using Json = nlohmann::json;
+
+class LoadErrors : public CommandTest {
+ protected:
+  Json document(const std::string& arguments) const {
+    const CommandResult result = hb("steady " + arguments + " --json");
+    EXPECT_EQ(result.status, 0) << result.err;
+    return Json::parse(result.out, nullptr, false);
+  }
+};
+
+// Of everything that both documents have at `path`, few modes against many: no further off than the error says, and the
+// error no larger than a tenth.
+void expect_covered(const Json& few, const Json& many, const std::string& path, const std::string& error) {
+  const Json::json_pointer at("/" + path), of("/" + error);
+  ASSERT_TRUE(few.contains(at)) << path;
+  ASSERT_TRUE(few.contains(of)) << error;
+  const auto check = [&](const Json& a, const Json& b, const Json& e) {
+    EXPECT_LE(std::abs(a.get<double>() - b.get<double>()), e.get<double>()) << path;
+    EXPECT_GE(e.get<double>(), 0) << path;
+  };
+  if (!few[at].is_array()) return check(few[at], many[at], few[of]);
+  for (std::size_t k = 0; k < few[at].size(); ++k) check(few[at][k], many[at][k], few[of][k]);
+}
+
+void expect_covered_loads(const Json& few, const Json& many) {
+  for (const auto& [name, bearing] : few["bearings"].items()) {
+    const std::string path = "bearings/" + name;
+    expect_covered(few, many, path + "/max", path + "/error");
+  }
+  for (const char* key : {"min", "max", "mean", "rms"}) {
+    expect_covered(few, many, std::string("torque/") + key, "torque/error");
+    expect_covered(few, many, std::string("power/") + key, "power/error");
+  }
+  expect_covered(few, many, "frame/max", "frame/force_error");
+  for (const char* key : {"min", "max"})
+    expect_covered(few, many, std::string("frame/moment/") + key, "frame/moment_error");
+  for (const char* key : {"flywheel/energy_fluctuation", "flywheel/speed_fluctuation"})
+    expect_covered(few, many, key, std::string(key) + "_error");
+  for (const char* key : {"axial", "bending"})
+    expect_covered(few, many, std::string("rods/rod/stress/") + key, std::string("rods/rod/stress/") + key + "_error");
+}
+
+TEST_F(LoadErrors, EveryLoadHasAnErrorThatHolds) {
+  const std::string about = scene("slider_crank_units") + " --rpm ";
+  const auto sweep = [&](const char* more) {
+    return Json::parse(hb("sweep " + about + "1000:3000:500 --no-search --json --modes " + more).out);
+  };
+  for (const char* few : {"1", "2", "5 --tol 1e-3"}) {
+    const Json here = sweep(few), truth = sweep("20 --tol 1e-12");
+    expect_covered_loads(here, truth);
+    for (const char* key : {"deflection", "bending_moment", "buckling_share"})
+      expect_covered(here, truth, std::string("rods/rod/") + key, std::string("rods/rod/") + key + "_error");
+    EXPECT_LT(here["bearings"]["rod.0"]["error"][2].get<double>(),
+              0.05 * here["bearings"]["rod.0"]["max"][2].get<double>());
+    EXPECT_LT(here["rods"]["rod"]["deflection_error"][2].get<double>(),
+              0.05 * here["rods"]["rod"]["deflection"][2].get<double>());
+  }
+  const Json one = document(about + "2000 --modes 2"), truth = document(about + "2000 --modes 20");
+  expect_covered_loads(one, truth);
+  for (const char* key : {"tension", "compression"})
+    expect_covered(one, truth, std::string("rods/rod/axial_force/") + key, "rods/rod/axial_force/error");
+  for (const char* key : {"position", "velocity", "acceleration"})
+    for (const char* end : {"min", "max"})
+      expect_covered(one, truth, std::string("sliders/piston/") + key + "/" + end,
+                     std::string("sliders/piston/") + key + "/error");
+  const Json bent = document(about + "2000 --modes 2 --theory nonlinear"),
+             finer = document(about + "2000 --modes 6 --theory nonlinear");
+  expect_covered_loads(bent, finer);
+  EXPECT_LT(bent["rods"]["rod"]["axial_force"]["error"], bent["rods"]["rod"]["axial_force"]["compression"]);
+}
+
+// The motion of the values asked for, of a branch that has no fold.
+TEST_F(LoadErrors, AlongABranchCoverTheModesLeftOut) {
+  const auto rod_of = [&](const char* modes) {
+    const Json branch =
+        Json::parse(hb("sweep " + scene("slider_crank_units") +
+                       " --rpm 1000:3000:1000 --only steady,shape --theory nonlinear --json --modes " + modes)
+                        .out)["branches"][0];
+    Json asked;
+    for (std::size_t k = 0; k < branch["asked"].size(); ++k) {
+      if (!branch["asked"][k]) continue;
+      for (const auto& [key, list] : branch["rods"]["rod"].items())
+        if (key != "stress" && key != "max_abs") asked[key].push_back(list[k]);
+      for (const auto& [key, list] : branch["rods"]["rod"]["stress"].items()) asked["stress"][key].push_back(list[k]);
+    }
+    return asked;
+  };
+  const Json few = rod_of("1"), many = rod_of("5");
+  ASSERT_EQ(few["deflection"].size(), 3u);
+  for (const char* key : {"deflection", "bending_moment", "buckling_share", "stress/axial", "stress/bending"})
+    expect_covered(few, many, key, std::string(key) + "_error");
+  for (const char* key : {"stress/max_abs", "stress/mean", "stress/amplitude"})
+    expect_covered(few, many, key, "stress/error");
+  EXPECT_LT(few["stress"]["error"][0].get<double>(), few["stress"]["max_abs"][0].get<double>());
+}
+
+// Weakly bent the motion has the modes of the linear theory.
+TEST_F(LoadErrors, AMotionsModesHaveFrequenciesAndDampingRatios) {
+  for (const char* about : {"slider_crank_units --rpm 700 --modes 3", "six_link --rpm 150 --modes 3"}) {
+    const std::string words = about, name = words.substr(0, words.find(' ')), rest = words.substr(words.find(' '));
+    const Json linear = document(scene(name.c_str()) + rest),
+               motion = document(scene(name.c_str()) + rest + " --theory nonlinear");
+    const Json& system = motion["system"];
+    ASSERT_EQ(system["damping_ratios"].size(), system["exponents"].size()) << about;
+    std::vector<double> of_rods, of_motion;
+    for (const auto& [rod, entry] : linear["rods"].items())
+      for (const double hertz : entry["frequencies_hz"]) of_rods.push_back(hertz);
+    for (const double hertz : system["frequencies_hz"]) of_motion.push_back(hertz);
+    std::ranges::sort(of_rods);
+    std::ranges::sort(of_motion);
+    ASSERT_EQ(of_rods.size(), of_motion.size()) << about;
+    for (std::size_t k = 0; k < of_rods.size(); ++k)
+      EXPECT_NEAR(of_motion[k], of_rods[k], 0.002 * of_rods[k]) << about << " " << k;
+    const CommandResult table = hb("steady " + scene(name.c_str()) + rest + " --theory nonlinear");
+    EXPECT_NE(table.out.find("damping ratio"), std::string::npos) << table.out;
+  }
+}
+
+}  // namespace
