@@ -111,6 +111,28 @@ TEST_F(DesignPictures, MeasuredValuesAreComparedWithTheMotionWithoutLinearisatio
   EXPECT_EQ(found["measured"]["deviations"][0]["theory"], "nonlinear");
 }
 
+// All of a map that is stable everywhere was nearly one blue: half of the colours were for what does not occur.
+TEST_F(DesignPictures, AMapOfOneVerdictHasAllColoursOverWhatItHas) {
+  const std::string about =
+      "map " + scene("slider_crank_units") + " --modes 1 --y rod.section.height=15mm:25mm:3 --format svg --x rpm=";
+  ASSERT_EQ(hb(about + "500:1500:3 --out stable").status, 0);
+  const Json found = Json::parse(read(folder_ / "stable/map.json"));
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const Json& row : found["growth_rate"])
+    for (const double rate : row) low = std::min(low, rate), high = std::max(high, rate);
+  ASSERT_LT(high, 0);
+  const std::string script = read(folder_ / "stable/map.gp");
+  std::istringstream range(script.substr(script.find("set cbrange [") + 13));
+  double from = 0, to = 0;
+  char colon = 0;
+  range >> from >> colon >> to;
+  EXPECT_NEAR(from, low, 0.02 * std::abs(low)) << script;
+  EXPECT_NEAR(to, high, 0.02 * std::abs(high)) << script;
+  EXPECT_EQ(script.find("#b2182b"), std::string::npos);
+  ASSERT_EQ(hb(about + "500:1500:3 --colour tenfold --out tenfold").status, 0);
+  EXPECT_NE(read(folder_ / "tenfold/map.gp").find("time to fall tenfold"), std::string::npos);
+}
+
 TEST_F(DesignPictures, BandsOfAMotionAreTheMotionsAtTheirEnds) {
   const std::string about = scene("slider_crank_units") + " --rpm 2000 --modes 1 --theory nonlinear";
   const CommandResult result = hb("steady " + about + " --band E=0.5:1.5");

@@ -106,6 +106,35 @@ TEST_F(LoadErrors, AlongABranchCoverTheModesLeftOut) {
   EXPECT_LT(few["stress"]["error"][0].get<double>(), few["stress"]["max_abs"][0].get<double>());
 }
 
+// At each value asked for what `hb steady` says of the motion there.
+TEST_F(LoadErrors, ABranchHasTheMachineLoadsOfItsMotions) {
+  const std::string about = scene("slider_crank_units") + " --modes 2 --theory nonlinear";
+  const CommandResult result = hb("sweep " + about + " --rpm 1000:2000:500 --no-search --no-plots --out along");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json branch = Json::parse(read(folder_ / "along/sweep.json"))["branches"][0];
+  const Json one = document(about + " --rpm 1500");
+  int found = 0;
+  for (std::size_t k = 0; k < branch["x"].size(); ++k) {
+    EXPECT_EQ(branch["frame"]["max"][k].is_number(), branch["asked"][k].get<bool>());
+    if (!branch["asked"][k] || branch["x"][k] != 1500) continue;
+    ++found;
+    const auto near = [&](const Json& along, const Json& at) {
+      EXPECT_NEAR(along[k].get<double>(), at.get<double>(), 1e-6 * std::abs(at.get<double>())) << at;
+    };
+    for (const auto& [name, bearing] : one["bearings"].items()) near(branch["bearings"][name]["max"], bearing["max"]);
+    near(branch["frame"]["max"], one["frame"]["max"]);
+    near(branch["frame"]["moment"]["max"], one["frame"]["moment"]["max"]);
+    near(branch["torque"]["rms"], one["torque"]["rms"]);
+    near(branch["power"]["max"], one["power"]["max"]);
+    near(branch["flywheel"]["energy_fluctuation"], one["flywheel"]["energy_fluctuation"]);
+    EXPECT_LT(branch["bearings"]["rod.0"]["error"][k].get<double>(),
+              0.05 * branch["bearings"]["rod.0"]["max"][k].get<double>());
+  }
+  EXPECT_EQ(found, 1);
+  const std::string csv = read(folder_ / "along/branches_machine.csv");
+  EXPECT_NE(csv.find("\n1500,1,-1,"), std::string::npos) << csv;
+}
+
 // Weakly bent the motion has the modes of the linear theory.
 TEST_F(LoadErrors, AMotionsModesHaveFrequenciesAndDampingRatios) {
   for (const char* about : {"slider_crank_units --rpm 700 --modes 3", "six_link --rpm 150 --modes 3"}) {

@@ -63,6 +63,10 @@ std::vector<Figure> branch_files(const SweepScene& scene, const SweepResult& lin
   std::vector<Figure> figures;
   const CsvFile bifurcations = bifurcations_csv(scene, sweep);
   folder.write(bifurcations.name, csv_text(bifurcations));
+  if (!sweep.joints.empty()) {
+    const CsvFile machine = branches_machine_csv(scene, sweep);
+    folder.write(machine.name, csv_text(machine));
+  }
   for (std::size_t r = 0; r < sweep.rods.size() && !sweep.branches.empty(); ++r) {
     if (!sweep.reported[r]) continue;
     const CsvFile branches = branches_csv(scene, sweep, r);

@@ -14,6 +14,7 @@
 #include "tools/output/json.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_words.hpp"
 #include "tools/output/text.hpp"
@@ -160,6 +161,11 @@ Json branch_json(const SweepScene& scene, const NonlinearSweep& sweep, const Non
     rod["max_abs"] = over(points, [&](const NonlinearPoint& p) { return Json(p.max_abs[r]); });
     add_bent_loads(rod, points, r);
     json["rods"][sweep.rods[r]] = std::move(rod);
+  }
+  if (std::ranges::any_of(points, [](const NonlinearPoint& p) { return p.machine.has_value(); })) {
+    std::vector<const MachinePoint*> machine;
+    for (const NonlinearPoint& p : points) machine.push_back(p.machine ? &*p.machine : nullptr);
+    add_machine(json, sweep.joints, machine);
   }
   json["error_bound"] = over(points, [](const NonlinearPoint& p) { return number(p.error_bound); });
   json["growth_rate"] =

@@ -73,10 +73,9 @@ std::vector<const StressQuantity*> quantities_of(const std::vector<SweepPoint>& 
   return found;
 }
 
-Json of_machine(const SweepResult& result, const MachineValue& value) {
+Json of_machine(const std::vector<const MachinePoint*>& points, const MachineValue& value) {
   Json array = Json::array();
-  for (const SweepPoint& point : result.points)
-    array.push_back(point.machine ? number(value(*point.machine)) : Json(nullptr));
+  for (const MachinePoint* point : points) array.push_back(point ? number(value(*point)) : Json(nullptr));
   return array;
 }
 
@@ -134,11 +133,10 @@ struct MachineColumn {
   MachineValue value;
 };
 
-std::vector<MachineColumn> machine_columns(const SweepScene& scene, const SweepResult& result) {
+std::vector<MachineColumn> machine_columns(const SweepScene& scene, const std::vector<std::string>& names) {
   const OutputUnits units = output_units(scene.scene());
   const double watt = units.moment / scene.scene().units.time_in_s;
   std::vector<MachineColumn> columns;
-  const std::vector<std::string> names = bearing_names(result);
   for (std::size_t j = 0; j < names.size(); ++j)
     columns.push_back(
         {names[j] + " resultant [N]", [j, units](const MachinePoint& m) { return units.force * m.bearings[j]; }});
@@ -180,9 +178,15 @@ void add_stress(Json& rod, std::size_t r, const std::vector<SweepPoint>& points,
 }
 
 void add_machine(Json& document, const SweepResult& result) {
+  std::vector<const MachinePoint*> points;
+  for (const SweepPoint& point : result.points) points.push_back(point.machine ? &*point.machine : nullptr);
+  add_machine(document, bearing_names(result), points);
+}
+
+void add_machine(Json& document, const std::vector<std::string>& names,
+                 const std::vector<const MachinePoint*>& points) {
   Json& bearings = document["bearings"] = Json::object();
-  const std::vector<std::string> names = bearing_names(result);
-  const auto of = [&](const MachineValue& value) { return of_machine(result, value); };
+  const auto of = [&](const MachineValue& value) { return of_machine(points, value); };
   for (std::size_t j = 0; j < names.size(); ++j)
     bearings[names[j]] = {{"max", of([j](const MachinePoint& m) { return m.bearings[j]; })},
                           {"error", of([](const MachinePoint& m) { return m.bearing_error; })}};
@@ -274,7 +278,7 @@ void fill_stress(const RodPoint& point, double megapascal, const std::vector<std
 }
 
 CsvFile sweep_machine_csv(const SweepScene& scene, const SweepResult& result) {
-  const std::vector<MachineColumn> columns = machine_columns(scene, result);
+  const std::vector<MachineColumn> columns = machine_columns(scene, bearing_names(result));
   const std::vector<const SweepPoint*> points = all_points(result);
   CsvFile file;
   file.name = "sweep_machine.csv";
@@ -292,6 +296,30 @@ CsvFile sweep_machine_csv(const SweepScene& scene, const SweepResult& result) {
     for (std::size_t c = 0; c < columns.size(); ++c)
       row(static_cast<Eigen::Index>(c) + 1) = columns[c].value(*points[k]->machine);
   }
+  return file;
+}
+
+CsvFile branches_machine_csv(const SweepScene& scene, const NonlinearSweep& sweep) {
+  const std::vector<MachineColumn> columns = machine_columns(scene, sweep.joints);
+  CsvFile file;
+  file.name = "branches_machine.csv";
+  file.comment = {fmt::format("{}: bearings, frame and drive of the motions without linearisation along {}",
+                              scene_name(scene.scene()), scene.axis().path),
+                  std::string("at the values asked for, branch by branch; ") + verdict_numbers};
+  file.columns = {axis_label(scene), "branch", "verdict"};
+  for (const MachineColumn& column : columns) file.columns.push_back(column.name);
+  std::vector<std::vector<double>> rows;
+  for (std::size_t b = 0; b < sweep.branches.size(); ++b)
+    for (const NonlinearPoint& point : sweep.branches[b].points) {
+      if (!point.machine) continue;
+      const double verdict = point.stability ? verdict_number(point.stability->verdict) : no_number;
+      rows.push_back({point.x, static_cast<double>(b + 1), verdict});
+      for (const MachineColumn& column : columns) rows.back().push_back(column.value(*point.machine));
+    }
+  file.rows.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(file.columns.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    file.rows.row(static_cast<Eigen::Index>(k)) =
+        Eigen::Map<const Eigen::RowVectorXd>(rows[k].data(), static_cast<Eigen::Index>(rows[k].size()));
   return file;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
 #include "hb/analysis/sweep_analysis.hpp"
 #include "tools/output/csv_output.hpp"
 
@@ -14,6 +15,11 @@ namespace hb::tools {
 void add_stress(nlohmann::ordered_json& rod, std::size_t r, const std::vector<SweepPoint>& points, const Units& units);
 // Adds bearings, frame, power, flywheel to the document, mean and rms to its torque.
 void add_machine(nlohmann::ordered_json& document, const SweepResult& result);
+// The same of points with joints of these names; null where a point has none.
+void add_machine(nlohmann::ordered_json& document, const std::vector<std::string>& names,
+                 const std::vector<const MachinePoint*>& points);
+// A row for each motion at a value asked for; no row where joint forces were not.
+[[nodiscard]] CsvFile branches_machine_csv(const SweepScene& scene, const NonlinearSweep& sweep);
 
 // Lines of the table: the worst of the points and where.
 [[nodiscard]] std::string stress_rows(const SweepScene& scene, const SweepResult& result, std::size_t rod);

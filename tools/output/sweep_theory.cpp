@@ -88,7 +88,7 @@ CsvFile sweep_theory_csv(const SweepScene& scene, const SweepResult& result) {
   file.name = "sweep_theory.csv";
   file.comment = {fmt::format("{}: theory errors along {}", scene_name(scene.scene()), scene.axis().path),
                   "what the first nonlinear correction changes, of the largest of each; of the growth rate as it is; "
-                  "no number: beyond the linear theory"};
+                  "no number: beyond the linear theory; of the growth rate also with shear"};
   file.columns = {axis_label(scene)};
   for (const SweepRod& rod : result.rods) {
     file.columns.push_back(rod.name + " q");

@@ -26,9 +26,8 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
   for (const double value : measured.values(q_1)) top = std::max(top, value);
   text += "set title " +
           figure_title(scene.scene(), {sweep.rods[r], branches_words(sweep)},
-                       "motion without linearisation: solid stable, dashed unstable, dots folds" +
-                           std::string(sweep.bifurcations.empty() ? "" : ", circles bifurcations") +
-                           "; grey: linear theory") +
+                       "without linearisation: solid stable, dashed unstable, dots folds" +
+                           std::string(sweep.bifurcations.empty() ? "" : ", circles bifurcations")) +
           "\n";
   text += fmt::format(
       "set xrange [{}:{}]\nset xlabel {}\nset ylabel 'largest |q_1| [{}]'\nset yrange [0:{}]\n"

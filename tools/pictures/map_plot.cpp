@@ -68,7 +68,7 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   ColourScale result;
   result.value = per_turn ? "$4" : "$3";
   result.label = per_turn                            ? "growth exponent per turn"
-                 : colour == MapColour::tenfold_time ? "time to grow (right of 0) or to fall tenfold [" + time + "]"
+                 : colour == MapColour::tenfold_time ? "time to grow (above 0) or to fall tenfold [" + time + "]"
                                                      : "growth rate [1/" + time + "]";
   if (sizes.empty()) return result;
   std::sort(sizes.begin(), sizes.end());
@@ -77,6 +77,8 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   const auto first = std::upper_bound(sizes.begin(), sizes.end(), 1e-6 * result.largest);
   result.scale = first == sizes.end() ? result.largest : *(first + (sizes.end() - first) / 2);
   result.one_sided = one_sided_range(document, per_turn);
+  if (result.one_sided && colour == MapColour::tenfold_time)
+    result.label = std::string("time to ") + ((*result.one_sided)[1] < 0 ? "fall" : "grow") + " tenfold [" + time + "]";
   return result;
 }
 
@@ -235,7 +237,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                        [&](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == verdict; });
   };
   figure.commands = fmt::format(
-      "set title heading('{{/:Bold {}}}'.\"\\n\".{})\n{}set cblabel {}\n"
+      "set title heading('{{/:Bold {}}}'.\"\\n\".{})\n{}set cblabel {} offset 0.8,0\n"
       "{}unset grid\nset border 15\nset tics out nomirror\n"
       "{}set key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
       "samplen 3 width -4 font ',12'\n"

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
+#include "hb/analysis/nonlinear/motion_loads.hpp"
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
 #include "lib/stopwatch.hpp"
 
@@ -329,11 +330,12 @@ class Sweeper {
     }
   }
 
-  // Shape and stress of the bent rods at the values asked for.
+  // Shape and stress of the bent rods, bearings, frame and drive at the values asked for.
   void add_loads() {
     Settings settings = scene_.settings();
-    if (!settings.only.shape) return;
-    settings.only = {.steady = false, .stability = false, .reactions = false, .shape = true};
+    const bool shape = settings.only.shape, reactions = settings.only.reactions;
+    if (!shape && !reactions) return;
+    settings.only = {.steady = false, .stability = false, .reactions = reactions, .shape = shape};
     Stopwatch watch;
     for (NonlinearBranch& branch : result_.branches)
       for (NonlinearPoint& point : branch.points) {
@@ -343,10 +345,16 @@ class Sweeper {
         const NonlinearResult answer =
             nonlinear_answer(*place.model, *point.motion, std::nullopt, result_.tolerance, settings, asked_.stop);
         for (const NonlinearRod& rod : answer.rods)
-          point.loads.push_back({rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, rod.peak_errors,
-                                 *rod.stress, rod.cycle});
+          if (shape)
+            point.loads.push_back({rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, rod.peak_errors,
+                                   *rod.stress, rod.cycle});
+        if (const std::optional<MachineLoads> loads = machine_loads(*place.model->linkage(), answer)) {
+          result_.joints.clear();
+          for (const BearingLoad& load : loads->bearings) result_.joints.push_back(load.joint);
+          point.machine = machine_point(*loads, answer.speed);
+        }
       }
-    result_.stages.push_back({"shape and stress of the bent rods", watch.seconds(), ""});
+    result_.stages.push_back({"shape, stress and forces of the motions", watch.seconds(), ""});
   }
 
   const SweepScene& scene_;

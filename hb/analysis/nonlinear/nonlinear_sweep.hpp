@@ -33,6 +33,7 @@ struct NonlinearPoint {
   std::optional<Stability> stability;  // of all rods together
   std::shared_ptr<const PeriodicMotion> motion = nullptr;  // where asked; for nonlinear_answer
   std::vector<BentLoads> loads = {};  // by rod; where asked, with settings().only.shape
+  std::optional<MachinePoint> machine = std::nullopt;  // where asked, with settings().only.reactions
 };
 
 struct NonlinearBranch {
@@ -67,6 +68,7 @@ struct NonlinearSweep {
   double tolerance = 0;  // that motions were solved to: the one asked for, at least 1e-8
   std::vector<std::string> rods;
   std::vector<bool> reported;
+  std::vector<std::string> joints;  // of MachinePoint::bearings
   std::vector<NonlinearBranch> branches;
   std::vector<NonlinearEvent> folds, bifurcations;
   std::vector<Jump> jumps;

@@ -56,23 +56,6 @@ FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings&
   return state.status == SteadyStatus::singular ? FourierSeries() : std::move(state.q);
 }
 
-MachinePoint machine_point(const MachineLoads& loads, double speed) {
-  MachinePoint point;
-  for (const BearingLoad& bearing : loads.bearings) point.bearings.push_back(bearing.elastic.value);
-  point.shaking_force = loads.shaking_force.value;
-  point.shaking_moment = turn_range(loads.frame.elastic, 2);
-  point.drive = loads.drive;
-  point.speed_fluctuation = loads.speed_fluctuation;
-  point.speed_fluctuation_error = loads.speed_fluctuation_error;
-  point.bearing_error = loads.bearing_error;
-  point.shaking_force_error = loads.shaking_force_error;
-  point.shaking_moment_error = loads.shaking_moment_error;
-  point.torque_error = loads.torque_error;
-  point.power_error = loads.power_error(speed);
-  point.energy_error = loads.energy_error;
-  return point;
-}
-
 // Periodic responses of one rod: as asked for, and with more modes where the error of the cut is looked at.
 struct Responses {
   FourierSeries q, finer;
@@ -180,6 +163,23 @@ void add_theory(SweepPoint& point, const SceneModel& model, const std::vector<Re
 }
 
 }  // namespace
+
+MachinePoint machine_point(const MachineLoads& loads, double speed) {
+  MachinePoint point;
+  for (const BearingLoad& bearing : loads.bearings) point.bearings.push_back(bearing.elastic.value);
+  point.shaking_force = loads.shaking_force.value;
+  point.shaking_moment = turn_range(loads.frame.elastic, 2);
+  point.drive = loads.drive;
+  point.speed_fluctuation = loads.speed_fluctuation;
+  point.speed_fluctuation_error = loads.speed_fluctuation_error;
+  point.bearing_error = loads.bearing_error;
+  point.shaking_force_error = loads.shaking_force_error;
+  point.shaking_moment_error = loads.shaking_moment_error;
+  point.torque_error = loads.torque_error;
+  point.power_error = loads.power_error(speed);
+  point.energy_error = loads.energy_error;
+  return point;
+}
 
 SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) {
   const ScenePlace place = scene.at(x);

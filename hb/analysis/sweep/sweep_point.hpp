@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hb/analysis/drive.hpp"
+#include "hb/analysis/machine_loads.hpp"
 #include "hb/analysis/sweep/sweep_scene.hpp"
 #include "hb/engine/boundaries/stability_sample.hpp"
 
@@ -37,6 +38,8 @@ struct MachinePoint {
   double bearing_error = 0, shaking_force_error = 0, shaking_moment_error = 0, torque_error = 0, power_error = 0;
   double energy_error = 0;
 };
+
+[[nodiscard]] MachinePoint machine_point(const MachineLoads& loads, double speed);
 
 struct RodPoint {
   std::optional<SteadyStatus> steady;  // empty: not asked for
