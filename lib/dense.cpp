@@ -122,8 +122,23 @@ template <class Scalar>
 int Lu<Scalar>::sign() const {
   return factors_->lu.permutationP().determinant() < 0 ? -1 : 1;
 }
+template <class Scalar>
+Eigen::Index Lu<Scalar>::size() const {
+  return factors_->lu.rows();
+}
+template <class Scalar>
+bool Lu<Scalar>::all_finite() const {
+  return factors_->lu.matrixLU().allFinite();
+}
 template class Lu<double>;
 template class Lu<std::complex<double>>;
+
+Eigen::VectorXd basic_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.colPivHouseholderQr().solve(b);
+}
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+  return A.completeOrthogonalDecomposition().solve(b);
+}
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) { return A.inverse(); }
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) { return A.inverse(); }

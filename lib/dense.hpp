@@ -49,6 +49,9 @@ class Lu {
   // The diagonal of U, and the sign of P: det A = sign prod u_ii.
   [[nodiscard]] Vector<Scalar> pivots() const;
   [[nodiscard]] int sign() const;
+  // Of A; 0 before one was factorised.
+  [[nodiscard]] Eigen::Index size() const;
+  [[nodiscard]] bool all_finite() const;
 
  private:
   struct Factors;
@@ -79,6 +82,11 @@ struct SymmetricEigenpairs {
 [[nodiscard]] SymmetricEigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& A);
 // A^(-1/2) of a symmetric positive definite matrix; empty if A has an eigenvalue <= 0.
 [[nodiscard]] std::optional<Eigen::MatrixXd> inverse_square_root(const Eigen::MatrixXd& A);
+
+// x with the smallest |A x - b|. Of columns that depend on others to rounding the first counts them as zero, the second
+// takes the shortest x.
+[[nodiscard]] Eigen::VectorXd basic_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+[[nodiscard]] Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 
 // A = Q R by Householder reflections: Q square, R of A's shape with zeros below the diagonal.
 struct Qr {

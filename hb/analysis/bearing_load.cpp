@@ -9,7 +9,7 @@ Extremum largest_length(const FourierSeries& force) {
   if (force.num_harmonics() < 0) return {};
   if (force.num_components() == 1) return fourier::max_abs(force, 0);
   // Its square has twice the harmonics.
-  const Eigen::MatrixXd samples = fourier::synthesise(force, 4 * force.num_harmonics() + 4);
+  const Eigen::MatrixXd samples = fourier::synthesise(force, fourier::fast_length(4 * force.num_harmonics() + 4));
   const Eigen::MatrixXd square = samples.colwise().squaredNorm();
   Extremum peak = fourier::range(fourier::analyse(square), 0).max;
   peak.value = std::sqrt(std::max(0.0, peak.value));
@@ -23,7 +23,8 @@ std::vector<BearingLoad> bearing_loads(const JointForces& forces, int turns) {
   for (const JointForce& joint : forces.joints) {
     BearingLoad load{joint.name, largest_length(joint.rigid), largest_length(joint.elastic), 0, 0};
     if (joint.elastic.num_harmonics() >= 0) {
-      const Eigen::Index N = samples_per_harmonic * std::max<Eigen::Index>(joint.elastic.num_harmonics(), 16);
+      const Eigen::Index N =
+          fourier::fast_length(samples_per_harmonic * std::max<Eigen::Index>(joint.elastic.num_harmonics(), 16));
       const Eigen::RowVectorXd length = fourier::synthesise(joint.elastic, N).colwise().norm();
       load.mean = length.mean();
       load.rms = std::sqrt(length.squaredNorm() / static_cast<double>(N));

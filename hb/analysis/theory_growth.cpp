@@ -38,16 +38,16 @@ HillSystem first_modes_of(const HillSystem& system, Index kept) {
 // The exponents of (T5): those of the exact model linearised about q + dq, which need not be a motion of it.
 std::optional<double> growth_theory_error(const Linkage& linkage, double speed, std::span<const LinearRod> rods,
                                           const TheoryErrors& errors) {
-  constexpr double negligible = 1e-10, tolerance = 1e-7;
+  constexpr double negligible = 1e-6, tolerance = 1e-7;
   const std::vector<int> links = elastic_links(linkage);
-  std::vector<ExactModel::Rod> kept;
+  std::vector<Index> num_modes;
   std::vector<FourierSeries> bent;
   double linear_rate = -HUGE_VAL, linear_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     if (!errors.rods[r].q || body_at(linkage, links[r])->elastic->shear) return std::nullopt;
     const FourierSeries &q = *rods[r].q, &dq = errors.rods[r].correction;
     const Index I = std::min(most_growth_modes, q.num_components());
-    kept.push_back({links[r], I});
+    num_modes.push_back(I);
     const Index H = std::max(fourier::significant_harmonics(q, negligible), dq.num_harmonics());
     bent.emplace_back(Eigen::MatrixXcd((fourier::resized(q, H).c + fourier::resized(dq, H).c).topRows(I)));
     const Stability linear = analyse_stability(first_modes_of(*rods[r].system, I), speed, {.leading_only = true});
@@ -59,7 +59,7 @@ std::optional<double> growth_theory_error(const Linkage& linkage, double speed, 
   motion.parameter = motion.speed = speed;
   motion.q = motion.q_finer = stacked(bent);
   motion.num_samples = static_cast<int>(fourier::fast_length(6 * motion.q.num_harmonics() + 16));
-  const NonlinearSystem system = exact_system(std::make_shared<const ExactModel>(linkage, kept));
+  const NonlinearSystem system = exact_system(std::make_shared<const ExactModel>(theory_model(linkage, num_modes)));
   const Stability stability = motion_stability(system, motion, {.tolerance = tolerance, .leading_only = true});
   const double error = stability.growth_error + linear_error;
   if (!std::isfinite(stability.growth_rate) || !std::isfinite(error)) return std::nullopt;

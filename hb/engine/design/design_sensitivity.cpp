@@ -1,4 +1,3 @@
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -6,6 +5,7 @@
 
 #include "hb/engine/design/design.hpp"
 #include "hb/engine/design/differences.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -25,7 +25,7 @@ VectorXd nonnegative_least_squares(const MatrixXd& A, const VectorXd& b) {
     VectorXd z = VectorXd::Zero(n);
     if (columns.empty()) return z;
     const MatrixXd part = A(Eigen::all, columns);
-    const VectorXd values = part.completeOrthogonalDecomposition().solve(b);
+    const VectorXd values = dense::least_squares(part, b);
     for (std::size_t k = 0; k < columns.size(); ++k) z(columns[k]) = values(static_cast<Index>(k));
     return z;
   };

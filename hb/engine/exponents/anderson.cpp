@@ -1,7 +1,8 @@
 #include "hb/engine/exponents/anderson.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+
+#include "lib/dense.hpp"
 
 namespace hb {
 
@@ -23,13 +24,11 @@ VectorXd Anderson::step(const VectorXd& x, const VectorXd& f) {
   const Index kept = std::min(taken_, depth);
   if (kept == 0) return next;
   // min |f - dF gamma| by the normal equations of columns scaled to length 1; dependent ones drop out.
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, depth, depth>;
-  using Few = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, depth, 1>;
   const auto dF = df_.leftCols(kept);
-  const Few inverse = gram_.diagonal().head(kept).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const Small gram = inverse.asDiagonal() * gram_.topLeftCorner(kept, kept) * inverse.asDiagonal();
-  const Few right = inverse.asDiagonal() * (dF.transpose() * f);
-  const Few gamma = inverse.asDiagonal() * gram.colPivHouseholderQr().solve(right);
+  const VectorXd inverse = gram_.diagonal().head(kept).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+  const Eigen::MatrixXd gram = inverse.asDiagonal() * gram_.topLeftCorner(kept, kept) * inverse.asDiagonal();
+  const VectorXd right = inverse.asDiagonal() * (dF.transpose() * f);
+  const VectorXd gamma = inverse.cwiseProduct(dense::basic_least_squares(gram, right));
   if (gamma.allFinite()) next.noalias() -= dx_.leftCols(kept) * gamma + dF * gamma;
   return next;
 }

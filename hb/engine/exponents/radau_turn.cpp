@@ -1,6 +1,5 @@
 #include "hb/engine/exponents/radau_turn.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,8 +37,10 @@ std::array<long double, n + 1> legendre(long double x) {
   return p;
 }
 
-// Nodes: roots of P_s - P_(s-1), mapped to (0, 1]. A integrates the interpolating polynomial: with
-// V_ij = P_j(x_i) and int_{-1}^{x} P_j = (P_(j+1) - P_(j-1))/(2j+1), A = (1/2) W V^-1.
+// Nodes: roots of P_s - P_(s-1), mapped to (0, 1]. A integrates the interpolating polynomial: the Gauss-Radau rule of
+// the nodes, weights w_k = (1 + x_k)/(s P_(s-1)(x_k))^2 with the end at -1, integrates products of degree 2s - 2
+// exactly, so that with int_{-1}^{x} P_j = (P_(j+1) - P_(j-1))/(2j+1)
+//     A_ik = (w_k/2) sum_{j<s} (2j+1)/2 P_j(x_k) int_{-1}^{x_i} P_j.
 Radau make_radau() {
   constexpr int s = stages;
   std::array<long double, s> x{};
@@ -59,19 +60,24 @@ Radau make_radau() {
     x[std::size_t(found++)] = (a + b) / 2;
   }
   x[s - 1] = 1;
-  Eigen::Matrix<long double, s, s> V, W;
-  for (int i = 0; i < s; ++i) {
-    const auto p = legendre<s>(x[std::size_t(i)]);
-    for (int j = 0; j < s; ++j) {
-      V(i, j) = p[std::size_t(j)];
-      W(i, j) = j == 0 ? x[std::size_t(i)] + 1 : (p[std::size_t(j + 1)] - p[std::size_t(j - 1)]) / (2 * j + 1);
+  std::array<std::array<long double, s>, s> A{};
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t k = 0; k < s; ++k) {
+      const auto p = legendre<s>(x[i]), at = legendre<s>(x[k]);
+      const long double root = s * at[s - 1], weight = (1 + x[k]) / (root * root);
+      A[i][k] = weight / 4 * (x[i] + 1);
+      for (std::size_t j = 1; j < s; ++j) A[i][k] += weight / 4 * at[j] * (p[j + 1] - p[j - 1]);
+    }
+  Radau radau;
+  for (std::size_t i = 0; i < s; ++i) {
+    radau.c(Index(i)) = double((x[i] + 1) / 2);
+    for (std::size_t k = 0; k < s; ++k) {
+      long double square = 0;
+      for (std::size_t j = 0; j < s; ++j) square += A[i][j] * A[j][k];
+      radau.A(Index(i), Index(k)) = double(A[i][k]);
+      radau.A2(Index(i), Index(k)) = double(square);
     }
   }
-  const Eigen::Matrix<long double, s, s> A = W * V.inverse() / 2;
-  Radau radau;
-  for (int i = 0; i < s; ++i) radau.c(i) = double((x[std::size_t(i)] + 1) / 2);
-  radau.A = A.cast<double>();
-  radau.A2 = (A * A).cast<double>();
   return radau;
 }
 

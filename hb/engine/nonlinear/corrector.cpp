@@ -32,7 +32,7 @@ double Corrector::norm(const Unknowns& change) const {
 
 Correction Corrector::factorise(const Unknowns& x, const Constraint& constraint) {
   Correction result;
-  factors_ = {};
+  factors_ = dense::Lu<double>();
   if (auto failure = balance_->linearise(x.u, x.p, residual_, linear_)) {
     result.status = CorrectionStatus::no_residual;
     result.failure = *failure;
@@ -62,16 +62,15 @@ Correction Corrector::factorise(const Unknowns& x, const Constraint& constraint)
   if (!J.allFinite()) return result;
   factors_.compute(J);
   result.factorisations = 1;
-  const auto pivots = factors_.matrixLU().diagonal();
-  const bool regular = (pivots.array() != 0).all() && factors_.matrixLU().allFinite();
+  const bool regular = (factors_.pivots().array() != 0).all() && factors_.all_finite();
   result.status = regular ? CorrectionStatus::converged : CorrectionStatus::singular;
-  if (!regular) factors_ = {};
+  if (!regular) factors_ = dense::Lu<double>();
   return result;
 }
 
 Unknowns Corrector::apply(const VectorXd& F, double g) const {
   const Index m = F.size();
-  VectorXd right(factors_.rows());
+  VectorXd right(factors_.size());
   right.head(m) = F;
   if (right.size() > m) right(m) = g;
   const VectorXd change = factors_.solve(row_scale_.asDiagonal() * right);
@@ -79,8 +78,8 @@ Unknowns Corrector::apply(const VectorXd& F, double g) const {
 }
 
 int Corrector::determinant_sign() const {
-  int sign = factors_.permutationP().determinant() > 0 ? 1 : -1;
-  for (const double pivot : factors_.matrixLU().diagonal())
+  int sign = factors_.sign();
+  for (const double pivot : factors_.pivots())
     if (pivot < 0) sign = -sign;
   return sign;
 }

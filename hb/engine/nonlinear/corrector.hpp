@@ -5,11 +5,12 @@
 // and 2.1.4, doi:10.1007/978-3-642-23899-4).
 #pragma once
 
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <functional>
 #include <string>
 
 #include "hb/engine/nonlinear/harmonic_balance.hpp"
+#include "lib/dense.hpp"
 
 namespace hb::nonlinear {
 
@@ -58,7 +59,7 @@ class Corrector {
   // Solution of [dF/du F_p; row row_p] (du, dp) = (F, g); without the last row if the parameter is held.
   [[nodiscard]] Unknowns apply(const Eigen::VectorXd& F, double g = 0) const;
   [[nodiscard]] const Linearisation& linearisation() const { return linear_; }
-  [[nodiscard]] bool has_factors() const { return factors_.rows() > 0; }
+  [[nodiscard]] bool has_factors() const { return factors_.size() > 0; }
   // Sign of the determinant of the factors.
   [[nodiscard]] int determinant_sign() const;
   HarmonicBalance& balance() { return *balance_; }
@@ -73,7 +74,7 @@ class Corrector {
   Linearisation linear_;
   Eigen::VectorXd residual_;  // at the factors
   Eigen::VectorXd row_scale_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  dense::Lu<double> factors_;
 };
 
 }  // namespace hb::nonlinear

@@ -88,7 +88,7 @@ bool look_along(Acceleration& acceleration, const StartingOrbit& start, double p
     J.topRightCorner(n, n).setIdentity();
     J.bottomLeftCorner(n, n) = at.by_q;
     J.bottomRightCorner(n, n) = at.by_v;
-    spectrum.eigenvalues.push_back(J.eigenvalues());
+    spectrum.eigenvalues.push_back(dense::eigenvalues(J));
     mean += spectrum.eigenvalues.back().real().maxCoeff() / double(looks);
     spectrum.fastest = std::max(spectrum.fastest, spectrum.eigenvalues.back().cwiseAbs().maxCoeff());
   }

@@ -48,6 +48,7 @@ Stability unknown(const char* why) {
 std::optional<CoefficientErrors> motion_errors(const NonlinearSystem& system, const PeriodicMotion& motion,
                                                const NormalForm& form) {
   if (motion.q_finer.c.cols() == 0) return std::nullopt;
+  if (motion.q_finer.c.cols() == motion.q.c.cols() && motion.q_finer.c == motion.q.c) return CoefficientErrors{};
   const Index N = form.alpha.cols(), step = N % compared == 0 ? compared : 1;
   ResidualSamples finer;
   if (system.evaluate(motion.parameter, samples_of(motion, motion.q_finer, N / step), Derivatives::state, finer))

@@ -1,0 +1,4 @@
+#include "lib/product_kernels.hpp"
+
+HB_PRODUCTS(, double);
+HB_PRODUCTS(, std::complex<double>);
