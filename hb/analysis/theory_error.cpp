@@ -202,7 +202,8 @@ struct Question {
     for (std::size_t r = 0; r < rods.size(); ++r) {
       const HillSystem& system = *rods[r].system;
       const Body& link = *body_at(model.linkage(), model.rods()[r].link);
-      compared.emplace_back(link.elastic->shear ? rigid_in_shear(link, system, system.num_modes()) : system, speed);
+      compared.emplace_back(link.elastic->shear ? rigid_in_shear(link, system, model.rods()[r].num_modes) : system,
+                            speed);
       answers.emplace_back(system, speed, of_theory_error.tolerance);
     }
   }
