@@ -8,6 +8,7 @@
 #include "hb/analysis/map_loads.hpp"
 #include "hb/analysis/request.hpp"
 #include "hb/analysis/resonance_lines.hpp"
+#include "hb/analysis/scene_band.hpp"
 #include "hb/analysis/scene_plane.hpp"
 #include "hb/engine/boundaries/stability_map.hpp"
 
@@ -25,8 +26,8 @@ struct MissingPoints {
   std::string message;  // there
 };
 
-struct DampingCurves {
-  double factor = 1;  // on the internal damping
+struct BandEnd {
+  double factor = 1;
   std::vector<RodCurve> boundaries;
 };
 
@@ -36,7 +37,8 @@ struct MapResult {
   std::vector<StabilityMap> maps;  // one per rod
   std::vector<MapPoint> worst;  // largest growth over the rods; x fastest
   std::vector<RodCurve> boundaries;  // of the worst: each rod's where no other rod is unstable
-  std::vector<DampingCurves> damping;  // both ends of a damping range
+  std::vector<BandEnd> band;  // both ends of MapRequest::damping_range or band
+  BandParameter band_of = BandParameter::damping;  // what the factors multiply
   std::vector<ResonanceLine> lines;  // of the first rod
   std::vector<MissingPoints> missing;
   std::vector<PlaceLoads> loads;  // at every point, as `worst`; empty: not asked for
@@ -58,7 +60,7 @@ struct MapResult {
 [[nodiscard]] StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x,
                                    std::vector<double> y, const MapOptions& search);
 
-// Everything but the damping range.
+// Everything but the bands.
 [[nodiscard]] MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x,
                                     const PlaneAxis& y_axis, std::vector<double> y, const MapOptions& search);
 

@@ -63,7 +63,15 @@ MapTask::MapTask(const SceneFamily& family, const MapRequest& request, const Wor
       throw RequestError("damping_range", fmt::format("\"{}:{}\"", low, high),
                          "LOW:HIGH with 0 <= LOW < HIGH, factors on the damping");
     if (!request.boundaries) throw RequestError("damping_range", "a map without boundaries", "a map with boundaries");
-    for (const double factor : *range) damped_.push_back(with_damping(family, request, factor));
+    factors_ = *range;
+    for (const double factor : factors_) ends_.push_back(with_damping(family, request, factor));
+  }
+  if (const auto& band = request.band) {
+    if (request.damping_range) throw RequestError("band", "beside damping_range", "one of the two");
+    if (!request.boundaries) throw RequestError("band", "a map without boundaries", "a map with boundaries");
+    factors_ = {band->from, band->to};
+    for (const double factor : factors_)
+      ends_.push_back(scaled_family(family, {&request.x, &request.y}, band->parameter, factor));
   }
   x_axis_ = plane_axis(request.x);
   y_axis_ = plane_axis(request.y);
@@ -86,13 +94,14 @@ Map MapTask::compute(Work& work) const {
           search.search.tolerance,
           {},
           true};
-  for (std::size_t end = 0; end < damped_.size(); ++end) {
-    const ScenePlane damped(damped_[end], x_axis_, y_axis_, options_);
+  if (request_.band) map.band_of = request_.band->parameter;
+  for (std::size_t end = 0; end < ends_.size(); ++end) {
+    const ScenePlane plane(ends_[end], x_axis_, y_axis_, options_);
     MapOptions curves = search;
     curves.curves_only = true;
     std::vector<StabilityMap> maps;
-    for (std::size_t r = 0; r < damped.rods().size(); ++r) maps.push_back(rod_map(damped, r, x, y, curves));
-    map.damping.push_back({(*request_.damping_range)[end], worst_boundaries(damped, maps, search)});
+    for (std::size_t r = 0; r < plane.rods().size(); ++r) maps.push_back(rod_map(plane, r, x, y, curves));
+    map.band.push_back({factors_[end], worst_boundaries(plane, maps, search)});
   }
   if (request_.stress) {
     Settings settings = settings_;

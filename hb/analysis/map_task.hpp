@@ -8,6 +8,7 @@
 
 #include "hb/analysis/along.hpp"
 #include "hb/analysis/map_result.hpp"
+#include "hb/analysis/scene_band.hpp"
 #include "hb/analysis/work.hpp"
 
 namespace hb {
@@ -16,6 +17,8 @@ struct MapRequest : Request {
   Along x, y;  // one of them may be the speed
   // Boundaries also with the damping (SceneFamily::damping_paths) times both factors, 0 <= low < high.
   std::optional<std::array<double, 2>> damping_range;
+  // Or with damping, Young's modulus or mass of all elastic links times both factors.
+  std::optional<BandRequest> band;
   bool stress = false;  // also stress, safety and deflection at every point, of links that all have a section
 };
 
@@ -43,6 +46,7 @@ class MapTask {
   const Along& y() const { return request_.y; }
   const Settings& settings() const { return settings_; }
   const std::optional<std::array<double, 2>>& damping_range() const { return request_.damping_range; }
+  const std::optional<BandRequest>& band() const { return request_.band; }
   bool stress() const { return request_.stress; }
 
  private:
@@ -52,7 +56,8 @@ class MapTask {
   PlaneOptions options_;
   SceneFamily family_;
   std::optional<ScenePlane> plane_;
-  std::vector<SceneFamily> damped_;  // at both ends of the damping range
+  std::array<double, 2> factors_{};
+  std::vector<SceneFamily> ends_;  // with those
 };
 
 }  // namespace hb

@@ -229,6 +229,38 @@ TEST_F(Map, DampingRangeGivesBoundariesAtBothEnds) {
   EXPECT_NEAR(tip(found["damping_range"][1]["boundaries"]), 0.4 * std::sqrt(1.2), 0.03);
 }
 
+// Those of the scene with that E, whose curves begin and end at the same places.
+TEST_F(Map, BandOfYoungsModulusGivesBoundariesAtBothEnds) {
+  const std::string plane = scene("six_link") + " --modes 1 --x rpm=1400:3400:11 --y *.J=30:60:3";
+  const Json found = document(plane + " --band E=0.9:1.1");
+  EXPECT_FALSE(found.contains("damping_range"));
+  ASSERT_EQ(found["band"].size(), 2u);
+  const auto extent = [](const Json& curves, std::size_t axis) {
+    std::pair<double, double> range{HUGE_VAL, -HUGE_VAL};
+    for (const Json& curve : curves)
+      for (const Json& p : curve["points"]) {
+        range.first = std::min(range.first, p[axis].get<double>());
+        range.second = std::max(range.second, p[axis].get<double>());
+      }
+    return range;
+  };
+  const auto scene_extent = extent(found["boundaries"], 0);
+  for (const std::size_t end : {0u, 1u}) {
+    const Json& band = found["band"][end];
+    const double factor = end == 0 ? 0.9 : 1.1;
+    EXPECT_EQ(band["parameter"], "E");
+    EXPECT_EQ(band["factor"], factor);
+    const std::string E = std::to_string(factor * 21e7);
+    const Json other = document(plane + " --set AB.E=" + E + " --set CD.E=" + E);
+    for (const std::size_t axis : {0u, 1u}) {
+      const auto expected = extent(other["boundaries"], axis), got = extent(band["boundaries"], axis);
+      EXPECT_NEAR(got.first, expected.first, 2e-3 * expected.first);
+      EXPECT_NEAR(got.second, expected.second, 2e-3 * expected.second);
+    }
+    EXPECT_GT(std::abs(extent(band["boundaries"], 0).first / scene_extent.first - 1), 0.03);
+  }
+}
+
 TEST_F(Map, WritesGridCurvesAndPictures) {
   const CommandResult result =
       hb("map " + scene("mathieu") + " --x omega=1.5:3:16 --y " + swing + "=0.1:0.6:6 --out out");
@@ -289,7 +321,9 @@ TEST_F(Map, RefusesWrongRangesAndParameters) {
   refused(scene("mathieu") + good + " --set " + swing + "=1", "one of the two");
   refused(scene("mathieu") + good + " --damping-range 2:1", "LOW < HIGH");
   refused(scene("mathieu") + good + " --damping-range x", "LOW:HIGH");
-  refused(scene("mathieu") + good + " --band E=0.9:1.1", "allowed: one damping=A:B");
+  refused(scene("mathieu") + good + " --band E=0.9:1.1", "damping=A:B");
+  refused(scene("six_link") + " --x rpm=300:600:5 --y AB.J=1:10:3 --band E=0.9:1.1 --band mass=0.9:1.1",
+          "allowed: one");
   refused(scene("mathieu") + good + " --band damping=0.5:2 --damping-range 0.5:2", "one of the two");
   refused(scene("mathieu") + good + " --colour blue", "growth, turn, tenfold");
   refused(scene("six_link") + " --x rpm=300:600:5 --y AB.K=1:2:3", "AB.");

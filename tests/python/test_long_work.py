@@ -182,6 +182,19 @@ def test_a_map_has_boundaries_over_a_range_of_damping(mathieu):
     assert str(again) == str(found)
 
 
+def test_a_map_has_boundaries_over_a_band_of_youngs_modulus():
+    file = SCENES / "six_link.toml"
+    arguments = {"x": "rpm=1400:2200:5", "y": "*.J=30:60:3", "modes": 1}
+    flags = ["--x", arguments["x"], "--y", arguments["y"], "--modes", "1", "--band", "E=0.9:1.1"]
+    found = hb.load(file).map(**arguments, band={"E": (0.9, 1.1)})
+    assert found.to_dict() == command("map", file, *flags)
+    assert sorted(found.band) == [0.9, 1.1] and found.damping == {}
+    assert len(found.band[0.9]) >= 1
+    with pytest.raises(hb.RequestError) as raised:
+        hb.load(file).map(**arguments, band={"E": (0.9, 1.1), "mass": (0.9, 1.1)})
+    assert raised.value.field == "band"
+
+
 @pytest.mark.parametrize(
     "factors", [(2, 0.5), (-1, 2), (1, float("nan")), (1, float("inf")), (1,), (1, 2, 3), "0.5:2", {"low": 1}, 3]
 )

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 
-#include "hb/analysis/sensitivity_band.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
@@ -95,18 +94,17 @@ std::optional<std::array<double, 2>> damping_factors(const std::string& text) {
 }
 
 // --band damping=A:B is --damping-range A:B.
-std::optional<std::array<double, 2>> damping_band(const std::vector<std::string>& bands) {
-  std::optional<std::array<double, 2>> factors;
-  for (const std::string& text : bands) {
-    const BandRequest band = parse_band(text);
-    if (band.parameter != BandParameter::damping || factors)
-      throw UsageError(fmt::format(
-          "--band: found \"{}\", allowed: one damping=A:B, whose boundaries the map shows; for another E or "
-          "mass the map again with --set, or hb sweep --band along one number",
-          text));
-    factors = {band.from, band.to};
-  }
-  return factors;
+void ask_for_band(const std::vector<std::string>& bands, MapRequest& request) {
+  if (bands.empty()) return;
+  if (bands.size() > 1)
+    throw UsageError(fmt::format("--band: found \"{}\" beside \"{}\", allowed: one, whose boundaries the map shows",
+                                 bands[1], bands[0]));
+  if (request.damping_range) throw UsageError("--band: found beside --damping-range, allowed: one of the two");
+  const BandRequest band = parse_band(bands.front());
+  if (band.parameter == BandParameter::damping)
+    request.damping_range = {band.from, band.to};
+  else
+    request.band = band;
 }
 
 }  // namespace
@@ -116,10 +114,7 @@ MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneI
   request.x = axis_range("--x", map.x, input.source);
   request.y = axis_range("--y", map.y, input.source);
   request.damping_range = damping_factors(map.damping_range);
-  if (const std::optional<std::array<double, 2>> band = damping_band(map.bands)) {
-    if (request.damping_range) throw UsageError("--band: found beside --damping-range, allowed: one of the two");
-    request.damping_range = band;
-  }
+  ask_for_band(map.bands, request);
   const std::vector<Override> set = overrides(flags);
   const std::size_t nx = request.x.values.size(), ny = request.y.values.size();
   if (static_cast<double>(nx) * static_cast<double>(ny) > max_points)
@@ -134,9 +129,11 @@ MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneI
   if (!map.boundary_tolerance.empty())
     request.boundary_tolerance =
         number_flag("--boundary-tol", map.boundary_tolerance, 1e-14, 0.01, "a number from 1e-14 to 0.01");
-  if (map.no_boundaries && (request.damping_range || !map.boundary_tolerance.empty()))
-    throw UsageError(fmt::format("--no-boundaries: found beside {}, allowed: one of the two",
-                                 request.damping_range ? "--damping-range" : "--boundary-tol"));
+  if (map.no_boundaries && (request.damping_range || request.band || !map.boundary_tolerance.empty()))
+    throw UsageError(fmt::format("--no-boundaries: found beside {}, allowed: one of the two", request.band ? "--band"
+                                                                                              : request.damping_range
+                                                                                                  ? "--damping-range"
+                                                                                                  : "--boundary-tol"));
   return request;
 }
 

@@ -93,10 +93,11 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
                            "boundaries of stability of " + result.rods[r]));
   }
   files.resonance = write(map_resonance_csv(document));
-  for (const DampingCurves& damping : result.damping) {
-    files.damping.push_back(write(map_boundary_csv(
-        document, damping.boundaries, file_name(fmt::format("map_boundaries_damping_{:g}", damping.factor)) + ".csv",
-        fmt::format("boundaries of stability of the worst rod with damping times {:g}", damping.factor))));
+  for (const BandEnd& end : result.band) {
+    const char* parameter = to_string(result.band_of);
+    files.band.push_back(write(map_boundary_csv(
+        document, end.boundaries, file_name(fmt::format("map_boundaries_{}_{:g}", parameter, end.factor)) + ".csv",
+        fmt::format("boundaries of stability of the worst rod with {} times {:g}", parameter, end.factor))));
   }
   std::vector<Figure> figures;
   if (!result.loads.empty()) files.loads = write(map_loads_csv(document));

@@ -232,11 +232,14 @@ std::string map_text(const MapDocument& document) {
     rods.add(r.rods[k], rod);
   }
   json.add("rods", rods);
-  if (!r.damping.empty()) {
-    Json range = Json::array();
-    for (const DampingCurves& d : r.damping)
-      range.push_back({{"factor", d.factor}, {"boundaries", curves_json(r, d.boundaries)}});
-    json.add("damping_range", std::move(range));
+  if (!r.band.empty()) {
+    Json ends = Json::array();
+    for (const BandEnd& end : r.band) {
+      ends.push_back({{"parameter", to_string(r.band_of)},
+                      {"factor", end.factor},
+                      {"boundaries", curves_json(r, end.boundaries)}});
+    }
+    json.add(r.band_of == BandParameter::damping ? "damping_range" : "band", std::move(ends));
   }
   Json lines = Json::array();
   for (const ResonanceLine& line : r.lines) lines.push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});

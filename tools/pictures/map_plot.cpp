@@ -204,16 +204,16 @@ std::vector<std::string> boundary_layers(const MapResult& r, const MapFiles& fil
           fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 2.2 linecolor '{}' title '{}'",
                       files.boundaries, kind.number, kind.colour, kind.title));
     }
-    for (std::size_t d = 0; d < r.damping.size(); ++d) {
-      if (!has(r.damping[d].boundaries)) continue;
+    for (std::size_t d = 0; d < r.band.size(); ++d) {
+      if (!has(r.band[d].boundaries)) continue;
       layers.push_back(
           fmt::format("'{}' using ($3 == {} ? $4 : NaN):5 with lines linewidth 1.2 dashtype {} linecolor '{}' "
-                      "title '{} at damping x {:g}'",
-                      files.damping[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
+                      "title '{} at {} x {:g}'",
+                      files.band[d], kind.number, d == 0 ? "(3,3)" : "(10,4)", kind.colour,
                       kind.number == 0   ? "complex"
                       : kind.number == 1 ? "+1"
                                          : "−1",
-                      r.damping[d].factor));
+                      to_string(r.band_of), r.band[d].factor));
     }
   }
   return layers;

@@ -11,7 +11,7 @@ enum class MapColour { growth, per_turn, tenfold_time };
 struct MapFiles {
   std::string grid, boundaries, resonance;
   std::string loads;  // empty: not asked for
-  std::vector<std::string> damping;  // as in MapResult::damping
+  std::vector<std::string> band;  // as in MapResult::band
 };
 
 [[nodiscard]] Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour colour);

@@ -36,6 +36,12 @@ std::shared_ptr<Map> mapped(const SceneCore& core, const py::dict& written, cons
     if (factors.size() != 2) throw RequestError("damping_range", shown(*range), "a pair (low, high) of factors");
     request.damping_range = {factors[0], factors[1]};
   }
+  const std::vector<BandRequest> bands = read_bands(arguments);
+  if (bands.size() > 1) throw RequestError("band", shown(*given(arguments, "band")), "one band");
+  if (!bands.empty() && bands.front().parameter == BandParameter::damping)
+    request.damping_range = {bands.front().from, bands.front().to};
+  else if (!bands.empty())
+    request.band = bands.front();
   if (const auto stress = given(arguments, "stress")) request.stress = py::cast<bool>(*stress);
   PythonWork work(arguments, progress);
   return work.run([&] { return std::make_shared<Map>(map(core.source, request, work)); });

@@ -43,11 +43,11 @@ Json map_data(Json map, const SceneSource& source, const Units& units, ByteBlock
     return std::move(from);
   };
   for (Json& boundary : map["boundaries"]) own["boundaries"].push_back(curve(boundary));
-  if (map.contains("damping_range")) {
-    for (Json& range : map["damping_range"]) {
+  for (const char* key : {"damping_range", "band"}) {
+    if (!map.contains(key)) continue;
+    for (Json& range : map[key])
       for (Json& boundary : range["boundaries"]) boundary = curve(boundary);
-    }
-    own["damping_range"] = std::move(map["damping_range"]);
+    own["band"] = std::move(map[key]);
   }
   for (const char* key : {"resonance_lines", "counts"})
     if (map.contains(key)) own[key] = std::move(map[key]);

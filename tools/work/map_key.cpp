@@ -34,6 +34,7 @@ std::uint64_t map_key(const MapTask& task) {
       .add(static_cast<double>(settings.stability_method));
   const auto& factors = task.damping_range();
   key.add(factors ? factors->front() : -1).add(factors ? factors->back() : -1);
+  if (const auto& band = task.band()) key.add(to_string(band->parameter)).add(band->from).add(band->to);
   for (const double s : {0.0, 0.37, 1.0}) {
     for (const double t : {0.0, 0.61, 1.0}) {
       for (std::size_t r = 0; r < plane.rods().size(); ++r) {

@@ -154,6 +154,12 @@ class Map(_Grid, Result):
         return {float(entry["factor"]): [Boundary(curve) for curve in entry["boundaries"]] for entry in entries}
 
     @property
+    def band(self) -> dict[float, list[Boundary]]:
+        """With band: for each factor the boundaries of the worst link; those of damping too."""
+        entries = self._document.get("band", []) or self._document.get("damping_range", [])
+        return {float(entry["factor"]): [Boundary(curve) for curve in entry["boundaries"]] for entry in entries}
+
+    @property
     def shortfalls(self) -> list[str]:
         """What missed a boundary_tol asked for, or was not computed in time."""
         notes = list(self._document.get("notes", []))

@@ -145,9 +145,6 @@ class Scene:
         """
         from .steady import Steady
 
-        if isinstance(band, Mapping):
-            band = [f"{name}={low!r}:{high!r}" for name, (low, high) in band.items()]
-
         arguments = {
             "rpm": rpm,
             "omega": omega,
@@ -160,7 +157,7 @@ class Scene:
             "steady_method": steady_method,
             "stability_method": stability_method,
             "bound": bound,
-            "band": band,
+            "band": _band_texts(band),
             "time_limit": time_limit,
         }
         return Steady(self, arguments, _core.steady(self._core, arguments))
@@ -197,8 +194,6 @@ class Scene:
         """
         from .sweep import Sweep
 
-        if isinstance(band, Mapping):
-            band = [f"{name}={low!r}:{high!r}" for name, (low, high) in band.items()]
         arguments = {
             "rpm": rpm,
             "omega": omega,
@@ -210,7 +205,7 @@ class Scene:
             "theory": theory,
             "period": period,
             "search": search,
-            "band": band,
+            "band": _band_texts(band),
             "steady_method": steady_method,
             "stability_method": stability_method,
             "threads": threads,
@@ -230,6 +225,7 @@ class Scene:
         rods: Names = None,
         only: Names = None,
         damping_range: Any = None,
+        band: Any = None,
         boundaries: bool = True,
         boundary_tol: Optional[float] = None,
         stress: bool = False,
@@ -242,7 +238,8 @@ class Scene:
 
         x, y: "PATH=FROM:TO:COUNT" as in "rpm=200:6000:117" or "*.J=20:200:61", or (path, range) with a range
         (from, to, count) or an array of values. damping_range: a pair of factors on the damping; boundaries with either are
-        in `damping`. boundaries: False computes the grid alone. boundary_tol: relative error
+        in `damping`. band: one of {"E": (0.9, 1.1)}, "mass=0.9:1.1", damping: boundaries at both ends in `band`.
+        boundaries: False computes the grid alone. boundary_tol: relative error
         wanted of boundary points, 1e-14 to 0.01. stress: also stress, safety and deflection of links with a section, in
         `mp["AB"].stress` and `.deflection`. only: "stability", "growth" or "verdict". Other arguments as in sweep().
         """
@@ -258,6 +255,7 @@ class Scene:
             "rods": rods,
             "only": only,
             "damping_range": damping_range,
+            "band": _band_texts(band),
             "boundaries": boundaries,
             "boundary_tol": boundary_tol,
             "stress": stress or None,
@@ -444,6 +442,11 @@ class Scene:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (self._core.text, self._core.name, self._core.folder)
+
+
+def _band_texts(band: Any) -> Any:
+    """The command's texts of {"E": (0.9, 1.1)}; texts as they are."""
+    return [f"{name}={low!r}:{high!r}" for name, (low, high) in band.items()] if isinstance(band, Mapping) else band
 
 
 def _again(text: str, name: str, folder: str) -> Scene:

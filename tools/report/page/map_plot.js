@@ -161,7 +161,7 @@ class MapPlot {
     const a = this.px(this.x[0] - hx), b = this.px(this.x[nx - 1] + hx), c = this.py(this.y[ny - 1] + hy), d = this.py(this.y[0] - hy);
     pen.drawImage(this.cells, a, c, b - a, d - c);
     this.trace(pen, (this.map.resonance_lines || []).flatMap((line) => line.pieces.map((piece) => ({points: piece}))), () => ["#555555", 1, [6, 5]]);
-    for (const range of this.map.damping_range || []) this.trace(pen, range.boundaries, (curve) => [kindColours[curve.kind], 1.1, [3, 3]]);
+    for (const range of this.map.band || []) this.trace(pen, range.boundaries, (curve) => [kindColours[curve.kind], 1.1, [3, 3]]);
     this.trace(pen, this.map.boundaries, (curve) => [kindColours[curve.kind] || "#000000", 2, curve.kind === "-1" ? [] : curve.kind === "+1" ? [9, 3] : [2, 3]]);
     this.nameLines(pen);
     pen.restore();
