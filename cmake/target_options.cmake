@@ -49,8 +49,10 @@ function(hb_header_set name)
   hb_target_options(hb_headers_${name})
   target_compile_features(hb_headers_${name} PUBLIC cxx_std_20)
   target_link_libraries(hb_headers_${name} PRIVATE Eigen3::Eigen)
+  # Named from the root, so that a compiler cache serves every copy of the project.
+  target_include_directories(hb_headers_${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_precompile_headers(hb_headers_${name} PRIVATE <Eigen/Dense> <algorithm> <array> <cmath> <complex> <functional>
-    <map> <memory> <optional> <string> <utility> <vector> ${PROJECT_SOURCE_DIR}/lib/product_kernels.hpp ${ARGN})
+    <map> <memory> <optional> <string> <utility> <vector> <lib/product_kernels.hpp> ${ARGN})
 endfunction()
 function(hb_precompiled target name)
   if(HB_PRECOMPILED_HEADERS)
