@@ -37,8 +37,8 @@ endfunction()
 
 # Headers of Eigen and the standard library, read once for each kind of target: one precompiled set for the libraries, one
 # with JSON and text for the command, one with JSON and GoogleTest for the tests; they also say which products of matrices
-# are compiled elsewhere (lib/product_kernels.hpp). Beside groups of eight files they save a seventh of the compile time. Each belongs to a target without flags of its own, since a set serves only those who
-# define what it was made with.
+# are compiled elsewhere (lib/product_kernels.hpp), which saves a tenth of the compile time. Each belongs to a target
+# without flags of its own, since a set serves only those who define what it was made with.
 option(HB_PRECOMPILED_HEADERS "Read Eigen and the standard library once for each kind of target" ON)
 function(hb_header_set name)
   if(NOT HB_PRECOMPILED_HEADERS)

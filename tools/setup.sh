@@ -35,10 +35,12 @@ done
 sundials=build/sundials
 has_sundials() { [[ -e /usr/include/cvode/cvode.h || -e $sundials/usr/include/cvode/cvode.h ]]; }
 unpack_sundials() {
-  mkdir -p "$sundials" && (cd "$sundials" && apt-get download libsundials-dev </dev/null && dpkg-deb -x libsundials-dev_*.deb .)
+  mkdir -p "$sundials"
+  (cd "$sundials" && rm -f libsundials-dev_*.deb && apt-get download libsundials-dev </dev/null &&
+    dpkg-deb -x libsundials-dev_*.deb .)
 }
 if ((!${#missing[@]})); then
-  has_sundials || unpack_sundials
+  has_sundials || unpack_sundials || { echo "Cannot download libsundials-dev: apt-get update may help" >&2; exit 1; }
   exit 0
 fi
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -18,9 +21,38 @@ Extremum largest_length(const FourierSeries& force) {
 
 namespace {
 
-// Mean length over the turn. It has kinks where the force passes through zero: there it settles slowly with the
-// samples.
+// Mean of |f| over the turn from the integral F of f between its sign changes, each found by halving.
+double mean_of_modulus(const FourierSeries& f) {
+  const auto at = [](const FourierSeries& series, double tau) { return fourier::evaluate(series, tau)(0); };
+  const double mean = f.c(0, 0).real();
+  FourierSeries F = f;
+  F.c(0, 0) = 0;
+  for (Eigen::Index k = 1; k <= f.num_harmonics(); ++k) F.c(0, k) /= std::complex<double>(0, static_cast<double>(k));
+  const auto integral = [&](double tau) { return mean * tau + at(F, tau); };
+  constexpr Eigen::Index samples_per_harmonic = 16;
+  constexpr int halvings = 60;
+  const Eigen::Index N = fourier::fast_length(samples_per_harmonic * (f.num_harmonics() + 1));
+  const Eigen::RowVectorXd values = fourier::synthesise(f, N).row(0);
+  const double step = two_pi / static_cast<double>(N), start = integral(0);
+  double sum = 0, before = start, sign = values(0) < 0 ? -1 : 1;
+  for (Eigen::Index j = 0; j < N; ++j) {
+    if (!(values((j + 1) % N) * sign < 0)) continue;
+    double low = step * static_cast<double>(j), high = low + step;
+    for (int k = 0; k < halvings; ++k) {
+      const double middle = (low + high) / 2;
+      (at(f, middle) * sign < 0 ? high : low) = middle;
+    }
+    const double here = integral((low + high) / 2);
+    sum += sign * (here - before);
+    before = here;
+    sign = -sign;
+  }
+  return (sum + sign * (start + two_pi * mean - before)) / two_pi;
+}
+
+// Mean length over the turn. Near a kink, where both components nearly vanish, it settles slowly with the samples.
 double mean_length(const FourierSeries& force) {
+  if (force.num_components() == 1) return mean_of_modulus(force);
   constexpr Eigen::Index most_per_harmonic = 64;
   constexpr double settled = 1e-12;
   const Eigen::Index H = std::max<Eigen::Index>(force.num_harmonics(), 16);

@@ -44,27 +44,34 @@ struct Place {
   int side = 1;
 };
 
-// Where `measure` of the turn's range is largest: on a grid, then between its neighbours.
+// Where `measure` of the turn's range is largest: between the neighbours of each place of a grid that may be the one,
+// for its samples miss a few per cent of the range.
 Place worst_place(const StressField& field, double length, const MatrixXd (&by_side)[2],
                   const std::function<double(const Range&)>& measure) {
+  constexpr double nearly = 0.95;
   const Index points = by_side[0].rows();
-  double most = -1;
-  Index best = 0;
-  int side = 1;
+  MatrixXd rough(points, 2);
   for (int s = 0; s < 2; ++s)
+    for (Index i = 0; i < points; ++i)
+      rough(i, s) = measure({{by_side[s].row(i).minCoeff(), 0}, {by_side[s].row(i).maxCoeff(), 0}});
+  const double least = nearly * rough.maxCoeff();
+  const auto at = [&](Index i) { return std::clamp<Index>(i, 0, points - 1); };
+  const auto x_of = [&](Index i) { return length * static_cast<double>(at(i)) / static_cast<double>(points - 1); };
+  Place worst;
+  double most = -1;
+  for (int s = 0; s < 2; ++s) {
+    const int side = s == 0 ? 1 : -1;
+    const auto value = [&](double x) { return measure(range_at(field, x, side)); };
     for (Index i = 0; i < points; ++i) {
-      const Range rough{{by_side[s].row(i).minCoeff(), 0}, {by_side[s].row(i).maxCoeff(), 0}};
-      if (!(measure(rough) > most)) continue;
-      most = measure(rough);
-      best = i;
-      side = s == 0 ? 1 : -1;
+      if (!(rough(i, s) >= least && rough(i, s) >= rough(at(i - 1), s) && rough(i, s) >= rough(at(i + 1), s))) continue;
+      for (const double x : {x_of(i), largest_between(x_of(i - 1), x_of(i + 1), value)})
+        if (const double here = value(x); here > most) {
+          most = here;
+          worst = {x, side};
+        }
     }
-  const auto x_of = [&](Index i) {
-    return length * static_cast<double>(std::clamp<Index>(i, 0, points - 1)) / static_cast<double>(points - 1);
-  };
-  const auto value = [&](double x) { return measure(range_at(field, x, side)); };
-  const double inside = largest_between(x_of(best - 1), x_of(best + 1), value);
-  return {value(inside) > value(x_of(best)) ? inside : x_of(best), side};
+  }
+  return worst;
 }
 
 }  // namespace

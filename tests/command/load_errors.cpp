@@ -20,8 +20,7 @@ class LoadErrors : public CommandTest {
   }
 };
 
-// Of everything that both documents have at `path`, few modes against many: no further off than the error says, and the
-// error no larger than a tenth.
+// Of everything that both documents have at `path`, few modes against many: no further off than the error says.
 void expect_covered(const Json& few, const Json& many, const std::string& path, const std::string& error) {
   const Json::json_pointer at("/" + path), of("/" + error);
   ASSERT_TRUE(few.contains(at)) << path;

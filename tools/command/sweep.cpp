@@ -50,7 +50,7 @@ void say_expected_of(const SweepScene& swept, int threads) {
   constexpr double long_point = 1;
   const double each = expected_seconds(swept.first(), swept.settings());
   if (each < long_point) return;
-  say_expected("the sweep", each * static_cast<double>(swept.axis().values.size()) / threads,
+  say_expected("the sweep", each * std::ceil(static_cast<double>(swept.axis().values.size()) / threads),
                "--modes, --only, --threads and --time-limit",
                swept.settings().stability_method == StabilityMethod::determinant);
 }

@@ -32,14 +32,14 @@ std::string stress_lines(const RodStress& stress, const Body& link, const Output
       fmt::format("  axial force       {:.4g} N pull, {:.4g} N push = {:.3g} of its buckling load\n",
                   stress.tension * units.force, stress.compression * units.force, stress.buckling_share());
   const int digits = stress.bending_error ? std::min(3, trusted_digits(stress.bending, *stress.bending_error)) : 3;
-  text += fmt::format(
-      "  stress            axial {:.3g} MPa, bending {:.{}g} MPa{}{}\n", stress.axial * units.megapascal,
-      stress.bending * units.megapascal, digits,
-      stress.bending_error ? fmt::format("; error {:.1e} MPa", *stress.bending_error * units.megapascal) : "",
-      stress.height_known
-          ? ""
-          : fmt::format(" (as of a rectangle {:.3g} {} high: the scene gives no section)",
-                        2 * std::sqrt(3 * link.elastic->second_moment / link.elastic->area), units.length));
+  text +=
+      fmt::format("  stress            axial {:.3g} MPa, bending {:.{}g}{} MPa{}\n", stress.axial * units.megapascal,
+                  stress.bending * units.megapascal, digits,
+                  stress.bending_error ? fmt::format(" +/- {:.1e}", *stress.bending_error * units.megapascal) : "",
+                  stress.height_known
+                      ? ""
+                      : fmt::format(" (as of a rectangle {:.3g} {} high: the scene gives no section)",
+                                    2 * std::sqrt(3 * link.elastic->second_moment / link.elastic->area), units.length));
   return text;
 }
 

@@ -12,6 +12,18 @@
 #include "tools/pictures/figure_text.hpp"
 
 namespace hb::tools {
+namespace {
+
+// A title has room for the verdict alone: of the rods, which move together, the name says nothing.
+std::string verdict_of_title(const NonlinearSweep& sweep) {
+  std::string words = branches_words(sweep);
+  words = words.substr(0, words.find("; "));
+  for (const std::string name : {" because of all rods together", " (all rods together)"})
+    if (const std::size_t at = words.find(name); at != std::string::npos) words.erase(at, name.size());
+  return words;
+}
+
+}  // namespace
 
 Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const NonlinearSweep& sweep, std::size_t r,
                      const CsvFile& linear_csv, const CsvFile& branches, const MeasuredOverlay& measured) {
@@ -25,8 +37,9 @@ Figure branch_figure(const SweepScene& scene, const SweepResult& linear, const N
   const std::string q_1 = "q_1 " + sweep.rods[r];
   for (const double value : measured.values(q_1)) top = std::max(top, value);
   text += "set title " +
-          figure_title(scene.scene(), {sweep.rods[r], branches_words(sweep)},
-                       "without linearisation: solid stable, dashed unstable, dots folds" +
+          figure_title(scene.scene(), {sweep.rods[r], verdict_of_title(sweep)},
+                       "without linearisation: solid stable, dashed unstable" +
+                           std::string(sweep.folds.empty() ? "" : ", dots folds") +
                            std::string(sweep.bifurcations.empty() ? "" : ", circles bifurcations")) +
           "\n";
   text += fmt::format(

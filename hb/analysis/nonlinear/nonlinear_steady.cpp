@@ -89,7 +89,11 @@ RodCoefficients coefficients_of_motion(const SceneModel& model, const RodModel& 
 void add_rods(const SceneModel& model, const ExactModel& exact, const std::optional<std::vector<FourierSeries>>& finer,
               const std::vector<BetterMotion>& better, NonlinearResult& result) {
   const PeriodicMotion& motion = result.motion;
-  const AllStresses stresses = result.computed.shape ? all_stresses(exact, result, better) : AllStresses{};
+  // Errors need both: what more harmonics change, and what more modes do.
+  const bool errors_known = finer && motion.q_finer.c.size() > 0;
+  const AllStresses stresses = result.computed.shape
+                                   ? all_stresses(exact, result, errors_known ? better : std::vector<BetterMotion>{})
+                                   : AllStresses{};
   const double base = result.speed / result.turns;
   for (std::size_t r = 0; r < model.rods.size(); ++r) {
     const RodModel& from = model.rods[r];
@@ -189,10 +193,11 @@ void add_force_errors(const ExactModel& exact, const std::vector<BetterMotion>& 
                torque = here.values.row(last).cwiseAbs().maxCoeff();
   result.force_errors = ForceErrors{0, 0, 0, 0};
   result.frame_errors = FrameErrors{};
-  const bool finer = result.motion.q_finer.c.size() > 0;
-  if (!finer) result.force_errors = {HUGE_VAL, HUGE_VAL, 0, 0}, result.frame_errors = {HUGE_VAL, HUGE_VAL};
-  if (finer)
-    for (SliderMotion& slider : result.sliders) slider.errors = {};
+  const bool finer = result.motion.q_finer.c.size() > 0, cut_known = better.size() > (finer ? 1 : 0);
+  if (!finer) result.force_errors->force = result.force_errors->torque = HUGE_VAL;
+  if (!cut_known) result.force_errors->force_cut = result.force_errors->torque_cut = HUGE_VAL;
+  if (!finer || !cut_known) result.frame_errors = {HUGE_VAL, HUGE_VAL};
+  for (SliderMotion& slider : result.sliders) slider.errors.fill(finer && cut_known ? 0 : HUGE_VAL);
   for (std::size_t k = 0; k < better.size(); ++k) {
     const ForceSamples there = samples_of(better[k].exact, better[k].q);
     constexpr double safety = 2;

@@ -269,7 +269,8 @@ double theory_error_of_modes(const SceneModel& model, std::size_t rod, double sp
 
 // In the unit of the value. A ripple is the difference of two extremes, each wrong by so much of the largest.
 std::optional<double> theory_error_of(const MetricValue& value, const SpeedResult& at, const Metric& metric) {
-  if (!at.theory) return std::nullopt;
+  const bool of_forces = metric.kind == MetricKind::force || metric.kind == MetricKind::torque_ripple;
+  if (!at.theory || (of_forces && !at.forces)) return std::nullopt;
   const auto part_of = [](const std::optional<double>& part, double size) {
     return part ? *part * std::abs(size) : HUGE_VAL;
   };

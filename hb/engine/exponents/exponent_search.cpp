@@ -63,7 +63,7 @@ bool add_up(const ScaledSystem& system, const Exponents& found) {
     sum += found.s[i].real();
     error += found.error[i];
   }
-  return std::isnan(error) || std::abs(sum) <= error;
+  return std::abs(sum) <= error;
 }
 
 // True if the columns span everything: no subspace appears twice. Rows are weighted as amplitudes of the modes are.

@@ -71,6 +71,7 @@ MeanModes mean_modes(const NormalForm& form) {
   }
   std::ranges::sort(real);
   for (std::size_t k = 1; k < real.size(); k += 2) pairs.push_back({real[k - 1] * real[k], -real[k - 1] - real[k]});
+  if (pairs.size() != static_cast<std::size_t>(n)) return {VectorXd::Zero(n), VectorXd::Zero(n)};
   std::ranges::sort(pairs);
   MeanModes modes{VectorXd(n), VectorXd(n)};
   for (Index i = 0; i < n; ++i) {
