@@ -59,21 +59,32 @@ FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings&
 // Periodic responses of one rod: as asked for, and with more modes where the error of the cut is looked at.
 struct Responses {
   FourierSeries q, finer;
+  std::optional<CutError> cut;  // of q, seen by `finer`
 };
+
+// Where more modes change half of the deflection they may miss a resonance too: then nothing tells the error.
+void compare(Responses& responses, const SceneModel& model, const RodModel& rod, double speed, FourierSeries finer) {
+  constexpr double most_cut = 0.5;
+  if (finer.c.size() == 0) return;
+  const CutError cut =
+      cut_error(*body_at(*model.linkage(), rod.link),
+                model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)], speed, responses.q, finer);
+  if (!(cut.deflection <= most_cut)) return;
+  responses.cut = cut;
+  responses.finer = std::move(finer);
+}
 
 // Deflection, bending moment and stress with their errors.
 void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, double speed,
                const Responses& responses) {
   const Body& link = *body_at(*model.linkage(), rod.link);
   const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
-  const auto& [q, finer] = responses;
+  const auto& [q, finer, cut] = responses;
   const RodShape shape = rod_shape(link, coefficients, speed, q);
   point.deflection = shape.deflection.max_abs;
   point.bending_moment = shape.bending_moment.max_abs;
-  const bool compared = finer.c.size() > 0;
-  if (compared) {
-    const PeakErrors errors =
-        peak_errors(link, shape, q, point.error_bound, cut_error(link, coefficients, speed, q, finer));
+  if (cut) {
+    const PeakErrors errors = peak_errors(link, shape, q, point.error_bound, *cut);
     point.deflection_error = errors.deflection;
     point.bending_moment_error = errors.bending_moment;
   }
@@ -83,8 +94,8 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
   point.buckling_share_error = stress.buckling_share_error();
   point.strain = stress.strain;
   if (stress.height_known)
-    point.stress = stress_point(
-        stress, stress_cycle(link, coefficients, speed, q, finer, compared ? point.error_bound : HUGE_VAL));
+    point.stress =
+        stress_point(stress, stress_cycle(link, coefficients, speed, q, finer, cut ? point.error_bound : HUGE_VAL));
 }
 
 RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
@@ -100,7 +111,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
       for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
         point.max_abs.push_back(fourier::max_abs(state.q, i).value);
       responses.q = std::move(state.q);
-      if (rod.finer.num_modes() > 0) responses.finer = with_more_modes(rod, speed, settings);
+      if (rod.finer.num_modes() > 0) compare(responses, model, rod, speed, with_more_modes(rod, speed, settings));
       if (only.shape && rod.reported) add_shape(point, model, rod, speed, responses);
     }
   }
@@ -126,7 +137,7 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
     const int link = model.rods[r].link;
     responses.push_back({link, solved[r].q});
     more_modes.push_back({link, solved[r].finer});
-    compared = compared && solved[r].finer.c.size() > 0;
+    compared = compared && solved[r].cut.has_value();
     response_error = std::max(response_error, point.rods[r].error_bound);
   }
   JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
