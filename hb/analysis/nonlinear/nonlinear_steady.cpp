@@ -91,9 +91,9 @@ void add_rods(const SceneModel& model, const ExactModel& exact, const std::optio
   const PeriodicMotion& motion = result.motion;
   // Errors need both: what more harmonics change, and what more modes do.
   const bool errors_known = finer && motion.q_finer.c.size() > 0;
-  const AllStresses stresses = result.computed.shape
-                                   ? all_stresses(exact, result, errors_known ? better : std::vector<BetterMotion>{})
-                                   : AllStresses{};
+  const std::vector<BetterMotion> none;
+  const AllStresses stresses =
+      result.computed.shape ? all_stresses(exact, result, errors_known ? better : none) : AllStresses{};
   const double base = result.speed / result.turns;
   for (std::size_t r = 0; r < model.rods.size(); ++r) {
     const RodModel& from = model.rods[r];
