@@ -37,10 +37,7 @@ void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int
   loads.drive_rigid = drive_of(forces.torque_rigid, speed, turns);
   if (!(loads.inertia > 0)) return;
   loads.speed_fluctuation = speed_fluctuation(loads.drive, loads.inertia, speed);
-  // Beyond that the motor's constant speed, and with it this estimate, has no meaning.
-  constexpr double largest_meant = 0.1;
-  loads.speed_fluctuation_error =
-      loads.speed_fluctuation > largest_meant ? HUGE_VAL : loads.energy_error / (loads.inertia * speed * speed);
+  loads.speed_fluctuation_error = loads.energy_error / (loads.inertia * speed * speed);
 }
 
 double crank_inertia(const Linkage& linkage) {
