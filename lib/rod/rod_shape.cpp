@@ -226,34 +226,36 @@ Eigen::MatrixXd shape_matrix(const RodShapes& shapes, const Eigen::Ref<const Eig
   return rows;
 }
 
-// What the search for peaks needs of the shapes alone.
+// What depends on the shapes and the places along the rod alone.
 struct ShapeTable {
   double length;
   Eigen::Index num_modes;
   double flexibility;  // in shear
+  Eigen::VectorXd x;
   RodShapes shapes;
-  Eigen::VectorXd x;  // a grid with at least 8 points per wave
-  Eigen::MatrixXd deflection, curvature;  // orders 0 and 2 there
+  Eigen::MatrixXd deflection, curvature;  // orders 0 and 2 at x
 
-  ShapeTable(double l, Eigen::Index I, double shear)
+  ShapeTable(double l, Eigen::Index I, double shear, const Eigen::Ref<const Eigen::VectorXd>& places)
       : length(l),
         num_modes(I),
         flexibility(shear),
+        x(places),
         shapes(l, I, shear),
-        x(Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l)),
         deflection(shape_matrix(shapes, x, 0)),
         curvature(shape_matrix(shapes, x, 2)) {}
 };
 
-// Kept by each thread for the rods it met last.
-// Valid until the next call.
-const ShapeTable& shape_table(double length, Eigen::Index num_modes, double flexibility) {
-  constexpr std::size_t most = 8;
+// Kept by each thread for the rods it met last. Valid until the next call.
+const ShapeTable& shape_table(double length, Eigen::Index num_modes, double flexibility,
+                              const Eigen::Ref<const Eigen::VectorXd>& x) {
+  constexpr std::size_t most = 16;
   thread_local std::deque<ShapeTable> tables;
   for (const ShapeTable& table : tables)
-    if (table.length == length && table.num_modes == num_modes && table.flexibility == flexibility) return table;
+    if (table.length == length && table.num_modes == num_modes && table.flexibility == flexibility &&
+        table.x.size() == x.size() && table.x == x)
+      return table;
   if (tables.size() == most) tables.pop_front();
-  return tables.emplace_back(length, num_modes, flexibility);
+  return tables.emplace_back(length, num_modes, flexibility, x);
 }
 
 // sign * F and its derivatives over (s = x/l, tau), F = d^order w/dx^order.
@@ -371,14 +373,21 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::Matri
 
 RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
   const Eigen::Index I = q.num_components();
-  const FourierSeries T = time_functions(link, rod, speed, q);
-  const auto largest = [](const ShapeTable& table, const FourierSeries& time, int order) {
-    return peak(table, time, fourier::synthesise(time, power_of_two_from(8 * (time.num_harmonics() + 1))), order);
+  const double l = link.length;
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l);  // 8 a wave
+  const auto sampled = [](const FourierSeries& T) {
+    return fourier::synthesise(T, power_of_two_from(8 * (T.num_harmonics() + 1)));
   };
+  const FourierSeries T = time_functions(link, rod, speed, q);
+  const Eigen::MatrixXd time = sampled(T);
   RodShape result;
-  result.deflection = largest(shape_table(link.length, I, shear_flexibility(link)), T, 0);
-  result.bending_moment =
-      largest(shape_table(link.length, I, 0), link.elastic->shear ? moment_functions(link, speed, q, T) : T, 2);
+  result.deflection = peak(shape_table(l, I, shear_flexibility(link), x), T, time, 0);
+  if (link.elastic->shear) {
+    const FourierSeries rotation = moment_functions(link, speed, q, T);
+    result.bending_moment = peak(shape_table(l, I, 0, x), rotation, sampled(rotation), 2);
+  } else {
+    result.bending_moment = peak(shape_table(l, I, 0, x), T, time, 2);
+  }
   result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
   return result;
 }
@@ -443,11 +452,14 @@ MomentAlong moment_along(const Body& link, double speed, const FourierSeries& q,
 
 RodField rod_field(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                    const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Index num_samples) {
-  FourierSeries T = time_functions(link, rod, speed, q);
-  const RodShapes shapes(link.length, q.num_components(), shear_flexibility(link));
+  const Eigen::Index I = q.num_components();
+  const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
+  const FourierSeries T = time_functions(link, rod, speed, q);
+  Eigen::MatrixXd time = over_turn(T, num_samples);
   RodField field;
-  field.w = shape_matrix(shapes, x, 0) * over_turn(T, num_samples);
-  field.bending_moment = moment_along(link, speed, q, std::move(T), num_samples)(x);
+  field.w = shape_table(link.length, I, shear_flexibility(link), x).deflection * time;
+  if (link.elastic->shear) time = over_turn(moment_functions(link, speed, q, T), num_samples);
+  field.bending_moment = EJ * (shape_table(link.length, I, 0, x).curvature * time);
   return field;
 }
 
