@@ -1,6 +1,6 @@
-// Dense factorisations behind functions: the only source that instantiates Eigen's solvers for matrices of run-time
-// size, so that files which use them compile in seconds. Algorithms and roundings are Eigen's
-// (of LU up to 1024 unknowns).
+// Dense factorisations behind functions: their sources (dense_*.cpp) alone instantiate Eigen's solvers for matrices of
+// run-time size, so that files which use them compile in seconds. Algorithms and roundings are Eigen's (of LU up to
+// 1024 unknowns).
 #pragma once
 
 #include <Eigen/Core>

@@ -8,6 +8,7 @@
 #include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
+#include "tests/support/wrong_scene.hpp"
 
 using namespace hb;
 
@@ -15,15 +16,6 @@ namespace {
 
 Linkage linkage_of(const std::string& text, const std::vector<Override>& overrides = {}) {
   return std::get<Linkage>(parse_scene(text, "file.toml", overrides).model);
-}
-
-std::string message_of(const std::string& text, const std::vector<Override>& overrides = {}) {
-  try {
-    (void)parse_scene(text, "file.toml", overrides);
-  } catch (const SceneError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 // A slider-crank in m, kg, s, rad whose rod has these elastic data.

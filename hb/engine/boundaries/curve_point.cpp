@@ -137,4 +137,23 @@ std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretc
   return point;
 }
 
+std::vector<BoundaryCurve> pieces_of_one_kind(const std::vector<CurvePoint>& points, bool closed) {
+  const std::size_t n = points.size() - (closed ? 1 : 0);
+  const auto kind = [&](std::size_t k) { return points[k % n].kind; };
+  std::size_t start = 0;
+  while (closed && start < n && kind(start) == kind(start + n - 1)) ++start;
+  if (start == n) start = 0;  // one kind all round
+  std::vector<BoundaryCurve> pieces(1);
+  for (std::size_t k = start; k < start + n; ++k) {
+    if (!pieces.back().points.empty() && kind(k) != pieces.back().kind) pieces.emplace_back();
+    pieces.back().kind = kind(k);
+    pieces.back().points.push_back(points[k % n].place);
+  }
+  if (BoundaryCurve& whole = pieces.front(); closed && whole.points.size() == n) {
+    whole.closed = true;
+    whole.points.push_back(whole.points.front());
+  }
+  return pieces;
+}
+
 }  // namespace hb

@@ -1,8 +1,9 @@
-// One more point of a boundary curve, between two neighbours that are known.
+// Points of boundary curves: one more between two neighbours that are known, and curves made of them.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "hb/engine/boundaries/boundary_curve.hpp"
 
@@ -31,5 +32,8 @@ struct CurveStretch {
 // same side unstable as both ends.
 [[nodiscard]] std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretch& stretch, double wide,
                                                       double high, const SweepOptions& options);
+
+// The curve through these points, apart where its kind changes. `closed`: the last point repeats the first.
+[[nodiscard]] std::vector<BoundaryCurve> pieces_of_one_kind(const std::vector<CurvePoint>& points, bool closed);
 
 }  // namespace hb

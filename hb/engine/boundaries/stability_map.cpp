@@ -74,8 +74,8 @@ class MapSearch {
     if (!options_.curves_only) map.points = map_grid(mesh_, samples_);
     if (options_.boundaries) {
       for (const CurveChain& chain : chains_) {
-        add_curves(chain, map.boundaries);
         const std::vector<CurvePoint> points = curve(chain).points;
+        std::ranges::move(pieces_of_one_kind(points, chain.closed), std::back_inserter(map.boundaries));
         map.not_converged += static_cast<std::size_t>(std::count_if(
             points.begin() + chain.closed, points.end(), [&](const CurvePoint& point) { return !reached(point); }));
       }
@@ -444,30 +444,6 @@ class MapSearch {
     if (k > 0 || closed) s.before = c.points[k > 0 ? k - 1 : n - 1];
     if (k + 1 < n || closed) s.after = c.points[k + 1 < n ? k + 2 : 1];
     return s;
-  }
-
-  // Pieces of one kind.
-  void add_curves(const CurveChain& chain, std::vector<BoundaryCurve>& curves) const {
-    const std::vector<CurvePoint> points = curve(chain).points;
-    const std::size_t n = points.size() - (chain.closed ? 1 : 0);
-    const auto kind = [&](std::size_t k) { return points[k % n].kind; };
-    std::size_t start = 0;
-    while (chain.closed && start < n && kind(start) == kind(start + n - 1)) ++start;
-    if (start == n) start = 0;  // one kind all round
-    BoundaryCurve piece;
-    for (std::size_t k = start; k < start + n; ++k) {
-      if (!piece.points.empty() && kind(k) != piece.kind) {
-        curves.push_back(std::move(piece));
-        piece = {};
-      }
-      piece.kind = kind(k);
-      piece.points.push_back(points[k % n].place);
-    }
-    if (chain.closed && piece.points.size() == n) {
-      piece.closed = true;
-      piece.points.push_back(piece.points.front());
-    }
-    curves.push_back(std::move(piece));
   }
 
   const MapSystemAt at_;

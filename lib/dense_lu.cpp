@@ -1,11 +1,8 @@
-#include "lib/dense.hpp"
-
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <utility>
 
+#include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::dense {
@@ -133,42 +130,8 @@ bool Lu<Scalar>::all_finite() const {
 template class Lu<double>;
 template class Lu<std::complex<double>>;
 
-Eigen::VectorXd basic_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  return A.colPivHouseholderQr().solve(b);
-}
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
-  return A.completeOrthogonalDecomposition().solve(b);
-}
-
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) { return A.inverse(); }
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) { return A.inverse(); }
 bool is_invertible(const Eigen::MatrixXd& A) { return Eigen::FullPivLU<Eigen::MatrixXd>(A).isInvertible(); }
-
-std::optional<Eigenpairs> eigenpairs(const Eigen::MatrixXd& A) {
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(A);
-  if (solver.info() != Eigen::Success) return std::nullopt;
-  return Eigenpairs{solver.eigenvalues(), solver.eigenvectors()};
-}
-std::optional<Eigenpairs> eigenpairs(const Eigen::MatrixXcd& A) {
-  const Eigen::ComplexEigenSolver<Eigen::MatrixXcd> solver(A);
-  if (solver.info() != Eigen::Success) return std::nullopt;
-  return Eigenpairs{solver.eigenvalues(), solver.eigenvectors()};
-}
-Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A) { return A.eigenvalues(); }
-
-SymmetricEigenpairs symmetric_eigenpairs(const Eigen::MatrixXd& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
-  return {solver.eigenvalues(), solver.eigenvectors()};
-}
-std::optional<Eigen::MatrixXd> inverse_square_root(const Eigen::MatrixXd& A) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
-  if (!(solver.eigenvalues().minCoeff() > 0)) return std::nullopt;
-  return solver.operatorInverseSqrt();
-}
-
-Qr qr(const Eigen::MatrixXd& A) {
-  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(A);
-  return {solver.householderQ(), solver.matrixQR().triangularView<Eigen::Upper>()};
-}
 
 }  // namespace hb::dense
