@@ -128,8 +128,8 @@ std::optional<ReducedSystem> slave_to_resonant(SampledStiffness& stiffness, std:
   return std::nullopt;
 }
 
-// Exponents of one mode that are known better than those of a whole list take their place. A list that has lost them,
-// because they decay too fast for it, gets them.
+// Exponents that are known better than those of a list take their place. A list that has lost them, because they decay
+// too fast for it, gets them.
 void sharpen(Exponents& list, const Exponents& pair) {
   for (std::size_t p = 0; p < pair.s.size(); ++p) {
     bool missing = true;
@@ -141,6 +141,7 @@ void sharpen(Exponents& list, const Exponents& pair) {
       if (!(pair.error[p] < list.error[i])) continue;
       list.s[i] = pair.s[p];
       list.error[i] = pair.error[p];
+      list.imaginary_error[i] = pair.imaginary_error[p];
       list.mode[i] = pair.mode[p];
       list.frequency[i] = pair.frequency[p];
       break;
@@ -194,7 +195,7 @@ ExponentSearch search_by_propagation(const ScaledSystem& system, double toleranc
   return search;
 }
 
-ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
+ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, const Exponents& known) {
   const Index I = system.num_modes();
   ExponentSearch search;
   std::vector<Index> together;
@@ -244,9 +245,11 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance) {
     }
   // Subspaces are as far off as their exponents are from being told apart.
   constexpr double above_errors = 1e-8, well_apart = 1e-3;
-  const double least = may_be_twice(search.exponents) ? well_apart : above_errors;
+  const bool apart = !may_be_twice(search.exponents);
+  const double least = apart ? above_errors : well_apart;
   search.complete = I == 1 ||  // one mode has the whole plane
                     (add_up(system, search.exponents) && spans(system, std::move(states), least));
+  if (search.complete && apart) sharpen(search.exponents, known);
   return search;
 }
 
@@ -345,7 +348,7 @@ ExponentSearch search_constant(const ScaledSystem& system) {
   const TurnExponents roots = constant_exponents(system);
   ExponentSearch search;
   search.exponents.s = roots.s;
-  search.exponents.error = roots.error;
+  search.exponents.error = search.exponents.imaginary_error = roots.error;
   search.exponents.converged = true;
   name_modes(search.exponents, system, all_modes(system));
   search.method = StabilityMethod::hill;

@@ -29,8 +29,9 @@ void name_modes(Exponents& exponents, const Eigen::VectorXd& w2, const Eigen::Ve
                                                    bool leading_only = false);
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
-// reduction converges.
-[[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance);
+// reduction converges. Exponents `known` better from elsewhere take the place of those found.
+[[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance,
+                                               const Exponents& known = {});
 
 // Only the leading exponents: the slowest modes (or `keep`) with the others slaved to them, and a bound that puts all
 // other exponents below; without such a bound all modes propagated. Empty if neither serves.

@@ -276,7 +276,7 @@ struct Turn {
     constexpr int fixed_n = fixed_m == Eigen::Dynamic ? Eigen::Dynamic : stages * fixed_m;
     constexpr int fixed_r = fixed_m == Eigen::Dynamic ? Eigen::Dynamic : 2 * fixed_m;
     // Eliminations with pivots seldom have a growth above this.
-    constexpr double most_growth = 64;
+    constexpr double most_growth = 4;
     const auto& [c, A, A2] = radau();
     const Index size = stages * m, width = size + 2 * m;
     std::vector<Lane, Eigen::aligned_allocator<Lane>> rows(static_cast<std::size_t>(size * width));

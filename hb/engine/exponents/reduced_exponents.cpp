@@ -104,33 +104,61 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
 struct Cells {
   Index count = 0;
   TurnExponents turn;
-  std::vector<double> change;  // empty: nothing to compare with
+  std::vector<double> change, turned;  // the second one of the imaginary part; empty: nothing to compare with
 };
 
-// Errors of the exponents of `fine` from their distances to those of `coarse`, which become fine.change.
-std::vector<double> errors_from(const Cells& coarse, Cells& fine) {
+// `changed`: with truncation at what the number of cells changes. The others: with what should be left of it.
+struct TruncatedErrors {
+  std::vector<double> changed, left, imaginary;
+};
+
+// fine.change and fine.turned from the nearest exponents of `coarse`; returned is the number of each.
+std::vector<std::size_t> compare(const Cells& coarse, Cells& fine) {
   const std::size_t n = fine.turn.s.size();
-  std::vector<double> error(n, HUGE_VAL);
   fine.change.assign(n, HUGE_VAL);
-  for (std::size_t i = 0; i < n; ++i) {
-    // The nearest coarse exponent; angles modulo 1.
-    double nearest = HUGE_VAL;
-    std::size_t its = 0;
+  fine.turned.assign(n, HUGE_VAL);
+  std::vector<std::size_t> nearest(n, 0);
+  for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < coarse.turn.s.size(); ++k) {
-      double turn = std::abs(fine.turn.s[i].imag() - coarse.turn.s[k].imag());
-      turn = std::min(turn, std::abs(1 - turn));
-      const double distance = std::hypot(fine.turn.s[i].real() - coarse.turn.s[k].real(), turn);
-      if (!(distance < nearest)) continue;
-      nearest = distance;
-      its = k;
+      const cplx apart = fine.turn.s[i] - coarse.turn.s[k];
+      const double turn = std::abs(apart.imag() - std::round(apart.imag()));
+      const double distance = std::hypot(apart.real(), turn);
+      if (!(distance < fine.change[i])) continue;
+      fine.change[i] = distance;
+      fine.turned[i] = turn;
+      nearest[i] = k;
     }
-    fine.change[i] = nearest;
-    // Two that agree by chance do not make up for the step before, which order 15 shrinks.
-    const double before =
-        coarse.change.empty() ? 0 : coarse.change[its] * std::pow(double(coarse.count) / double(fine.count), 15);
-    error[i] = std::max(nearest, before) + fine.turn.error[i];
+  return nearest;
+}
+
+// hb/engine/README.md (E17), (E18).
+TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
+  constexpr double asymptotic = 1e-3;  // larger changes do not tell how errors fall
+  const std::size_t n = fine.turn.s.size();
+  const std::vector<std::size_t> nearest = compare(coarse, fine);
+  const double ratio = double(coarse.count) / double(fine.count);
+  const double of_order = std::pow(ratio, 15), slower = std::pow(ratio, n > 2 ? 10 : 7.5);
+  double largest = 0;
+  for (const double change : fine.change) largest = change < asymptotic ? std::max(largest, change) : largest;
+  TruncatedErrors errors;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double change = fine.change[i], rounding = fine.turn.error[i];
+    // Two that agree by chance do not make up for the step before,
+    double least = coarse.change.empty() ? 0 : coarse.change[nearest[i]] * of_order;
+    errors.changed.push_back(std::max(change, least) + rounding);
+    // nor, with real multipliers, for others of that sign.
+    const double angle = fine.turn.s[i].imag();
+    const bool real = angle == 0 || angle == 0.5;
+    for (std::size_t k = 0; k < n && real; ++k)
+      if (fine.turn.s[k].imag() == angle && fine.change[k] < asymptotic)
+        least = std::max(least, 2 * of_order * fine.change[k]);
+    const bool falls = change < asymptotic;
+    errors.left.push_back(std::max(falls ? std::min(change, slower * largest) : change, least) + rounding);
+    errors.imaginary.push_back(
+        falls ? std::max({std::min(fine.turned[i], slower * largest), 2 * of_order * change, least}) + rounding
+              : errors.left.back());
   }
-  return error;
+  return errors;
 }
 
 }  // namespace
@@ -167,25 +195,28 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     Cells fine{cells,
                turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, leading_only,
                               coarse ? coarse->turn.subspaces : MatrixXd()),
+               {},
                {}};
     if (coarse) {
+      TruncatedErrors errors = errors_from(*coarse, fine);
+      // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
+      const double least = m == 1 ? oscillator_error(fastest, double(cells)) : 0;
+      for (auto* of : {&errors.changed, &errors.left, &errors.imaginary})
+        for (double& error : *of) error = std::max(error, least) + damping_error;
       result.s = fine.turn.s;
       result.others_below = fine.turn.others_below;
-      result.error = errors_from(*coarse, fine);
-      // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
-      if (m == 1)
-        for (double& error : result.error) error = std::max(error, oscillator_error(fastest, double(cells)));
-      for (double& error : result.error) error += damping_error;
+      result.error = errors.left;
+      result.imaginary_error = errors.imaginary;
       if (result.s.empty()) break;
       // At rounding more cells gain nothing.
-      const auto at_rounding = [&](std::size_t i) { return result.error[i] <= 2 * fine.turn.error[i]; };
-      result.converged = result.error[0] <= allowed(tolerance, fine.turn.s[0]);
+      const auto at_rounding = [&](std::size_t i) { return errors.changed[i] <= 2 * fine.turn.error[i]; };
+      result.converged = errors.changed[0] <= allowed(tolerance, fine.turn.s[0]);
       bool done = result.converged || at_rounding(0);
       if (done && enough == 0) enough = cells;
       const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
       for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
-        done =
-            done && (at_rounding(i) || result.error[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
+        done = done &&
+               (at_rounding(i) || errors.changed[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
       if (done) break;
     }
     coarse = std::move(fine);
@@ -193,6 +224,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   if (result.s.empty() && coarse) {
     result.s = coarse->turn.s;
     result.error.assign(coarse->turn.s.size(), HUGE_VAL);
+    result.imaginary_error = result.error;
     result.others_below = coarse->turn.others_below;
   }
   return result;

@@ -14,6 +14,7 @@ namespace hb {
 struct Exponents {
   std::vector<std::complex<double>> s;
   std::vector<double> error;
+  std::vector<double> imaginary_error;  // of Im s where Re s is known otherwise
   std::vector<Eigen::Index> mode;  // see Exponent
   std::vector<double> frequency;
   double others_below = -HUGE_VAL;  // upper bound on Re s of those of the group that are not listed
@@ -22,10 +23,12 @@ struct Exponents {
   void add(std::complex<double> value, double bar) {
     s.push_back(value);
     error.push_back(bar);
+    imaginary_error.push_back(bar);
   }
   void append(const Exponents& other) {
     s.insert(s.end(), other.s.begin(), other.s.end());
     error.insert(error.end(), other.error.begin(), other.error.end());
+    imaginary_error.insert(imaginary_error.end(), other.imaginary_error.begin(), other.imaginary_error.end());
     mode.insert(mode.end(), other.mode.begin(), other.mode.end());
     frequency.insert(frequency.end(), other.frequency.begin(), other.frequency.end());
     others_below = std::max(others_below, other.others_below);

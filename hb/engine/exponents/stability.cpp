@@ -28,8 +28,13 @@ Stability finished(const ScaledSystem& system, const ExponentSearch& search, dou
   // Where nothing varies the exponents are not taken modulo i Omega.
   const double period = system.K.num_harmonics() == 0 ? HUGE_VAL : 1;
   if (known && Index(found.s.size()) == 2 * system.num_modes() && system.conservative.all() &&
-      images_apart(found.s, found.error, period))
+      images_apart(found.s, found.error, period)) {
+    ExponentSearch on_axis = search;
+    for (cplx& s : on_axis.exponents.s) s.real(0);
+    on_axis.exponents.error = found.imaginary_error;
+    result = summary(on_axis, system.speed, tolerance);
     put_on_axis(result);
+  }
   return result;
 }
 
@@ -52,11 +57,11 @@ double propagated_cells(const ScaledSystem& system) {
 }
 
 // Where damping or gyroscopic forces couple the modes slaving goes in circles, and few slow modes are propagated in
-// less time than that.
+// less time than that; without such forces it takes as long, and slaving leaves more rounding.
 bool propagates_at_once(const ScaledSystem& system) {
-  constexpr Index most_modes = 4;
-  constexpr double most_cells = 64;
-  return !system.diagonal_damping && system.num_modes() <= most_modes && propagated_cells(system) <= most_cells;
+  const double cells = propagated_cells(system);
+  if (!system.diagonal_damping) return system.num_modes() <= 4 && cells <= 64;
+  return system.num_modes() > 1 && system.num_modes() <= 6 && cells <= 16;
 }
 
 // The decision policy: hb/engine/README.md, "Which method when".
@@ -77,11 +82,15 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
       const Stability result = finished(system, *lead, tolerance);
       if (result.verdict != Verdict::undecided && result.converged) return result;
     }
+  Exponents propagated;
   if (options.method == StabilityMethod::automatic && propagates_at_once(system)) {
-    const Stability result = finished(system, search_by_propagation(system, tolerance), tolerance);
-    if (result.verdict != Verdict::undecided && result.converged) return result;
+    ExponentSearch search = search_by_propagation(system, tolerance);
+    const Stability result = finished(system, search, tolerance);
+    const bool all = !system.diagonal_damping || Index(result.exponents.size()) == 2 * system.num_modes();
+    if (result.verdict != Verdict::undecided && result.converged && all) return result;
+    propagated = std::move(search.exponents);
   }
-  const ExponentSearch search = search_by_slaving(system, tolerance);
+  const ExponentSearch search = search_by_slaving(system, tolerance, propagated);
   Stability result = finished(system, search, tolerance);
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
   // Beyond about a second's work the fastest modes turn so often that propagation is less accurate than what is there.

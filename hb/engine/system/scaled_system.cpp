@@ -85,6 +85,33 @@ Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index n
   return size;
 }
 
+// The part of the mean in half of that.
+Eigen::VectorXd mean_sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index num_components, double speed) {
+  Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
+  double factor = 1;
+  for (const FourierSeries& part : powers) {
+    if (part.c.size() > 0) size += factor * part.c.col(0).cwiseAbs();
+    factor *= speed;
+  }
+  return size;
+}
+
+bool is_power_of_two(double x) {
+  int exponent = 0;
+  return std::frexp(std::abs(x), &exponent) == 0.5;
+}
+
+// Rounding errors of the stiffness where L and T are diagonal, relative to the size of each component, in epsilon:
+// half an epsilon for each operation that is not exact.
+double scaling_steps(const HillSystem& system, const Eigen::VectorXd& T, double speed) {
+  constexpr double sampled = 1;  // harmonics left out, sums over harmonics
+  double steps = sampled;
+  if (!is_power_of_two(speed)) steps += 1.5;  // Omega^2, its inverse and the product
+  if (!std::all_of(T.begin(), T.end(), is_power_of_two)) steps += 3;  // two roots, inverses and products
+  if (system.stiffness[1].c.size() > 0 || system.stiffness[2].c.size() > 0) steps += 2;  // powers of Omega added
+  return steps;
+}
+
 // See ScaledSystem::conservative, in the coordinates of the given system.
 Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& system) {
   const Eigen::Index I = system.num_modes();
@@ -170,8 +197,10 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   scaled.conservative = conservative_modes(system);
   if (!scaling) scaled.conservative.setConstant(scaled.conservative.all());
   const double steps = scaling ? 4 : 4 + 2 * static_cast<double>(I);
-  const Eigen::VectorXd stiffness_size = sizes(system.stiffness, I * I, speed);
-  scaled.K_rounding = steps * eps / (speed * speed) * L.cwiseAbs() *
+  Eigen::VectorXd stiffness_size = sizes(system.stiffness, I * I, speed);
+  if (scaling) stiffness_size -= mean_sizes(system.stiffness, I * I, speed);
+  const double stiffness_steps = scaling ? scaling_steps(system, T.diagonal(), speed) : steps;
+  scaled.K_rounding = stiffness_steps * eps / (speed * speed) * L.cwiseAbs() *
                       Eigen::Map<const Eigen::MatrixXd>(stiffness_size.data(), I, I) * T.cwiseAbs();
   scaled.f_rounding = Eigen::VectorXd::Zero(I);
 
