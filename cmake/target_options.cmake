@@ -8,7 +8,7 @@ function(hb_target_options target)
     $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
     # -ffast-math would remove the NaN tests that detect divergence; these three are safe.
     -fno-math-errno $<$<CXX_COMPILER_ID:GNU>:-fcx-limited-range> -fno-trapping-math
-    # GCC clears its memory away less often: a fifteenth of its time for 100 to 300 MB.
+    # GCC clears its memory away less often: some percent of its time for 100 to 300 MB.
     $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=800000>)
   if(HB_NATIVE)
     target_compile_options(${target} PRIVATE -march=native
