@@ -1,7 +1,9 @@
 #include "hb/engine/boundaries/encounters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace hb {
 
@@ -57,6 +59,25 @@ bool locked(const Place& p, std::size_t k) { return p.strands.all[k].partner != 
 // Without what it is locked to.
 double decay(const Place& p, std::size_t k) { return std::max(0.0, -growth_by_itself(p.strands, k)); }
 
+// Upper estimate of the growth of two strands that move by `most` against each other: by (B2) that of m + Re sqrt(Q)
+// where delta vanishes.
+double highest_together(const Strands& strands, std::size_t a, std::size_t b, double most) {
+  const double s = strands.all[a].s.real(), t = strands.all[b].s.real();
+  return 0.5 * (s + t + most + std::abs(s - t));
+}
+
+// The leading two are locked to each other and come from one mean exponent and its conjugate, which no other's decay or
+// frequency is taken for.
+std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
+  const Strand& leading = p.strands.all[0];
+  if (leading.partner == no_strand || leading.mean.size() != 2) return std::nullopt;
+  std::array<std::size_t, 2> names = {leading.mean[0], leading.mean[1]};
+  std::ranges::sort(names);
+  const Strand& partner = p.strands.all[leading.partner];
+  if (names[0] + names[1] + 1 != p.mean.size() || !std::ranges::is_permutation(partner.mean, names)) return std::nullopt;
+  return names;
+}
+
 // Multiplier +1, -1 or complex, of a locked pair.
 BoundaryKind kind_of(const Strand& strand) {
   constexpr double slack = 1e-7;
@@ -65,11 +86,6 @@ BoundaryKind kind_of(const Strand& strand) {
 }
 
 }  // namespace
-
-double growth_by_itself(const Strands& strands, std::size_t k) {
-  const Strand& strand = strands.all[k];
-  return strand.partner == no_strand ? strand.s.real() : 0.5 * (strand.s.real() + strands.all[strand.partner].s.real());
-}
 
 double apart(const Strands& strands, std::size_t a, std::size_t b) {
   return std::abs(folded(strands.all[a].s - strands.all[b].s).imag());
@@ -198,8 +214,7 @@ std::vector<Meeting> Encounters::meetings(Place& p, const Place& q, double least
       const double most = motion[a] + motion[b] + 1e-12, here = apart(sp, a, b);
       if (here > most) continue;
       // What they move is more than what locks them, and than the growth that this gives.
-      const double mean = 0.5 * (sp.all[a].s.real() + sp.all[b].s.real());
-      if (mean + 0.5 * (most + std::abs(sp.all[a].s.real() - sp.all[b].s.real())) < 0) continue;
+      if (highest_together(sp, a, b, most) < 0) continue;
       const double point = meeting_point(sp, a, b);
       if (point < -1e-12) continue;  // the conjugate pair's
       double there = HUGE_VAL, there_all = HUGE_VAL;  // along the axis; in all
@@ -213,6 +228,7 @@ std::vector<Meeting> Encounters::meetings(Place& p, const Place& q, double least
       if (!(here + there <= most)) continue;
       // Two that stay together, so near that nothing grows.
       constexpr double together = 0.2, far = 0.9;
+      const double mean = 0.5 * (sp.all[a].s.real() + sp.all[b].s.real());
       if (std::max(std::abs(folded(sp.all[a].s - sp.all[b].s)), there_all) < -together * mean && most < far) continue;
       const double needed = needed_coupling(sp.all[a].s.real(), sp.all[b].s.real());
       const double exciting = exciting_motion(p, q, a, b, std::max(needed, least));
@@ -253,6 +269,8 @@ bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
   const std::vector<Strand>& all = p.strands.all;
   const BoundaryKind kind = kind_of(all[0]);
   if (kind != kind_of(q.strands.all[0])) return false;
+  // At +1 and -1 an exponent locks to its conjugate.
+  if (const auto names = own_lock(p); kind != BoundaryKind::complex && names && names == own_lock(q)) return true;
   const std::vector<double> motion = motions(p, q);
   const std::size_t b = companion(p.strands);
   if (kind == BoundaryKind::complex &&
@@ -266,6 +284,7 @@ bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
     if (belongs(c, 0) || belongs(c, b) || locked(p, c) || apart(p.strands, 0, c) > motion[0] + motion[c]) continue;
     for (std::size_t d = 0; d < all.size(); ++d) {
       if (d == c || apart(p.strands, c, d) > motion[c] + motion[d]) continue;
+      if (highest_together(p.strands, c, d, motion[c] + motion[d]) < g) continue;
       if (exciting_motion(p, q, c, d, std::sqrt((g + decay(p, c)) * (g + decay(p, d)))) >= 0) return false;
     }
   }

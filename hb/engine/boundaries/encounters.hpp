@@ -30,9 +30,6 @@ struct Meeting {
   double x = 0;  // where they meet, roughly
 };
 
-// Growth of a strand, or of a locked one without what locks it: the mean of the two.
-[[nodiscard]] double growth_by_itself(const Strands& strands, std::size_t k);
-
 // Imaginary parts of two strands of one place apart, modulo 1: 0 .. 1/2.
 [[nodiscard]] double apart(const Strands& strands, std::size_t a, std::size_t b);
 

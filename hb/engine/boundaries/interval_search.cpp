@@ -73,10 +73,20 @@ class Search {
     return least;
   }
 
+  // Roughly at first: far from zero the growth need not be known as well as near it.
   bool evaluate(double x) {
     ++evaluations_;
-    const std::optional<StabilitySample> sample = stability_sample(at_, x, options_.stability);
-    if (!sample || !std::isfinite(sample->stability.growth_rate)) return false;
+    constexpr double far = 1e-3, rough = 1e-7;
+    const std::optional<ScaledSystem> system = at_(x);
+    if (!system) return false;
+    StabilityOptions options = options_.stability;
+    options.tolerance = std::max(options.tolerance, rough);
+    options.growth_suffices = true;
+    std::optional<StabilitySample> sample = stability_sample(*system, x, options);
+    if (!(std::abs(sample->stability.growth_rate) > far * sample->speed) ||
+        sample->stability.growth_error > rough * sample->speed)
+      sample = stability_sample(*system, x, options_.stability);
+    if (!std::isfinite(sample->stability.growth_rate)) return false;
     places_.emplace(x, encounters_.place(*sample));
     return true;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace hb {
 
@@ -20,9 +21,35 @@ constexpr double unlike_decay = 3;
 // What modulation may shift an exponent by, of second order.
 double shift(const MeanExponent& mean) { return mean.coupling * mean.coupling / (9 * detuning); }
 
-std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mean) {
+// Lines Re = const that part exponents and mean ones alike: as many of either beyond, and those next to the line moved
+// by no more than a part of its distance from them. What locks two exponents moves both; their mean counts.
+std::vector<double> parting_lines(const Strands& strands, const std::vector<MeanExponent>& mean) {
+  constexpr double most_moved = 0.25;
+  std::vector<double> lines, means;
+  if (strands.all.size() != mean.size()) return lines;
+  std::vector<std::pair<double, double>> seen;  // and error
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    seen.emplace_back(growth_by_itself(strands, k), strands.all[k].error);
+    means.push_back(mean[k].value.real());
+  }
+  std::ranges::sort(seen, std::greater<>());
+  std::ranges::sort(means, std::greater<>());
+  const auto moved = [&](std::size_t k) { return std::abs(seen[k].first - means[k]) + seen[k].second; };
+  for (std::size_t k = 0; k + 1 < means.size(); ++k) {
+    const double low = std::max(means[k + 1], seen[k + 1].first), high = std::min(means[k], seen[k].first);
+    if (std::max(moved(k), moved(k + 1)) < most_moved * (high - low)) lines.push_back(0.5 * (low + high));
+  }
+  return lines;
+}
+
+// s: its real part as it would be without what locks it.
+std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mean, const std::vector<double>& lines) {
+  const auto parted = [&](double x, double y) {
+    return std::ranges::any_of(lines, [&](double line) { return (x < line) != (y < line); });
+  };
   std::vector<std::pair<double, std::size_t>> distances;
   for (std::size_t n = 0; n < mean.size(); ++n) {
+    if (parted(s.real(), mean[n].value.real())) continue;
     const double decay = -mean[n].value.real(), seen = -s.real();
     const bool alike = decay <= unlike_decay * seen && seen <= unlike_decay * decay;
     distances.emplace_back(std::abs(folded(s - mean[n].value).imag()) + (alike ? 0 : 2 * doubt), n);
@@ -56,6 +83,11 @@ void find_partners(std::vector<Strand>& all) {
 
 }  // namespace
 
+double growth_by_itself(const Strands& strands, std::size_t k) {
+  const Strand& strand = strands.all[k];
+  return strand.partner == no_strand ? strand.s.real() : 0.5 * (strand.s.real() + strands.all[strand.partner].s.real());
+}
+
 cplx folded(cplx s) {
   double im = s.imag() - std::floor(s.imag() + 0.5);
   if (im <= -0.5) im += 1;
@@ -71,12 +103,15 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
     for (const Exponent& e : *list) {
       if (!std::isfinite(e.error)) continue;
       const cplx s = folded(e.value / sample.speed);
-      strands.all.push_back({s, e.error / sample.speed, candidates(s, mean)});
+      strands.all.push_back({s, e.error / sample.speed, {}});
     }
   }
   std::stable_sort(strands.all.begin(), strands.all.end(),
                    [](const Strand& a, const Strand& b) { return a.s.real() > b.s.real(); });
   find_partners(strands.all);
+  const std::vector<double> lines = parting_lines(strands, mean);
+  for (std::size_t k = 0; k < strands.all.size(); ++k)
+    strands.all[k].mean = candidates({growth_by_itself(strands, k), strands.all[k].s.imag()}, mean, lines);
   return strands;
 }
 

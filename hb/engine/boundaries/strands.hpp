@@ -29,6 +29,9 @@ struct Strands {
 // `mean`: of the sample's system.
 [[nodiscard]] Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent>& mean);
 
+// Growth of a strand, or of a locked one without what locks it: the mean of the two.
+[[nodiscard]] double growth_by_itself(const Strands& strands, std::size_t k);
+
 // Imaginary part to (-1/2, 1/2].
 [[nodiscard]] std::complex<double> folded(std::complex<double> s);
 

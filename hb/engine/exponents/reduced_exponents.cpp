@@ -179,7 +179,8 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   }
   const Index least = first_cells(reduced, fastest, tolerance), most = std::max<Index>(512, 12 * least);
   // The other exponents are wanted too, but for so much work only.
-  constexpr double further_tolerance = 1e-9, most_further_work = 1e6;  // about a second's
+  constexpr double most_further_work = 1e6;  // about a second's
+  const double further_tolerance = std::max(tolerance, 1e-9);
   constexpr Index most_further = 4;
   Index enough = 0;  // cells for the leading one
   Exponents result;

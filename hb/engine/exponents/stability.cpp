@@ -76,18 +76,21 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (options.method == StabilityMethod::determinant) return finished(system, search_by_determinant(system), tolerance);
   if (options.method == StabilityMethod::propagation)
     return finished(system, search_by_propagation(system, tolerance), tolerance);
+  const auto suffices = [&](const Stability& result) {
+    return result.converged && (result.verdict != Verdict::undecided || options.growth_suffices);
+  };
   // Without damping all exponents are needed to decide.
   if (options.leading_only && system.num_modes() > 1 && !system.conservative.all())
     if (const auto lead = search_leading(system, tolerance, options.keep)) {
       const Stability result = finished(system, *lead, tolerance);
-      if (result.verdict != Verdict::undecided && result.converged) return result;
+      if (suffices(result)) return result;
     }
   Exponents propagated;
   if (options.method == StabilityMethod::automatic && propagates_at_once(system)) {
     ExponentSearch search = search_by_propagation(system, tolerance);
     const Stability result = finished(system, search, tolerance);
     const bool all = !system.diagonal_damping || Index(result.exponents.size()) == 2 * system.num_modes();
-    if (result.verdict != Verdict::undecided && result.converged && all) return result;
+    if (suffices(result) && all) return result;
     propagated = std::move(search.exponents);
   }
   const ExponentSearch search = search_by_slaving(system, tolerance, propagated);
@@ -95,8 +98,9 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
   // Beyond about a second's work the fastest modes turn so often that propagation is less accurate than what is there.
   if (search.complete && propagated_cells(system) * std::pow(double(system.num_modes()), 3) > 1e6) return result;
-  if (search.complete && result.verdict != Verdict::undecided && result.converged) return result;
-  Stability second = finished(system, search_by_propagation(system, std::min(tolerance, 1e-11)), tolerance);
+  if (search.complete && suffices(result)) return result;
+  const double sharper = options.growth_suffices ? tolerance : std::min(tolerance, 1e-11);
+  Stability second = finished(system, search_by_propagation(system, sharper), tolerance);
   if (second.growth_error >= result.growth_error && second.verdict != Verdict::bounded) return result;
   second.evidence += search.complete ? " (second method after a first that was undecided or less accurate than asked)"
                                      : " (the reduction did not account for all exponents)";

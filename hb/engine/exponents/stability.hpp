@@ -27,6 +27,8 @@ struct StabilityOptions {
   bool leading_only = false;
   // The verdict alone: where closed-form bounds prove stability, growth_rate is the upper one of them.
   bool verdict_only = false;
+  // A growth rate within the tolerance is enough, also where its error leaves the verdict open.
+  bool growth_suffices = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};
 };
