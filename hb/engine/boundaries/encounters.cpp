@@ -9,6 +9,8 @@ namespace hb {
 
 namespace {
 
+using cplx = std::complex<double>;
+
 // Growth of the exponents that belong to each mean exponent at one place; -infinite: none.
 std::vector<double> growth_at(const Place& place) {
   std::vector<double> growth(place.mean.size(), -HUGE_VAL);
@@ -78,6 +80,16 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
   return names;
 }
 
+// Modulation shifts an exponent off its mean one in proportion to its square, hb/engine/README.md (B10).
+double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Strand& at_q) {
+  const std::size_t n = at_p.mean.front();
+  const double E_p = p.mean[n].modulation, E_q = q.mean[n].modulation;
+  const cplx shift = E_p <= E_q ? at_p.s - p.mean[n].value : at_q.s - q.mean[n].value;
+  const double smaller = std::min(E_p, E_q), larger = std::max(E_p, E_q);
+  if (smaller == 0) return 0;
+  return std::min(0.5, std::abs(folded(shift).imag()) * (std::pow(larger / smaller, 2) - 1));
+}
+
 // Multiplier +1, -1 or complex, of a locked pair.
 BoundaryKind kind_of(const Strand& strand) {
   constexpr double slack = 1e-7;
@@ -103,7 +115,7 @@ std::vector<double> unpredicted_motions(const Place& p, const Place& q) {
       const double apart = moved - (q.mean[n].value - p.mean[n].value).imag();
       least = std::min(least, std::abs(apart - std::round(apart)));
     }
-    unpredicted[k] = least;
+    unpredicted[k] = std::max(least, grown_shift(p, strand, q, q.strands.all[onward[k]]));
   }
   return unpredicted;
 }
@@ -176,7 +188,7 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
 
 // How far two strands of p that may excite each other (or one quench the other) move against each other on the way to q
 // at most, twice as far as their mean exponents; negative: they do not.
-double Encounters::motion_towards(Place& p, const Place& q, std::size_t a, std::size_t b, double needed,
+double Encounters::motion_towards(Place& p, Place& q, std::size_t a, std::size_t b, double needed,
                                   Effect effect) const {
   const Strand &s = p.strands.all[a], &t = p.strands.all[b];
   const bool comparable = p.mean.size() == q.mean.size();
@@ -186,24 +198,27 @@ double Encounters::motion_towards(Place& p, const Place& q, std::size_t a, std::
       const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
       const double moved =
           !comparable ? HUGE_VAL : 2 * (std::abs(q.mean[n].value.imag() - in) + std::abs(q.mean[r].value.imag() - ir));
-      if (n == r || moved <= motion || std::min(p.mean[n].coupling, p.mean[r].coupling) < needed) continue;
-      const ParametricCoupling* strength = coupling(p);
-      if (strength == nullptr) return HUGE_VAL;
+      const auto weaker = [&](const Place& place) { return std::min(place.mean[n].coupling, place.mean[r].coupling); };
+      if (n == r || moved <= motion || std::max(weaker(p), comparable ? weaker(q) : 0) < needed) continue;
+      const ParametricCoupling *of_p = coupling(p), *of_q = comparable ? coupling(q) : of_p;
+      if (of_p == nullptr || of_q == nullptr) return HUGE_VAL;
       const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
       const int k = static_cast<int>(std::round(to - from));
       const auto coupled = [&](std::size_t from_n, std::size_t to_r, int order) {
-        return effect == Effect::quenches ? strength->either_way(from_n, to_r, order)
-                                          : (*strength)(from_n, to_r, order);
+        const auto of = [&](const ParametricCoupling& c) {
+          return effect == Effect::quenches ? c.either_way(from_n, to_r, order) : c(from_n, to_r, order);
+        };
+        return std::max(of(*of_p), of(*of_q));
       };
       const bool acts =
-          k == 0 ? !(strength->symmetric() && in * ir > 0) : !((k > 0 ? coupled(n, r, k) : coupled(r, n, -k)) < needed);
+          k == 0 ? !(of_p->symmetric() && in * ir > 0) : !((k > 0 ? coupled(n, r, k) : coupled(r, n, -k)) < needed);
       if (acts) motion = moved;
     }
   }
   return motion;
 }
 
-std::vector<Meeting> Encounters::meetings(Place& p, const Place& q, double least) const {
+std::vector<Meeting> Encounters::meetings(Place& p, Place& q, double least) const {
   std::vector<Meeting> found;
   const Strands &sp = p.strands, &sq = q.strands;
   const std::vector<double> motion = motions(p, q);
@@ -265,12 +280,14 @@ double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b) cons
 
 // The leading pair is the same at both places: of one kind, and no others that could take its place with half of
 // `growth` are about to lock or have just unlocked beside it.
-bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
+bool Encounters::same_lock(Place& p, Place& q, double growth) const {
   const std::vector<Strand>& all = p.strands.all;
   const BoundaryKind kind = kind_of(all[0]);
   if (kind != kind_of(q.strands.all[0])) return false;
-  // At +1 and -1 an exponent locks to its conjugate.
-  if (const auto names = own_lock(p); kind != BoundaryKind::complex && names && names == own_lock(q)) return true;
+  // At +1 and -1 an exponent locks to its conjugate: one that decays faster than these grow does not take its place.
+  const auto names = own_lock(p);
+  const bool own = kind != BoundaryKind::complex && names && names == own_lock(q);
+  const double highest = std::max(all[0].s.real(), q.strands.all[0].s.real());
   const std::vector<double> motion = motions(p, q);
   const std::size_t b = companion(p.strands);
   if (kind == BoundaryKind::complex &&
@@ -284,6 +301,7 @@ bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
     if (belongs(c, 0) || belongs(c, b) || locked(p, c) || apart(p.strands, 0, c) > motion[0] + motion[c]) continue;
     for (std::size_t d = 0; d < all.size(); ++d) {
       if (d == c || apart(p.strands, c, d) > motion[c] + motion[d]) continue;
+      if (own && decay(p, c) > highest && (belongs(d, 0) || belongs(d, b))) continue;
       if (highest_together(p.strands, c, d, motion[c] + motion[d]) < g) continue;
       if (exciting_motion(p, q, c, d, std::sqrt((g + decay(p, c)) * (g + decay(p, d)))) >= 0) return false;
     }
@@ -293,7 +311,7 @@ bool Encounters::same_lock(Place& p, const Place& q, double growth) const {
 
 // Q = kappa^2 - delta^2 of the leading pair, delta half of what the two would be apart, cannot fall to zero:
 // |dQ| <= 2 kappa |d delta|.
-bool Encounters::locked_throughout(Place& p, const Place& q) const {
+bool Encounters::locked_throughout(Place& p, Place& q) const {
   const std::size_t b = p.strands.all[0].partner;
   if (b == no_strand) return false;
   const std::vector<double> motion = motions(p, q);
@@ -311,7 +329,7 @@ bool Encounters::lock_holds(Place& p, Place& q) const {
     const std::size_t b = companion(place->strands);
     if (b == no_strand) return false;
     // One that grows by itself is not held by a neighbour that does not excite it, nor by one that may quench it.
-    const Place& other = place == &p ? q : p;
+    Place& other = place == &p ? q : p;
     if (!locked(*place, 0) &&
         (exciting_motion(*place, other, 0, b, options_.least_growth) < 0 || quenched(*place, other, 0, b)))
       return false;
@@ -327,7 +345,7 @@ bool Encounters::locked_alike(const Place& p, const Place& q) {
 }
 
 // Strand a grows like g by itself, b decays like d: where their mean decays a falls to zero if kappa^2 >= g d (B9).
-bool Encounters::quenched(Place& p, const Place& q, std::size_t a, std::size_t b) const {
+bool Encounters::quenched(Place& p, Place& q, std::size_t a, std::size_t b) const {
   const double g = p.strands.all[a].s.real(), d = -growth_by_itself(p.strands, b);
   if (!(d > 0)) return false;
   const std::vector<std::size_t> onward = continued(p.strands, q.strands);
@@ -337,7 +355,7 @@ bool Encounters::quenched(Place& p, const Place& q, std::size_t a, std::size_t b
   return motion_towards(p, q, a, b, std::sqrt(g * d), Effect::quenches) >= 0;
 }
 
-std::vector<std::size_t> Encounters::neighbours(Place& p, const Place& q, std::size_t k) const {
+std::vector<std::size_t> Encounters::neighbours(Place& p, Place& q, std::size_t k) const {
   const std::vector<double> motion = motions(p, q);
   std::vector<std::size_t> near;
   for (std::size_t c = 0; c < p.strands.all.size(); ++c) {

@@ -52,7 +52,7 @@ class Encounters {
   bool resolved(Place& p, Place& q, double most) const;
 
   // Pairs of p's strands that may come together on the way to q and make each other grow by more than `least`.
-  std::vector<Meeting> meetings(Place& p, const Place& q, double least) const;
+  std::vector<Meeting> meetings(Place& p, Place& q, double least) const;
 
   // The two exponents that give the growth at p are locked to each other and stay so to q, or those of q to p.
   bool lock_holds(Place& p, Place& q) const;
@@ -61,20 +61,20 @@ class Encounters {
   static bool locked_alike(const Place& p, const Place& q);
 
   // Other strands of p that may excite strand k, which grows, or quench it, and come near it on the way to q.
-  std::vector<std::size_t> neighbours(Place& p, const Place& q, std::size_t k) const;
+  std::vector<std::size_t> neighbours(Place& p, Place& q, std::size_t k) const;
 
  private:
   const ParametricCoupling* coupling(Place& p) const;
   double needed_coupling(double growth, double other) const;
   enum class Effect { excites, quenches };
-  double motion_towards(Place& p, const Place& q, std::size_t a, std::size_t b, double needed, Effect effect) const;
-  double exciting_motion(Place& p, const Place& q, std::size_t a, std::size_t b, double needed) const {
+  double motion_towards(Place& p, Place& q, std::size_t a, std::size_t b, double needed, Effect effect) const;
+  double exciting_motion(Place& p, Place& q, std::size_t a, std::size_t b, double needed) const {
     return motion_towards(p, q, a, b, needed, Effect::excites);
   }
-  bool quenched(Place& p, const Place& q, std::size_t a, std::size_t b) const;
+  bool quenched(Place& p, Place& q, std::size_t a, std::size_t b) const;
   double largest_coupling(Place& p, std::size_t a, std::size_t b) const;
-  bool same_lock(Place& p, const Place& q, double growth) const;
-  bool locked_throughout(Place& p, const Place& q) const;
+  bool same_lock(Place& p, Place& q, double growth) const;
+  bool locked_throughout(Place& p, Place& q) const;
 
   const SystemAt& at_;
   const SweepOptions& options_;

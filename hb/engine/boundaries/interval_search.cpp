@@ -73,18 +73,23 @@ class Search {
     return least;
   }
 
-  // Roughly at first: far from zero the growth need not be known as well as near it.
+  // Between places where the growth is far from zero it need not be known as well as near it.
   bool evaluate(double x) {
     ++evaluations_;
     constexpr double far = 1e-3, rough = 1e-7;
     const std::optional<ScaledSystem> system = at_(x);
     if (!system) return false;
+    const auto is_far = [&](double growth) { return std::abs(growth) > far; };
+    const auto above = places_.lower_bound(x);
     StabilityOptions options = options_.stability;
-    options.tolerance = std::max(options.tolerance, rough);
-    options.growth_suffices = true;
+    if (above != places_.end() && above != places_.begin() && is_far(above->second.growth()) &&
+        is_far(std::prev(above)->second.growth())) {
+      options.tolerance = std::max(options.tolerance, rough);
+      options.growth_suffices = true;
+    }
     std::optional<StabilitySample> sample = stability_sample(*system, x, options);
-    if (!(std::abs(sample->stability.growth_rate) > far * sample->speed) ||
-        sample->stability.growth_error > rough * sample->speed)
+    if (options.growth_suffices && (!is_far(sample->stability.growth_rate / sample->speed) ||
+                                    sample->stability.growth_error > rough * sample->speed))
       sample = stability_sample(*system, x, options_.stability);
     if (!std::isfinite(sample->stability.growth_rate)) return false;
     places_.emplace(x, encounters_.place(*sample));

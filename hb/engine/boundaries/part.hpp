@@ -101,6 +101,7 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
   visit_elements(visit, sample.mean, [&](MeanExponent& exponent) {
     visit_complex(visit, exponent.value);
     visit(exponent.coupling);
+    visit(exponent.modulation);
   });
   visit(sample.growth_bound);
   visit(stability.growth_rate);

@@ -127,6 +127,10 @@ std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
     double distance;
     std::size_t from, to;
   };
+  const auto alike = [](const Strand& a, const Strand& b) {
+    return a.mean.empty() || b.mean.empty() ||
+           std::ranges::any_of(a.mean, [&](std::size_t n) { return std::ranges::count(b.mean, n) > 0; });
+  };
   std::vector<Match> matches;
   for (std::size_t a = 0; a < p.all.size(); ++a) {
     cplx motion = 0;
@@ -135,6 +139,7 @@ std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
       motion = q.mean[n] - p.mean[n];
     }
     for (std::size_t b = 0; b < q.all.size(); ++b) {
+      if (p.mean.size() == q.mean.size() && !alike(p.all[a], q.all[b])) continue;
       const cplx apart = q.all[b].s - p.all[a].s;
       matches.push_back({std::min(std::abs(folded(apart)), std::abs(folded(apart - motion))), a, b});
     }
