@@ -17,7 +17,7 @@ std::string duration(double seconds) {
 }
 
 // A forecast by the first parts, and one by which parts of every kind have been seen, after so many seconds.
-constexpr double looks[] = {0.3, 5}, worth_saying = 10;
+constexpr double looks[] = {1, 5}, worth_saying = 10;
 
 }  // namespace
 

@@ -76,7 +76,8 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
   std::array<std::size_t, 2> names = {leading.mean[0], leading.mean[1]};
   std::ranges::sort(names);
   const Strand& partner = p.strands.all[leading.partner];
-  if (names[0] + names[1] + 1 != p.mean.size() || !std::ranges::is_permutation(partner.mean, names)) return std::nullopt;
+  if (names[0] + names[1] + 1 != p.mean.size() || !std::ranges::is_permutation(partner.mean, names))
+    return std::nullopt;
   return names;
 }
 
