@@ -437,7 +437,9 @@ class Search {
             (chosen == nullptr || (it->second.sample.stability.growth_rate > chosen->stability.growth_rate) ==
                                       boundaries_[k].unstable_above))
           chosen = &it->second.sample;
-      if (chosen != nullptr) found.samples.push_back(*chosen);
+      if (chosen == nullptr) continue;
+      const std::optional<StabilitySample> sharp = stability_sample(at_, chosen->x, options_.stability);
+      found.samples.push_back(sharp ? *sharp : *chosen);
     }
     std::sort(not_excluded_.begin(), not_excluded_.end());
     for (const std::array<double, 2>& piece : not_excluded_) {
