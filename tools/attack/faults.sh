@@ -53,7 +53,7 @@ run() {
 # The same in place of the shell that calls it: its process is the one of `hb`.
 exec_run() { in_place="exec" run "$@"; }
 
-# Kills at random moments, then --resume until it ends: the same bytes as without.
+# Kills at random moments, then --resume until it ends: the same bytes as without. 143: TERM before hb looked for it.
 kills() {
   local job=$1 name=$2 status=0 round child signals=(KILL INT TERM)
   run "$job" "$work/whole" --no-plots >"$work/whole.txt" 2>"$work/whole.err" || status=$?
@@ -66,9 +66,9 @@ kills() {
     status=0
     wait $child || status=$?
     counted "kills"
-    ((status == 137 || status == 130)) || break
+    known $status "130 137 143" || break
   done
-  if ((status == 137 || status == 130)); then
+  if known $status "130 137 143"; then
     status=0
     run "$job" "$work/parts" --no-plots >"$work/parts.txt" 2>"$work/parts.err" || status=$?
   fi

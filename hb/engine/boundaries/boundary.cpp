@@ -76,16 +76,10 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
   };
   notice_kind(unstable_above ? b : a);
   const double wanted = options.tolerance * std::max(std::abs(low), std::abs(high));
-  // The boundary is no better known than the growth rate, which is asked for as the slope needs it.
+  // The boundary is no better known than the growth rate; where its sign decides its verdict may stay open.
   StabilityOptions sharp = options.stability;
+  sharp.tolerance = std::min(sharp.tolerance, 0.1 * boundary_tolerance);
   sharp.growth_suffices = by_sign;
-  const double sharpest = std::min(sharp.tolerance, boundary_tolerance), roughest = std::max(sharp.tolerance, 1e-7);
-  const auto needed_tolerance = [&](double speed) {
-    constexpr double part = 0.05;  // of what is promised
-    const double slope = std::abs((f_high - f_low) / (high - low));
-    return std::clamp(part * boundary_tolerance * std::max(std::abs(low), std::abs(high)) * slope / speed, sharpest,
-                      roughest);
-  };
   const double kappa1 = 0.2 / (high - low);
   const int half = static_cast<int>(std::ceil(std::log2((high - low) / (2 * wanted))));
   const int most = std::max(half, 0) + 1;
@@ -107,7 +101,6 @@ StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, 
     if (!(x > low && x < high)) break;
     const std::optional<ScaledSystem> system = at(x);
     if (!system) break;
-    sharp.tolerance = by_sign ? needed_tolerance(system->speed) : sharpest;
     const StabilitySample sample{x, system->speed, with_finite_growth(*system, sharp)};
     if (!std::isfinite(sample.stability.growth_rate)) break;
     const double f = value(sample);
