@@ -61,11 +61,10 @@ bool locked(const Place& p, std::size_t k) { return p.strands.all[k].partner != 
 // Without what it is locked to.
 double decay(const Place& p, std::size_t k) { return std::max(0.0, -growth_by_itself(p.strands, k)); }
 
-// Upper estimate of the growth of two strands that move by `most` against each other: by (B2) that of m + Re sqrt(Q)
-// where delta vanishes.
+// Upper estimate of the growth of two strands that move by `most` against each other: the faster growth and half of
+// that, since |sqrt(Q)| of (B2) changes by no more than delta does and m stays.
 double highest_together(const Strands& strands, std::size_t a, std::size_t b, double most) {
-  const double s = strands.all[a].s.real(), t = strands.all[b].s.real();
-  return 0.5 * (s + t + most + std::abs(s - t));
+  return std::max(strands.all[a].s.real(), strands.all[b].s.real()) + 0.5 * most;
 }
 
 // The leading two are locked to each other and come from one mean exponent and its conjugate, which no other's decay or
@@ -76,8 +75,9 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
   std::array<std::size_t, 2> names = {leading.mean[0], leading.mean[1]};
   std::ranges::sort(names);
   const Strand& partner = p.strands.all[leading.partner];
-  if (names[0] + names[1] + 1 != p.mean.size() || !std::ranges::is_permutation(partner.mean, names))
-    return std::nullopt;
+  const cplx a = p.mean[names[0]].value, b = p.mean[names[1]].value;
+  const bool conjugate = a.imag() != 0 && std::abs(a - std::conj(b)) <= 1e-9 * std::abs(a);
+  if (!conjugate || !std::ranges::is_permutation(partner.mean, names)) return std::nullopt;
   return names;
 }
 
@@ -85,10 +85,12 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
 double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Strand& at_q) {
   const std::size_t n = at_p.mean.front();
   const double E_p = p.mean[n].modulation, E_q = q.mean[n].modulation;
-  const cplx shift = E_p <= E_q ? at_p.s - p.mean[n].value : at_q.s - q.mean[n].value;
   const double smaller = std::min(E_p, E_q), larger = std::max(E_p, E_q);
   if (smaller == 0) return 0;
-  return std::min(0.5, std::abs(folded(shift).imag()) * (std::pow(larger / smaller, 2) - 1));
+  const Strand& weaker = E_p <= E_q ? at_p : at_q;
+  const cplx mean = (E_p <= E_q ? p : q).mean[n].value;
+  const double shift = std::max(0.0, std::abs(folded(weaker.s - mean).imag()) - weaker.error);
+  return std::min(0.5, shift * (std::pow(larger / smaller, 2) - 1));
 }
 
 // Multiplier +1, -1 or complex, of a locked pair.
@@ -188,7 +190,7 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
 }
 
 // How far two strands of p that may excite each other (or one quench the other) move against each other on the way to q
-// at most, twice as far as their mean exponents; negative: they do not.
+// at most, twice as far as their mean exponents, by the stronger coupling of both places; negative: they do not.
 double Encounters::motion_towards(Place& p, Place& q, std::size_t a, std::size_t b, double needed,
                                   Effect effect) const {
   const Strand &s = p.strands.all[a], &t = p.strands.all[b];

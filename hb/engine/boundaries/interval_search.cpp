@@ -26,6 +26,8 @@ constexpr double most_motion_of_models = 0.5;
 // Intervals are not divided below this, relative to x: narrower bands are not looked for.
 constexpr double least_width = 2e-9;
 constexpr int most_divisions = 48;
+// Growth beyond this is far from zero: so far it need not be known as well as near it.
+constexpr double far_from_zero = 1e-3, rough_tolerance = 1e-7;
 constexpr int most_evaluations = 200, most_evaluations_per_boundary = 50;
 
 struct Cell {
@@ -65,31 +67,30 @@ class Search {
  private:
   using Node = std::map<double, Place>::iterator;
 
+  static bool is_far(double growth) { return std::abs(growth) > far_from_zero; }
+
   // A growth that is not told from none between two places.
   double least_growth(const Place& p, const Place& q) const {
     double least = options_.least_growth;
     for (const Place* place : {&p, &q})
-      if (place->growth_error() < 1) least = std::max(least, place->growth_error());
+      if (place->growth_error() < 1 && !is_far(place->growth())) least = std::max(least, place->growth_error());
     return least;
   }
 
-  // Between places where the growth is far from zero it need not be known as well as near it.
   bool evaluate(double x) {
     ++evaluations_;
-    constexpr double far = 1e-3, rough = 1e-7;
     const std::optional<ScaledSystem> system = at_(x);
     if (!system) return false;
-    const auto is_far = [&](double growth) { return std::abs(growth) > far; };
     const auto above = places_.lower_bound(x);
     StabilityOptions options = options_.stability;
     if (above != places_.end() && above != places_.begin() && is_far(above->second.growth()) &&
         is_far(std::prev(above)->second.growth())) {
-      options.tolerance = std::max(options.tolerance, rough);
+      options.tolerance = std::max(options.tolerance, rough_tolerance);
       options.growth_suffices = true;
     }
     std::optional<StabilitySample> sample = stability_sample(*system, x, options);
-    if (options.growth_suffices && (!is_far(sample->stability.growth_rate / sample->speed) ||
-                                    sample->stability.growth_error > rough * sample->speed))
+    if (options.growth_suffices &&
+        !(sample->stability.converged && is_far(sample->stability.growth_rate / sample->speed)))
       sample = stability_sample(*system, x, options_.stability);
     if (!std::isfinite(sample->stability.growth_rate)) return false;
     places_.emplace(x, encounters_.place(*sample));
@@ -438,8 +439,10 @@ class Search {
                                       boundaries_[k].unstable_above))
           chosen = &it->second.sample;
       if (chosen == nullptr) continue;
-      const std::optional<StabilitySample> sharp = stability_sample(at_, chosen->x, options_.stability);
-      found.samples.push_back(sharp ? *sharp : *chosen);
+      found.samples.push_back(*chosen);
+      if (const auto sharp = stability_sample(at_, chosen->x, options_.stability);
+          sharp && sharp->stability.growth_error < chosen->stability.growth_error)
+        found.samples.back() = *sharp;
     }
     std::sort(not_excluded_.begin(), not_excluded_.end());
     for (const std::array<double, 2>& piece : not_excluded_) {

@@ -145,8 +145,8 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
   const bool converges = ways.allFinite() && ways.minCoeff() >= 0;
   const MatrixXd all = converges ? MatrixXd(C * ways) : MatrixXd::Constant(n, n, HUGE_VAL);
   for (Index i = 0; i < n; ++i) {
-    auto& [value, coupling, modulation] = result[static_cast<std::size_t>(i)];
-    modulation = C.row(i).maxCoeff();
+    double& coupling = result[static_cast<std::size_t>(i)].coupling;
+    result[static_cast<std::size_t>(i)].modulation = C.row(i).maxCoeff();
     for (Index j = 0; j < n; ++j)
       if (j != i) coupling = std::max(coupling, margin * std::sqrt(all(i, j) * all(j, i)));
   }

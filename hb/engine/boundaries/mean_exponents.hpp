@@ -14,7 +14,7 @@ struct MeanExponent {
   std::complex<double> value;  // mu, per radian of crank angle; its imaginary part is not folded
   // Upper estimate of the growth that any resonance with another one can reach, whatever its order; per radian.
   double coupling = 0;
-  double modulation = 0;  // the largest of what all harmonics do to it together, sum_k E_k,nr
+  double modulation = 0;  // the largest sum_k E_k,nr, of all r
 };
 
 // 2I of them, imaginary part ascending, then real part: each is continuous along a parameter.

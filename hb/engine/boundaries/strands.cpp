@@ -25,18 +25,22 @@ double shift(const MeanExponent& mean) { return mean.coupling * mean.coupling / 
 // by no more than a part of its distance from them. What locks two exponents moves both; their mean counts.
 std::vector<double> parting_lines(const Strands& strands, const std::vector<MeanExponent>& mean) {
   constexpr double most_moved = 0.25;
+  struct Seen {
+    double growth, error;
+    auto operator<=>(const Seen&) const = default;
+  };
   std::vector<double> lines, means;
   if (strands.all.size() != mean.size()) return lines;
-  std::vector<std::pair<double, double>> seen;  // and error
+  std::vector<Seen> seen;
   for (std::size_t k = 0; k < mean.size(); ++k) {
-    seen.emplace_back(growth_by_itself(strands, k), strands.all[k].error);
+    seen.push_back({growth_by_itself(strands, k), strands.all[k].error});
     means.push_back(mean[k].value.real());
   }
   std::ranges::sort(seen, std::greater<>());
   std::ranges::sort(means, std::greater<>());
-  const auto moved = [&](std::size_t k) { return std::abs(seen[k].first - means[k]) + seen[k].second; };
+  const auto moved = [&](std::size_t k) { return std::abs(seen[k].growth - means[k]) + seen[k].error; };
   for (std::size_t k = 0; k + 1 < means.size(); ++k) {
-    const double low = std::max(means[k + 1], seen[k + 1].first), high = std::min(means[k], seen[k].first);
+    const double low = std::max(means[k + 1], seen[k + 1].growth), high = std::min(means[k], seen[k].growth);
     if (std::max(moved(k), moved(k + 1)) < most_moved * (high - low)) lines.push_back(0.5 * (low + high));
   }
   return lines;
@@ -124,6 +128,7 @@ double mean_motion(const Strands& p, const Strands& q, std::size_t k) {
 
 std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
   struct Match {
+    bool unlike;  // no mean exponent may have become both
     double distance;
     std::size_t from, to;
   };
@@ -139,13 +144,14 @@ std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
       motion = q.mean[n] - p.mean[n];
     }
     for (std::size_t b = 0; b < q.all.size(); ++b) {
-      if (p.mean.size() == q.mean.size() && !alike(p.all[a], q.all[b])) continue;
+      const bool unlike = p.mean.size() == q.mean.size() && !alike(p.all[a], q.all[b]);
       const cplx apart = q.all[b].s - p.all[a].s;
-      matches.push_back({std::min(std::abs(folded(apart)), std::abs(folded(apart - motion))), a, b});
+      matches.push_back({unlike, std::min(std::abs(folded(apart)), std::abs(folded(apart - motion))), a, b});
     }
   }
-  std::stable_sort(matches.begin(), matches.end(),
-                   [](const Match& a, const Match& b) { return a.distance < b.distance; });
+  std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
+    return a.unlike != b.unlike ? b.unlike : a.distance < b.distance;
+  });
   std::vector<std::size_t> result(p.all.size(), no_strand);
   std::vector<bool> taken(q.all.size(), false);
   for (const Match& match : matches) {

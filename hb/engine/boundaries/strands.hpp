@@ -39,7 +39,7 @@ struct Strands {
 [[nodiscard]] double mean_motion(const Strands& p, const Strands& q, std::size_t k);
 
 // For each strand of p the one of q that it goes on as: nearest to where it is, or to where its mean exponent's motion
-// takes it, of those that may have come from the same mean exponent; each is taken once.
+// takes it; of those that may have come from the same mean exponent, as far as they go. Each is taken once.
 [[nodiscard]] std::vector<std::size_t> continued(const Strands& p, const Strands& q);
 
 }  // namespace hb
