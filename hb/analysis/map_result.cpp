@@ -69,10 +69,23 @@ std::size_t boundary_points_not_reached(const MapResult& result) {
   return count;
 }
 
+namespace {
+
+StabilityMapSearch rod_search(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
+                              MapOptions search) {
+  search.varies = plane.varies(rod);
+  return stability_map_search([&plane, rod](double u, double v) { return plane.system(rod, u, v); }, std::move(x),
+                              std::move(y), search);
+}
+
+}  // namespace
+
 StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
                      const MapOptions& search) {
-  const MapSystemAt at = [&plane, rod](double u, double v) { return plane.system(rod, u, v); };
-  return stability_map(at, std::move(x), std::move(y), search);
+  const StabilityMapSearch one = rod_search(plane, rod, std::move(x), std::move(y), search);
+  one.begin();
+  one.finish();
+  return one.result();
 }
 
 std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
@@ -132,9 +145,7 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
   result.y_axis = y_axis;
   result.rods = plane.rods();
   std::vector<StabilityMapSearch> searches;
-  for (std::size_t r = 0; r < result.rods.size(); ++r)
-    searches.push_back(
-        stability_map_search([&plane, r](double u, double v) { return plane.system(r, u, v); }, x, y, search));
+  for (std::size_t r = 0; r < result.rods.size(); ++r) searches.push_back(rod_search(plane, r, x, y, search));
   for (const StabilityMapSearch& one : searches) one.begin();
   for (const StabilityMapSearch& one : searches) one.finish();
   for (const StabilityMapSearch& one : searches) result.maps.push_back(one.result());

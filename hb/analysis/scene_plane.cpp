@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/analysis/chebyshev.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/request.hpp"
 #include "lib/rod/rod.hpp"
@@ -51,6 +52,7 @@ struct Patch {
   std::array<Index, 2> degree{};
   std::vector<Layout> layouts;  // per rod
   std::vector<MatrixXd> coefficients;  // per rod: numbers x products of Chebyshev polynomials, first axis fastest
+  std::vector<std::array<bool, 2>> varies;  // per rod: not the same bits at all nodes along the axis
   std::vector<Patch> parts;
 
   bool interpolates() const { return !coefficients.empty(); }
@@ -135,32 +137,15 @@ VectorXd scales(const VectorXd& v, const Layout& layout) {
   return scale;
 }
 
-// Chebyshev-Lobatto nodes on [-1, 1] and the matrix from values there to coefficients of T_0 .. T_n.
-VectorXd lobatto_nodes(Index n) {
-  VectorXd nodes(n + 1);
-  for (Index k = 0; k <= n; ++k) nodes(k) = n == 0 ? 0 : std::sin(std::numbers::pi * double(2 * k - n) / double(2 * n));
-  return nodes;
-}
-
-VectorXd chebyshev(double t, Index n) {
-  VectorXd T(n + 1);
-  T(0) = 1;
-  if (n > 0) T(1) = t;
-  for (Index k = 2; k <= n; ++k) T(k) = 2 * t * T(k - 1) - T(k - 2);
-  return T;
-}
-
-MatrixXd to_coefficients(Index n) {
-  if (n == 0) return MatrixXd::Ones(1, 1);
-  // c_j = 2/n sum'' f(t_k) T_j(t_k), both ends of both sums halved.
-  MatrixXd D(n + 1, n + 1);
-  const VectorXd nodes = lobatto_nodes(n);
-  for (Index k = 0; k <= n; ++k) D.row(k) = chebyshev(nodes(k), n).transpose() * (2.0 / double(n));
-  D.row(0) *= 0.5;
-  D.row(n) *= 0.5;
-  D.col(0) *= 0.5;
-  D.col(n) *= 0.5;
-  return D;
+// Whether values at (n[0]+1) x (n[1]+1) nodes, one a column, first axis fastest, change along each axis.
+std::array<bool, 2> varying(const MatrixXd& values, const std::array<Index, 2>& n) {
+  const Index rows = n[0] + 1;
+  std::array<bool, 2> varies{};
+  for (Index k = 0; k < values.cols(); ++k) {
+    varies[0] |= values.col(k) != values.col(k - k % rows);
+    varies[1] |= values.col(k) != values.col(k % rows);
+  }
+  return varies;
 }
 
 }  // namespace
@@ -267,12 +252,14 @@ struct ScenePlane::Implementation {
         if ((*sample)[r].num_modes() != (*samples[0])[r].num_modes()) return false;  // shear.hpp, num_unknowns
     }
     patch.degree = n;
-    const MatrixXd Dx = to_coefficients(n[0]), Dy = to_coefficients(n[1]);
     for (std::size_t r = 0; r < samples[0]->size(); ++r) {
       Layout layout;
       for (const auto& sample : samples) layout.widen((*sample)[r]);
       MatrixXd values(layout.size(), static_cast<Index>(num_nodes));
       for (std::size_t k = 0; k < num_nodes; ++k) values.col(static_cast<Index>(k)) = packed((*samples[k])[r], layout);
+      const std::array<bool, 2> varies = varying(values, n);
+      const MatrixXd Dx = varies[0] ? to_coefficients(n[0]) : first_value(n[0]);
+      const MatrixXd Dy = varies[1] ? to_coefficients(n[1]) : first_value(n[1]);
       MatrixXd coefficients = MatrixXd::Zero(values.rows(), values.cols());
       const Index rows = n[0] + 1;
       for (Index l = 0; l <= n[1]; ++l) {
@@ -286,10 +273,12 @@ struct ScenePlane::Implementation {
         if (!(error.array() <= interpolation_tolerance * scales(truth, layout).array()).all()) {
           patch.coefficients.clear();
           patch.layouts.clear();
+          patch.varies.clear();
           return false;
         }
       }
       patch.layouts.push_back(layout);
+      patch.varies.push_back(varies);
       patch.coefficients.push_back(std::move(coefficients));
     }
     ++patches;
@@ -434,6 +423,14 @@ ScenePlane::ScenePlane(ScenePlane&&) noexcept = default;
 const Scene& ScenePlane::scene() const { return *self_->corner; }
 const std::vector<std::string>& ScenePlane::rods() const { return self_->names; }
 double ScenePlane::speed(double x, double y) const { return self_->speed_at(x, y); }
+
+std::array<bool, 2> ScenePlane::varies(std::size_t rod) const {
+  std::array<bool, 2> varies{true, true};
+  if (!self_->root.interpolates()) return varies;
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (self_->varies[axis]) varies[axis] = self_->root.varies[rod][axis];
+  return varies;
+}
 
 std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double y) const {
   Implementation& s = *self_;

@@ -4,6 +4,7 @@
 // Chebyshev nodes give them to rounding; where they do not, each place is computed from the scene.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,6 +52,8 @@ class ScenePlane {
   [[nodiscard]] const Scene& scene() const;  // at a corner
   [[nodiscard]] const std::vector<std::string>& rods() const;
   [[nodiscard]] double speed(double x, double y) const;  // rad per unit time
+  // Whether the system of a rod depends on x and on y: a link's number may leave the system of another what it is.
+  [[nodiscard]] std::array<bool, 2> varies(std::size_t rod) const;
   // Empty where the scene has no system. From any thread.
   [[nodiscard]] std::optional<ScaledSystem> system(std::size_t rod, double x, double y) const;
   // Why there is none: the message of the scene at that place; a linkage that does not turn through has its dyad.

@@ -57,6 +57,22 @@ TEST_F(Map, JsonHasTheKeysOfTheContract) {
   }
 }
 
+// The force along AB is that of CD's inertia too, which its J does not change here; CD's own system changes.
+TEST_F(Map, ARodThatANumberDoesNotMeetIsTheSameAlongIt) {
+  const Json found = document(scene("six_link") + " --x rpm=1500:2100:4 --y CD.J=30:60:3 --modes 2");
+  bool differs = false;
+  for (const Json& rod : found["rods"]) {
+    const Json& growth = rod["growth_rate"];
+    for (std::size_t j = 1; j < growth.size(); ++j) {
+      if (rod["name"] == "AB")
+        EXPECT_EQ(growth[j], growth[0]);
+      else
+        differs |= growth[j] != growth[0];
+    }
+  }
+  EXPECT_TRUE(differs);
+}
+
 // At every place what `hb steady` says there, whichever axis is the speed.
 TEST_F(Map, StressesOfItsPlacesAreThoseOfOneSpeed) {
   const std::string rod =

@@ -319,6 +319,39 @@ TEST(StabilityMap, SameBitsInWhateverOrderAndThreadTheWorkIsDone) {
   }
 }
 
+// The same map, from an eighth of the places.
+TEST(StabilityMap, OneLineServesAllAlongAnAxisOnWhichTheSystemDoesNotDepend) {
+  const std::vector<double> speeds = spaced(0.8, 3.8, 15), others = spaced(0, 1, 10);
+  for (const bool along_x : {true, false}) {
+    const MapSystemAt at = [&](double x, double y) { return scale_system(coupled(0.06, 0.3), along_x ? x : y); };
+    const std::vector<double>&x = along_x ? speeds : others, &y = along_x ? others : speeds;
+    MapOptions options;
+    const StabilityMap whole = stability_map(at, x, y, options);
+    options.varies = {along_x, !along_x};
+    const StabilityMap shared = stability_map(at, x, y, options);
+    EXPECT_LT(8 * shared.samples, whole.samples);
+    ASSERT_EQ(whole.points.size(), shared.points.size());
+    for (std::size_t p = 0; p < whole.points.size(); ++p) {
+      EXPECT_EQ(whole.points[p].source, shared.points[p].source);
+      EXPECT_EQ(whole.points[p].speed, shared.points[p].speed);
+      EXPECT_EQ(whole.points[p].growth_rate, shared.points[p].growth_rate);
+      EXPECT_EQ(whole.points[p].verdict, shared.points[p].verdict);
+    }
+    ASSERT_GE(shared.boundaries.size(), 4u);
+    ASSERT_EQ(whole.boundaries.size(), shared.boundaries.size());
+    for (std::size_t c = 0; c < shared.boundaries.size(); ++c) {
+      const BoundaryCurve &full = whole.boundaries[c], &curve = shared.boundaries[c];
+      EXPECT_EQ(full.kind, curve.kind);
+      for (const BoundaryPoint& p : curve.points)
+        EXPECT_NEAR(along_x ? p.x : p.y, along_x ? full.points[0].x : full.points[0].y, 1e-9);
+      // From one side of the map to the other.
+      EXPECT_EQ(std::abs(along_x ? curve.points.front().y - curve.points.back().y
+                                 : curve.points.front().x - curve.points.back().x),
+                1);
+    }
+  }
+}
+
 TEST(StabilityMap, PlacesWithoutASystemAreMarkedAndTheRestIsAsWithoutThem) {
   const MapSystemAt whole = speed_and_swing(0.05);
   const MapSystemAt cut = [&](double x, double y) { return x + y > 2.6 ? std::optional<ScaledSystem>() : whole(x, y); };

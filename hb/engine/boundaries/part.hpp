@@ -2,7 +2,9 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
@@ -157,6 +159,24 @@ std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
   };
   parts({count, result, numbers, take});
   return found;
+}
+
+// Results of things, in their order; of those with one key one is computed.
+template <class Result, class Key, class Compute, class Visit>
+std::vector<Result> shared_parts(const PartsOf& parts, const std::vector<std::size_t>& things, const Key& key_of,
+                                 const Compute& compute, const Visit& visit) {
+  std::map<decltype(key_of(std::size_t{})), std::size_t> number_of_key;
+  std::vector<std::size_t> computed, number;
+  for (const std::size_t thing : things) {
+    const auto [place, is_new] = number_of_key.emplace(key_of(thing), computed.size());
+    if (is_new) computed.push_back(thing);
+    number.push_back(place->second);
+  }
+  const std::vector<Result> found = computed_parts<Result>(
+      parts, computed.size(), [&](std::size_t k) { return compute(computed[k]); }, visit);
+  std::vector<Result> all;
+  for (const std::size_t k : number) all.push_back(found[k]);
+  return all;
 }
 
 }  // namespace hb

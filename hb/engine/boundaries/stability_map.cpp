@@ -94,6 +94,15 @@ class MapSearch {
     return computed_parts<Result>(options_.parts, count, compute, visit);
   }
 
+  // Results of nodes or edges; along an axis on which the system does not depend those of one key have one.
+  template <class Result, class Key, class Compute, class Visit>
+  std::vector<Result> results_of(const std::vector<std::size_t>& things, const Key& key_of, const Compute& compute,
+                                 const Visit& visit) const {
+    if (!curves_bend()) return shared_parts<Result>(options_.parts, things, key_of, compute, visit);
+    return results<Result>(
+        things.size(), [&](std::size_t k) { return compute(things[k]); }, visit);
+  }
+
   // Error within ten times what was asked, or within what searches promise.
   bool reached(const CurvePoint& point) const {
     return point.converged || point.place.error <= 10 * options_.search.tolerance *
@@ -125,38 +134,57 @@ class MapSearch {
 
   void evaluate_nodes() {
     using Sample = std::optional<StabilitySample>;
-    const std::size_t known = samples_.size();
-    std::vector<Sample> samples = results<Sample>(
-        mesh_.nodes().size() - known,
-        [&](std::size_t k) { return sample(mesh_.x_of(known + k), mesh_.y_of(known + k), at_nodes_); },
+    std::vector<std::size_t> nodes;
+    for (std::size_t node = samples_.size(); node < mesh_.nodes().size(); ++node) nodes.push_back(node);
+    std::vector<Sample> samples = results_of<Sample>(
+        nodes, [&](std::size_t node) { return place_of(mesh_.nodes()[node]); },
+        [&](std::size_t node) { return sample(mesh_.x_of(node), mesh_.y_of(node), at_nodes_); },
         [](auto& visit, Sample& sample) {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
         });
     std::ranges::move(samples, std::back_inserter(samples_));
   }
 
+  // Nodes of one place have one system.
+  std::array<int, 2> place_of(const MapNode& node) const {
+    return {options_.varies[0] ? node.i : 0, options_.varies[1] ? node.j : 0};
+  }
+
+  // Edges with one of these have one search.
+  std::array<int, 6> line_of(std::size_t e) const {
+    const MapEdge& edge = mesh_.edge(e);
+    const auto at = [&](std::size_t node) {
+      return node == no_node ? -1 : place_of(mesh_.nodes()[node])[edge.along_x ? 0 : 1];
+    };
+    const int fixed = place_of(mesh_.nodes()[edge.a])[edge.along_x ? 1 : 0];
+    return {edge.along_x, fixed, at(edge.a), at(edge.b), at(edge.before), at(edge.after)};
+  }
+
   void search_edges() {
-    using Found = std::optional<SearchedInterval>;
-    const std::size_t first = searched_edges_;
+    std::vector<std::size_t> edges;
+    for (std::size_t e = searched_edges_; e < mesh_.num_edges(); ++e)
+      if (may_be_crossed(e)) edges.push_back(e);
     searched_edges_ = mesh_.num_edges();
-    std::vector<Found> found = results<Found>(
-        searched_edges_ - first, [&](std::size_t k) { return crossings_of(first + k); },
-        [](auto& visit, Found& crossings) {
-          visit_if_there(visit, crossings, [&](SearchedInterval& there) { visit_interval(visit, there); });
-        });
+    const std::vector<SearchedInterval> found = results_of<SearchedInterval>(
+        edges, [&](std::size_t e) { return line_of(e); }, [&](std::size_t e) { return crossings_of(e); },
+        [](auto& visit, SearchedInterval& crossings) { visit_interval(visit, crossings); });
     for (std::size_t k = 0; k < found.size(); ++k) {
-      if (!found[k]) continue;
-      mesh_.set_crossings(first + k, found[k]->boundaries);
-      for (const auto& [from, to] : found[k]->not_excluded) not_excluded_.push_back(piece_of(first + k, from, to));
+      mesh_.set_crossings(edges[k], found[k].boundaries);
+      for (const auto& [from, to] : found[k].not_excluded) not_excluded_.push_back(piece_of(edges[k], from, to));
     }
   }
 
-  // Crossings, or nothing if those that the edge has from its parent agree with the verdicts at its ends.
-  std::optional<SearchedInterval> crossings_of(std::size_t e) const {
+  // Not where the crossings that the edge has from its parent agree with the verdicts at its ends.
+  bool may_be_crossed(std::size_t e) const {
     const MapEdge& edge = mesh_.edge(e);
-    if (!samples_[edge.a] || !samples_[edge.b]) return std::nullopt;
+    if (!samples_[edge.a] || !samples_[edge.b]) return false;
     const bool changes = unstable(edge.a) != unstable(edge.b), odd = edge.crossings.size() % 2 == 1;
-    if (changes == odd && (!edge.crossings.empty() || mesh_.searched_as_a_whole(e))) return std::nullopt;
+    return changes != odd || (edge.crossings.empty() && !mesh_.searched_as_a_whole(e));
+  }
+
+  SearchedInterval crossings_of(std::size_t e) const {
+    const MapEdge& edge = mesh_.edge(e);
+    if (!options_.varies[edge.along_x ? 0 : 1]) return {};
     const double fixed = mesh_.coordinate(edge.a, !edge.along_x);
     const SystemAt along = [&](double t) { return edge.along_x ? system(t, fixed) : system(fixed, t); };
     const auto sample_at = [&](std::size_t node) {
@@ -354,6 +382,7 @@ class MapSearch {
     return s && is_unstable(*s);
   }
 
+  bool curves_bend() const { return options_.varies[0] && options_.varies[1]; }
   double wide() const { return mesh_.x().values.back() - mesh_.x().values.front(); }
   double high() const { return mesh_.y().values.back() - mesh_.y().values.front(); }
   BoundaryPoint scaled(const CurvePoint& point) const {
@@ -420,7 +449,7 @@ class MapSearch {
       for (std::size_t k = 0; k < c.stretches.size(); ++k) {
         const auto& [link, position] = c.stretches[k];
         const bool changes_kind = c.points[k].kind != c.points[k + 1].kind;
-        const bool unconfirmed = unclear_.contains(link.cell) && !inserted_.contains(link);
+        const bool unconfirmed = unclear_.contains(link.cell) && !inserted_.contains(link) && curves_bend();
         if (closed_.contains(link) || !(coarse[k] || changes_kind || unconfirmed)) continue;
         if (std::hypot(places[k + 1].x - places[k].x, places[k + 1].y - places[k].y) < shortest_stretch) continue;
         wanted.push_back({link, position, stretch(c, k, chain.closed)});

@@ -23,6 +23,8 @@ struct MapOptions {
   bool boundaries = true;  // false: the grid alone
   bool verdict_only = false;  // of a grid without boundaries: growth where no bound proves stability
   bool curves_only = false;  // no grid values; the grid serves the search alone
+  // Whether the system depends on x and on y. Along an axis on which it does not, one line is computed for all.
+  std::array<bool, 2> varies = {true, true};
   PartsOf parts;  // who computes the parts of a step; empty: one after the other
 };
 
