@@ -138,7 +138,7 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
 
 }  // namespace
 
-double CellErrors::total() const { return eps * (4 * std::sqrt(squares) + 0.65 * sizes) + given; }
+double CellErrors::total() const { return eps * (6 * std::sqrt(squares) + 0.75 * sizes) + given; }
 
 ChainProduct product_of(const CellChain& chain) {
   const Index p = chain.size(), N = chain.num_cells();
