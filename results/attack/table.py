@@ -11,7 +11,7 @@ COLUMNS = {
                   "allowed", "slowest_s"],
     "sweeps": ["lines", "sweeps", "bands", "gaps", "missed", "listed", "false", "ends", "beyond", "verdicts",
                "not_excluded_percent", "slowest_s"],
-    "maps": ["maps", "nodes", "wrong_nodes", "curves", "curve_points", "wrong_curve_points", "edge_places",
+    "maps": ["maps", "unfinished", "nodes", "wrong_nodes", "curves", "curve_points", "wrong_curve_points", "edge_places",
              "wrong_edges", "inner_places", "wrong_inner", "listed", "undecided", "slowest_s"],
 }
 SIZE = {"exponents": "exponents", "sweeps": "sweeps", "maps": "maps"}  # weight of medians and shares
