@@ -62,7 +62,7 @@ extern template class Lu<std::complex<double>>;
 
 [[nodiscard]] Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 [[nodiscard]] Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A);
-// Whether A has full rank, by elimination with full pivoting.
+// Whether A has full rank, by Householder reflections with column pivoting.
 [[nodiscard]] bool is_invertible(const Eigen::MatrixXd& A);
 
 // A V = V diag(values), columns of V of length 1; no particular order. Empty where the iteration does not converge.

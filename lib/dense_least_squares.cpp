@@ -4,6 +4,8 @@
 
 namespace hb::dense {
 
+bool is_invertible(const Eigen::MatrixXd& A) { return A.colPivHouseholderQr().isInvertible(); }
+
 Eigen::VectorXd basic_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
   return A.colPivHouseholderQr().solve(b);
 }

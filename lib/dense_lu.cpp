@@ -132,6 +132,5 @@ template class Lu<std::complex<double>>;
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) { return A.inverse(); }
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) { return A.inverse(); }
-bool is_invertible(const Eigen::MatrixXd& A) { return Eigen::FullPivLU<Eigen::MatrixXd>(A).isInvertible(); }
 
 }  // namespace hb::dense

@@ -70,6 +70,8 @@ class MapMesh {
   int width(const MapCell& cell) const { return nodes_[cell.corners[1]].i - nodes_[cell.corners[0]].i; }
   int height(const MapCell& cell) const { return nodes_[cell.corners[3]].j - nodes_[cell.corners[0]].j; }
 
+  bool divisible(const MapCell& cell) const { return width(cell) >= 2 && height(cell) >= 2; }
+
   // The edge may have a crossing where both ends have one verdict; its half has not, if the whole was searched.
   bool searched_as_a_whole(std::size_t edge) const { return searched_[edge]; }
 

@@ -4,35 +4,19 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <map>
 #include <memory>
 #include <set>
 #include <utility>
 
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/map_curves.hpp"
 #include "hb/engine/boundaries/map_grid.hpp"
 #include "hb/engine/boundaries/map_mesh.hpp"
 
 namespace hb {
 
 namespace {
-
-// Stretches of a curve shorter than this part of the map are not divided.
-constexpr double shortest_stretch = 1.0 / 8192;
-
-// A piece of a curve inside one cell, between two crossings, the smaller number first.
-struct Link {
-  std::size_t cell, from, to;
-  auto operator<=>(const Link&) const = default;
-};
-
-// Where on a curve a point is wanted.
-struct Wanted {
-  Link link;
-  std::size_t position;  // among the points that the link has
-  CurveStretch stretch;
-};
 
 template <class Visit>
 void visit_curve_point(Visit& visit, CurvePoint& point) {
@@ -73,8 +57,8 @@ class MapSearch {
     StabilityMap map;
     if (!options_.curves_only) map.points = map_grid(mesh_, samples_);
     if (options_.boundaries) {
-      for (const CurveChain& chain : chains_) {
-        const std::vector<CurvePoint> points = curve(chain).points;
+      for (const CurveChain& chain : curves_.chains()) {
+        const std::vector<CurvePoint> points = curves_.points(chain);
         std::ranges::move(pieces_of_one_kind(points, chain.closed), std::back_inserter(map.boundaries));
         map.not_converged += static_cast<std::size_t>(std::count_if(
             points.begin() + chain.closed, points.end(), [&](const CurvePoint& point) { return !reached(point); }));
@@ -223,10 +207,9 @@ class MapSearch {
   bool larger_than_the_grid(const MapCell& cell) const {
     return mesh_.width(cell) > mesh_.x().units || mesh_.height(cell) > mesh_.y().units;
   }
-  bool divisible(const MapCell& cell) const { return mesh_.width(cell) >= 2 && mesh_.height(cell) >= 2; }
 
   bool wants_halving(const MapCell& cell) const {
-    if (!divisible(cell)) return false;
+    if (!mesh_.divisible(cell)) return false;
     const auto present = std::ranges::count_if(cell.corners, [&](std::size_t n) { return samples_[n].has_value(); });
     const std::size_t crossings = mesh_.rim(cell).size();
     if (larger_than_the_grid(cell)) {
@@ -237,7 +220,7 @@ class MapSearch {
   }
 
   // Two crossings of one kind on each of two sides: a tongue, or the gap between two, passes through. Points on both
-  // sides of it confirm that (coarse_stretches).
+  // sides of it confirm that (MapCurves::coarse_stretches).
   bool thin_band(const MapCell& cell) const {
     std::vector<std::size_t> all;
     for (const std::size_t e : cell.edges) {
@@ -284,22 +267,18 @@ class MapSearch {
 
   // --- Curves ---
 
-  CurvePoint crossing(std::size_t k) const {
-    const MapCrossing& c = mesh_.crossings()[k];
-    const MapEdge& edge = mesh_.edge(c.edge);
-    const double fixed = mesh_.coordinate(edge.a, !edge.along_x), found = c.boundary.x;
-    const BoundaryPoint place{edge.along_x ? found : fixed, edge.along_x ? fixed : found, c.boundary.error,
-                              edge.along_x};
-    return {place, c.boundary.kind, c.boundary.unstable_above, c.boundary.converged};
-  }
-
   // Joins the crossings into chains and puts points between them until their chords are straight. True if cells were
   // halved instead, where no point was found.
   bool refine_curves() {
-    join_crossings();
+    curves_.join([this](std::size_t node) { return unstable(node); },
+                 [this](const std::vector<std::size_t>& cells) {
+                   return results<char>(
+                       cells.size(), [&](std::size_t k) -> char { return unstable_centre(mesh_.cells()[cells[k]]); },
+                       [](auto& visit, char& unstable) { visit_as_number(visit, unstable); });
+                 });
     for (;;) {
-      if (halve(cells_with_turns())) return true;
-      const std::vector<Wanted> wanted = coarse_stretches();
+      if (halve(curves_.cells_with_turns())) return true;
+      const std::vector<WantedPoint> wanted = curves_.coarse_stretches();
       if (wanted.empty()) return false;
       using Found = std::optional<CurvePoint>;
       const std::vector<Found> found = results<Found>(
@@ -311,67 +290,16 @@ class MapSearch {
           [](auto& visit, Found& point) {
             visit_if_there(visit, point, [&](CurvePoint& there) { visit_curve_point(visit, there); });
           });
-      if (insert(wanted, found)) return true;
+      if (halve(curves_.insert(wanted, found))) return true;
     }
-  }
-
-  // From the back, so that positions stay what they are.
-  bool insert(const std::vector<Wanted>& wanted, const std::vector<std::optional<CurvePoint>>& found) {
-    std::map<Link, std::map<std::size_t, CurvePoint, std::greater<>>> new_points;
-    std::set<std::size_t> cells;
-    for (std::size_t k = 0; k < wanted.size(); ++k) {
-      const Link& link = wanted[k].link;
-      if (found[k]) {
-        new_points[link].emplace(wanted[k].position, *found[k]);
-      } else if (divisible(mesh_.cells()[link.cell])) {
-        cells.insert(link.cell);
-      } else {
-        closed_.insert(link);
-      }
-    }
-    for (const auto& [link, points] : new_points) {
-      std::vector<CurvePoint>& all = inserted_[link];
-      for (const auto& [position, point] : points)
-        all.insert(all.begin() + static_cast<std::ptrdiff_t>(position), point);
-    }
-    return halve(cells);
   }
 
   bool halve(const std::set<std::size_t>& cells) {
     if (cells.empty()) return false;
     for (const std::size_t c : cells) mesh_.halve(c);
-    std::erase_if(inserted_, [&](const auto& link) { return cells.contains(link.first.cell); });
+    curves_.forget(cells);
     evaluate();
     return true;
-  }
-
-  void join_crossings() {
-    std::vector<std::size_t> crossed, unclear;
-    std::vector<std::vector<std::size_t>> rims(mesh_.cells().size());
-    for (std::size_t c = 0; c < rims.size(); ++c) {
-      if (mesh_.cells()[c].halved) continue;
-      rims[c] = mesh_.rim(mesh_.cells()[c]);
-      if (rims[c].size() >= 2 && rims[c].size() % 2 == 0) crossed.push_back(c);
-      if (rims[c].size() > 2 && rims[c].size() % 2 == 0) unclear.push_back(c);
-    }
-    const std::vector<char> centre_unstable = results<char>(
-        unclear.size(), [&](std::size_t k) -> char { return unstable_centre(mesh_.cells()[unclear[k]]); },
-        [](auto& visit, char& unstable) { visit_as_number(visit, unstable); });
-    std::vector<CurveLink> links;
-    std::size_t next_unclear = 0;
-    for (const std::size_t c : crossed) {
-      const std::vector<std::size_t>& r = rims[c];
-      if (r.size() == 2) {
-        links.push_back({{r[0], r[1]}, c});
-        continue;
-      }
-      const bool start = unstable(mesh_.cells()[c].corners[0]);
-      for (const auto& [p, q] : joined_in_cell(r.size(), start, centre_unstable[next_unclear]))
-        links.push_back({{r[p], r[q]}, c});
-      ++next_unclear;
-    }
-    unclear_ = {unclear.begin(), unclear.end()};
-    chains_ = chains(mesh_.crossings().size(), links);
   }
 
   bool unstable_centre(const MapCell& cell) const {
@@ -385,96 +313,6 @@ class MapSearch {
   bool curves_bend() const { return options_.varies[0] && options_.varies[1]; }
   double wide() const { return mesh_.x().values.back() - mesh_.x().values.front(); }
   double high() const { return mesh_.y().values.back() - mesh_.y().values.front(); }
-  BoundaryPoint scaled(const CurvePoint& point) const {
-    return {mesh_.x().scaled(point.place.x), mesh_.y().scaled(point.place.y), 0, point.place.along_x};
-  }
-
-  // A chain with the points put between its crossings, and for each stretch the link that it belongs to and the place
-  // that a point in it would have there.
-  struct Curve {
-    std::vector<CurvePoint> points;
-    std::vector<std::pair<Link, std::size_t>> stretches;
-  };
-
-  Curve curve(const CurveChain& chain) const {
-    Curve curve;
-    curve.points.push_back(crossing(chain.points[0]));
-    for (std::size_t k = 0; k < chain.cells.size(); ++k) {
-      const std::size_t a = chain.points[k], b = chain.points[k + 1];
-      const Link link{chain.cells[k], std::min(a, b), std::max(a, b)};
-      std::vector<CurvePoint> between;
-      if (const auto it = inserted_.find(link); it != inserted_.end()) between = it->second;
-      if (a > b) std::ranges::reverse(between);
-      for (std::size_t p = 0; p <= between.size(); ++p)
-        curve.stretches.push_back({link, a > b ? between.size() - p : p});
-      std::ranges::copy(between, std::back_inserter(curve.points));
-      curve.points.push_back(crossing(b));
-    }
-    return curve;
-  }
-
-  // Those in which a curve turns back: between its neighbours in the chain points show how wide the tip is, not how far
-  // it reaches.
-  std::set<std::size_t> cells_with_turns() const {
-    std::set<std::size_t> cells;
-    for (const CurveChain& chain : chains_) {
-      const Curve c = curve(chain);
-      const std::size_t n = c.stretches.size();
-      const auto turns_back = [&](std::size_t before, std::size_t after) {
-        const auto along = [&](std::size_t k, auto coordinate) {
-          return scaled(c.points[k + 1]).*coordinate - scaled(c.points[k]).*coordinate;
-        };
-        return along(before, &BoundaryPoint::x) * along(after, &BoundaryPoint::x) +
-                   along(before, &BoundaryPoint::y) * along(after, &BoundaryPoint::y) <
-               0;
-      };
-      for (std::size_t from = 0, to = 0; from < n; from = to) {
-        while (to < n && c.stretches[to].first == c.stretches[from].first) ++to;
-        const std::size_t cell = c.stretches[from].first.cell;
-        const std::size_t before = from > 0 || chain.closed ? (from + n - 1) % n : from;
-        const std::size_t after = to < n || chain.closed ? to % n : to - 1;
-        if (divisible(mesh_.cells()[cell]) && turns_back(before, after)) cells.insert(cell);
-      }
-    }
-    return cells;
-  }
-
-  std::vector<Wanted> coarse_stretches() const {
-    std::vector<Wanted> wanted;
-    for (const CurveChain& chain : chains_) {
-      const Curve c = curve(chain);
-      std::vector<BoundaryPoint> places;
-      for (const CurvePoint& point : c.points) places.push_back(scaled(point));
-      std::vector<bool> coarse = coarse_chords(places, chain.closed, options_.sag);
-      for (std::size_t k = 0; k < c.stretches.size(); ++k) {
-        const auto& [link, position] = c.stretches[k];
-        const bool changes_kind = c.points[k].kind != c.points[k + 1].kind;
-        const bool unconfirmed = unclear_.contains(link.cell) && !inserted_.contains(link) && curves_bend();
-        if (closed_.contains(link) || !(coarse[k] || changes_kind || unconfirmed)) continue;
-        if (std::hypot(places[k + 1].x - places[k].x, places[k + 1].y - places[k].y) < shortest_stretch) continue;
-        wanted.push_back({link, position, stretch(c, k, chain.closed)});
-      }
-    }
-    return wanted;
-  }
-
-  CurveStretch stretch(const Curve& c, std::size_t k, bool closed) const {
-    const std::size_t n = c.stretches.size();
-    const MapCell& cell = mesh_.cells()[c.stretches[k].first.cell];
-    CurveStretch s{{},
-                   {},
-                   c.points[k],
-                   c.points[k + 1],
-                   mesh_.x_of(cell.corners[0]),
-                   mesh_.x_of(cell.corners[2]),
-                   mesh_.y_of(cell.corners[0]),
-                   mesh_.y_of(cell.corners[2])};
-    s.crowded = unclear_.contains(c.stretches[k].first.cell);
-    if (k > 0 || closed) s.before = c.points[k > 0 ? k - 1 : n - 1];
-    if (k + 1 < n || closed) s.after = c.points[k + 1 < n ? k + 2 : 1];
-    return s;
-  }
-
   const MapSystemAt at_;
   const MapOptions options_;
   const bool grid_alone_;  // every point evaluated, nothing between them
@@ -482,13 +320,10 @@ class MapSearch {
   StabilityOptions at_nodes_;
   mutable std::atomic<std::size_t> num_samples_ = 0;
   MapMesh mesh_;
+  MapCurves curves_{mesh_, options_.sag, curves_bend()};
   std::vector<std::optional<StabilitySample>> samples_;  // by node
   std::size_t searched_edges_ = 0;
   std::vector<std::array<double, 4>> not_excluded_;
-  std::vector<CurveChain> chains_;
-  std::set<std::size_t> unclear_;  // cells that more than one curve passes
-  std::map<Link, std::vector<CurvePoint>> inserted_;  // from the crossing of the smaller number
-  std::set<Link> closed_;  // no more points are found there
   double range_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <numbers>
+#include <type_traits>
 #include <vector>
 
 #include "hb/engine/exponents/small_matrix.hpp"
@@ -48,24 +49,7 @@ struct Partial {
   Size size() const { return {std::max(M.norm(), 1e-300), exponent}; }
 };
 
-Eigen::Matrix2cd inverse_of(const Eigen::Matrix2cd& A) {
-  Eigen::Matrix2cd adjugate;
-  adjugate << A(1, 1), -A(0, 1), -A(1, 0), A(0, 0);
-  return adjugate / (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0));
-}
-MatrixXcd inverse_of(const MatrixXcd& A) { return dense::inverse(A); }
-
-// The errors of all entries of a matrix as they add up over the cells.
-template <int size>
-struct EntryErrors {
-  using Real = Eigen::Matrix<double, size, size>;
-  Real squares, sizes, given;
-
-  explicit EntryErrors(Index p) : squares(Real::Zero(p, p)), sizes(squares), given(squares) {}
-  Real total() const {
-    return squares.binaryExpr(sizes, [](double q, double s) { return CellErrors{q, s, 0}.total(); }) + given;
-  }
-};
+MatrixXd sizes(const MatrixXcd& A) { return A.cwiseAbs(); }
 
 // The map is real: an eigenvalue whose disc holds its conjugate is real, the others come in pairs.
 void pair_up(InexactEigenvalues& mu) {
@@ -77,7 +61,8 @@ void pair_up(InexactEigenvalues& mu) {
       continue;
     }
     Index partner = j;
-    (mu.value.array() - mirrored).abs().minCoeff(&partner);
+    for (Index k = 0; k < mu.value.size(); ++k)
+      if (std::abs(mu.value(k) - mirrored) < std::abs(mu.value(partner) - mirrored)) partner = k;
     if (partner <= j) continue;
     mu.radius(j) = mu.radius(partner) =
         std::max(mu.radius(j), mu.radius(partner)) + std::abs(mu.value(partner) - mirrored);
@@ -86,50 +71,107 @@ void pair_up(InexactEigenvalues& mu) {
 }
 
 // F_0 = V, F_i diag(d_i) = D_i F_(i-1) with columns of length 1: in these frames the turn's map is diagonal and a
-// change of a cell's map is F_i^-1 dD_i F_(i-1), carried over the turn entry by entry.
-template <int size>
-std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd& vectors, double log_size) {
-  using Square = Eigen::Matrix<cplx, size, size>;
-  using Real = Eigen::Matrix<double, size, size>;
-  using Column = Eigen::Vector<double, size>;
-  const Index p = chain.size(), N = chain.num_cells();
-  const Square V = vectors;
-  Square F = V;
-  Column g = Column::Ones(p);  // growth of each column so far, over e^log_common
-  EntryErrors<size> change(p);
+// change of a cell's map is F_i^-1 dD_i F_(i-1), carried over the turn entry by entry. Plain loops over p, a constant
+// or not, which the compiler unrolls where it is one.
+template <class Length>
+struct Frames {
+  Length p;
+  MatrixXcd F, next;
+  VectorXd g = VectorXd::Ones(p);  // growth of each column so far, over e^log_common
   double log_common = 0;
-  for (Index i = 0; i < N; ++i) {
-    const auto cell = [&](const MatrixXd& all) { return all.block<size, size>(0, p * i, p, p); };
-    const Real before = F.cwiseAbs();
-    const Square next = cell(chain.factors).template cast<cplx>() * F;
-    const Column d = next.colwise().norm().transpose();
-    F = next * d.cwiseInverse().asDiagonal();
-    const Real inverse = inverse_of(F).cwiseAbs();
-    const Real squares = inverse.cwiseAbs2() * cell(chain.rounding) * before.cwiseAbs2();
-    const Real given = inverse * cell(chain.given) * before;
-    change.squares = d.cwiseAbs2().asDiagonal() * change.squares + squares * g.cwiseAbs2().asDiagonal();
-    change.sizes = d.asDiagonal() * change.sizes + Real(squares.cwiseSqrt()) * g.asDiagonal();
-    change.given = d.asDiagonal() * change.given + given * g.asDiagonal();
-    g = g.cwiseProduct(d);
-    const double scale = g.maxCoeff();
-    if (!(scale > 0 && std::isfinite(scale))) return std::nullopt;
-    g /= scale;
-    change.squares /= scale * scale;
-    change.sizes /= scale;
-    change.given /= scale;
+  VectorXd d = g;
+  MatrixXd before = sizes(F), inverse = before;  // |F_(i-1)|, |F_i^-1|
+  VectorXd square = g, given = g;
+  std::vector<CellErrors> change = std::vector<CellErrors>(std::size_t(p * p));
+
+  // Over cell i. False if the growth is no number.
+  bool pass(const CellChain& chain, Index i) {
+    advance(chain, i);
+    for (Index k = 0; k < p; ++k) add_change(chain, i, k);
+    double scale = 0;
+    for (Index k = 0; k < p; ++k) scale = std::max(scale, g(k) *= d(k));
+    if (!(scale > 0 && g.allFinite())) return false;
+    for (Index k = 0; k < p; ++k) g(k) /= scale;
+    for (CellErrors& entry : change) {
+      entry.squares /= scale * scale;
+      entry.sizes /= scale;
+      entry.given /= scale;
+    }
     log_common += std::log(scale);
+    return true;
   }
-  const Square back = inverse_of(V);
-  const Square turned = back * chain.closing.cast<cplx>() * F * g.asDiagonal();
-  // What the solution with V rounds.
-  const Real rounded = 2 * eps * double(p) * back.rowwise().norm() * g.transpose();
-  const std::optional<dense::Eigenpairs> refined = dense::eigenpairs(MatrixXcd(turned));
+
+  void advance(const CellChain& chain, Index i) {
+    for (Index k = 0; k < p; ++k) {
+      double square = 0;
+      for (Index j = 0; j < p; ++j) {
+        before(j, k) = std::abs(F(j, k));
+        cplx sum = 0;
+        for (Index m = 0; m < p; ++m) sum += chain.factors(j, p * i + m) * F(m, k);
+        next(j, k) = sum;
+        square += std::norm(sum);
+      }
+      d(k) = std::sqrt(square);
+      for (Index j = 0; j < p; ++j) next(j, k) /= d(k);
+    }
+    F.swap(next);
+    if (p == 2) {
+      const double determinant = std::abs(F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
+      for (Index k = 0; k < 2; ++k)
+        for (Index j = 0; j < 2; ++j) inverse(j, k) = std::abs(F(1 - k, 1 - j)) / determinant;
+    } else {
+      inverse = sizes(dense::inverse(F));
+    }
+  }
+
+  // Column k of change <- diag(d) change + |F_i^-1| |dD_i| |F_(i-1)| diag(g), of rounding with squares of the sizes.
+  void add_change(const CellChain& chain, Index i, Index k) {
+    square.setZero();
+    given.setZero();
+    for (Index m = 0; m < p; ++m) {
+      double of_row_square = 0, of_row_given = 0;
+      for (Index n = 0; n < p; ++n) {
+        of_row_square += chain.rounding(m, p * i + n) * before(n, k) * before(n, k);
+        of_row_given += chain.given(m, p * i + n) * before(n, k);
+      }
+      for (Index j = 0; j < p; ++j) {
+        square(j) += inverse(j, m) * inverse(j, m) * of_row_square;
+        given(j) += inverse(j, m) * of_row_given;
+      }
+    }
+    CellErrors* const column = &change[std::size_t(p * k)];
+    for (Index j = 0; j < p; ++j) {
+      column[j].squares *= d(j) * d(j);
+      column[j].sizes *= d(j);
+      column[j].given *= d(j);
+      column[j].add(square(j) * g(k) * g(k), given(j) * g(k));
+    }
+  }
+};
+
+template <class Length>
+std::optional<InexactEigenvalues> framed(Length p, const CellChain& chain, const MatrixXcd& V, double log_size) {
+  Frames<Length> frames{p, V, V};
+  for (Index i = 0; i < chain.num_cells(); ++i)
+    if (!frames.pass(chain, i)) return std::nullopt;
+  const MatrixXcd back = dense::inverse(V), closing = chain.closing.cast<cplx>();
+  MatrixXcd turned = back * closing * frames.F;
+  MatrixXd known(back.rows(), back.cols());
+  for (Index k = 0; k < p; ++k) {
+    turned.col(k) *= frames.g(k);
+    for (Index j = 0; j < p; ++j) {
+      // What the solution with V rounds.
+      const double rounded = 2 * eps * double(p) * back.row(j).norm() * frames.g(k);
+      known(j, k) = frames.change[std::size_t(j + p * k)].total() + rounded;
+    }
+  }
+  const std::optional<dense::Eigenpairs> refined = dense::eigenpairs(turned);
   if (!refined) return std::nullopt;
   const MatrixXcd& W = refined->vectors;
-  const MatrixXd changed = dense::inverse(W).cwiseAbs() * MatrixXd(change.total() + rounded) * W.cwiseAbs();
+  const MatrixXd changed = sizes(dense::inverse(W)) * known * sizes(W);
   InexactEigenvalues result{refined->values, gershgorin_radii(refined->values, changed)};
   pair_up(result);
-  const double factor = std::exp(log_common - log_size);
+  const double factor = std::exp(frames.log_common - log_size);
   result.value *= factor;
   result.radius *= factor;
   if (!result.radius.allFinite()) return std::nullopt;
@@ -164,8 +206,14 @@ ChainProduct product_of(const CellChain& chain) {
     const double norms = std::min(a.M.norm() * scale * behind.M.norm(), 1e200);
     change.add(norms * norms * rounding.sum(), norms * given.norm());
     multiply(a.M, behind.M, next);
-    next = (scale * next.cwiseAbs()).cwiseMin(1e200).transpose().eval();
-    trace.add(next.cwiseAbs2().cwiseProduct(rounding).sum(), next.cwiseProduct(given).sum());
+    double square = 0, sum = 0;
+    for (Index k = 0; k < p; ++k)
+      for (Index j = 0; j < p; ++j) {
+        const double weight = std::min(scale * std::abs(next(k, j)), 1e200);
+        square += weight * weight * rounding(j, k);
+        sum += weight * given(j, k);
+      }
+    trace.add(square, sum);
     factor = cell(chain.factors, i);
     bound.value *= factor.norm() + eps * std::sqrt(rounding.sum()) + given.norm();
     bound.normalise();
@@ -179,8 +227,9 @@ ChainProduct product_of(const CellChain& chain) {
 std::optional<InexactEigenvalues> framed_eigenvalues(const CellChain& chain, const ChainProduct& product) {
   const std::optional<dense::Eigenpairs> start = dense::eigenpairs(product.M);
   if (!start) return std::nullopt;
-  return chain.size() == 2 ? framed<2>(chain, start->vectors, product.log_size)
-                           : framed<Eigen::Dynamic>(chain, start->vectors, product.log_size);
+  const std::integral_constant<Index, 2> two;
+  return chain.size() == 2 ? framed(two, chain, start->vectors, product.log_size)
+                           : framed(chain.size(), chain, start->vectors, product.log_size);
 }
 
 double first_order_change(const CellChain& chain, const ChainProduct& product, cplx mu, double radius) {
@@ -194,8 +243,10 @@ double first_order_change(const CellChain& chain, const ChainProduct& product, c
   const double at_end = std::abs((end.transpose() * start).value());
   // Real and imaginary parts as two columns.
   MatrixXd v(p, 2), w(p, 2), before(p, 2 * N), back(p, 2);
-  v << start.real(), start.imag();
-  w << end.real(), end.imag();
+  for (Index j = 0; j < p; ++j) {
+    v(j, 0) = start(j).real(), v(j, 1) = start(j).imag();
+    w(j, 0) = end(j).real(), w(j, 1) = end(j).imag();
+  }
   for (Index i = 0; i < N; ++i) {
     before.middleCols(2 * i, 2) = v;
     v = chain.factors.middleCols(p * i, p).lazyProduct(before.middleCols(2 * i, 2));
