@@ -1,8 +1,8 @@
 #include "hb/engine/exponents/cell_chain.hpp"
 
+#include <algorithm>
 #include <complex>
 #include <numbers>
-#include <type_traits>
 #include <vector>
 
 #include "hb/engine/exponents/small_matrix.hpp"
@@ -49,7 +49,67 @@ struct Partial {
   Size size() const { return {std::max(M.norm(), 1e-300), exponent}; }
 };
 
-MatrixXd sizes(const MatrixXcd& A) { return A.cwiseAbs(); }
+// |F^-1|^2 entry by entry, F = X + i Y, by Gauss and Jordan with row pivots.
+class InverseSquares {
+ public:
+  explicit InverseSquares(Index size) : p_(size), rows_(std::size_t(size * size)), pivots_(std::size_t(size)) {}
+
+  void operator()(const MatrixXd& X, const MatrixXd& Y, MatrixXd& squares) {
+    for (Index i = 0; i < p_; ++i)
+      for (Index j = 0; j < p_; ++j) row(i)[j] = {X(i, j), Y(i, j)};
+    for (Index k = 0; k < p_; ++k) {
+      Index pivot = k;
+      for (Index i = k + 1; i < p_; ++i)
+        if (std::norm(row(i)[k]) > std::norm(row(pivot)[k])) pivot = i;
+      pivots_[std::size_t(k)] = pivot;
+      if (pivot != k) std::swap_ranges(row(k), row(k) + p_, row(pivot));
+      const cplx inverse = std::conj(row(k)[k]) / std::norm(row(k)[k]);
+      row(k)[k] = 1;
+      for (Index j = 0; j < p_; ++j) row(k)[j] *= inverse;
+      for (Index i = 0; i < p_; ++i) {
+        if (i == k) continue;
+        const cplx l = row(i)[k];
+        row(i)[k] = 0;
+        for (Index j = 0; j < p_; ++j) row(i)[j] -= l * row(k)[j];
+      }
+    }
+    for (Index i = 0; i < p_; ++i)
+      for (Index j = 0; j < p_; ++j) squares(i, j) = std::norm(row(i)[j]);
+    for (Index k = p_ - 1; k >= 0; --k) squares.col(k).swap(squares.col(pivots_[std::size_t(k)]));
+  }
+
+ private:
+  cplx* row(Index i) { return rows_.data() + i * p_; }
+
+  Index p_;
+  std::vector<cplx> rows_;
+  std::vector<Index> pivots_;
+};
+
+// The errors of all entries of a matrix as they add up over the cells.
+struct EntryErrors {
+  MatrixXd squares, sizes, given;
+
+  explicit EntryErrors(Index p) : squares(MatrixXd::Zero(p, p)), sizes(squares), given(squares) {}
+
+  // E <- diag(d) E + e diag(g) with what one cell adds.
+  void carry(const VectorXd& d, const VectorXd& g, const MatrixXd& new_squares, const MatrixXd& new_given) {
+    for (Index j = 0; j < g.size(); ++j)
+      for (Index i = 0; i < d.size(); ++i) {
+        squares(i, j) = d(i) * d(i) * squares(i, j) + new_squares(i, j) * g(j) * g(j);
+        sizes(i, j) = d(i) * sizes(i, j) + std::sqrt(new_squares(i, j)) * g(j);
+        given(i, j) = d(i) * given(i, j) + new_given(i, j) * g(j);
+      }
+  }
+  void divide(double scale) {
+    squares /= scale * scale;
+    sizes /= scale;
+    given /= scale;
+  }
+  MatrixXd total() const {
+    return squares.binaryExpr(sizes, [](double q, double s) { return CellErrors{q, s, 0}.total(); }) + given;
+  }
+};
 
 // The map is real: an eigenvalue whose disc holds its conjugate is real, the others come in pairs.
 void pair_up(InexactEigenvalues& mu) {
@@ -61,8 +121,7 @@ void pair_up(InexactEigenvalues& mu) {
       continue;
     }
     Index partner = j;
-    for (Index k = 0; k < mu.value.size(); ++k)
-      if (std::abs(mu.value(k) - mirrored) < std::abs(mu.value(partner) - mirrored)) partner = k;
+    (mu.value.array() - mirrored).abs().minCoeff(&partner);
     if (partner <= j) continue;
     mu.radius(j) = mu.radius(partner) =
         std::max(mu.radius(j), mu.radius(partner)) + std::abs(mu.value(partner) - mirrored);
@@ -71,107 +130,61 @@ void pair_up(InexactEigenvalues& mu) {
 }
 
 // F_0 = V, F_i diag(d_i) = D_i F_(i-1) with columns of length 1: in these frames the turn's map is diagonal and a
-// change of a cell's map is F_i^-1 dD_i F_(i-1), carried over the turn entry by entry. Plain loops over p, a constant
-// or not, which the compiler unrolls where it is one.
-template <class Length>
-struct Frames {
-  Length p;
-  MatrixXcd F, next;
-  VectorXd g = VectorXd::Ones(p);  // growth of each column so far, over e^log_common
-  double log_common = 0;
-  VectorXd d = g;
-  MatrixXd before = sizes(F), inverse = before;  // |F_(i-1)|, |F_i^-1|
-  VectorXd square = g, given = g;
-  std::vector<CellErrors> change = std::vector<CellErrors>(std::size_t(p * p));
-
-  // Over cell i. False if the growth is no number.
-  bool pass(const CellChain& chain, Index i) {
-    advance(chain, i);
-    for (Index k = 0; k < p; ++k) add_change(chain, i, k);
-    double scale = 0;
-    for (Index k = 0; k < p; ++k) scale = std::max(scale, g(k) *= d(k));
-    if (!(scale > 0 && g.allFinite())) return false;
-    for (Index k = 0; k < p; ++k) g(k) /= scale;
-    for (CellErrors& entry : change) {
-      entry.squares /= scale * scale;
-      entry.sizes /= scale;
-      entry.given /= scale;
-    }
-    log_common += std::log(scale);
-    return true;
-  }
-
-  void advance(const CellChain& chain, Index i) {
-    for (Index k = 0; k < p; ++k) {
-      double square = 0;
-      for (Index j = 0; j < p; ++j) {
-        before(j, k) = std::abs(F(j, k));
-        cplx sum = 0;
-        for (Index m = 0; m < p; ++m) sum += chain.factors(j, p * i + m) * F(m, k);
-        next(j, k) = sum;
-        square += std::norm(sum);
-      }
-      d(k) = std::sqrt(square);
-      for (Index j = 0; j < p; ++j) next(j, k) /= d(k);
-    }
-    F.swap(next);
-    if (p == 2) {
-      const double determinant = std::abs(F(0, 0) * F(1, 1) - F(0, 1) * F(1, 0));
-      for (Index k = 0; k < 2; ++k)
-        for (Index j = 0; j < 2; ++j) inverse(j, k) = std::abs(F(1 - k, 1 - j)) / determinant;
-    } else {
-      inverse = sizes(dense::inverse(F));
-    }
-  }
-
-  // Column k of change <- diag(d) change + |F_i^-1| |dD_i| |F_(i-1)| diag(g), of rounding with squares of the sizes.
-  void add_change(const CellChain& chain, Index i, Index k) {
-    square.setZero();
-    given.setZero();
-    for (Index m = 0; m < p; ++m) {
-      double of_row_square = 0, of_row_given = 0;
-      for (Index n = 0; n < p; ++n) {
-        of_row_square += chain.rounding(m, p * i + n) * before(n, k) * before(n, k);
-        of_row_given += chain.given(m, p * i + n) * before(n, k);
-      }
-      for (Index j = 0; j < p; ++j) {
-        square(j) += inverse(j, m) * inverse(j, m) * of_row_square;
-        given(j) += inverse(j, m) * of_row_given;
-      }
-    }
-    CellErrors* const column = &change[std::size_t(p * k)];
+// change of a cell's map is F_i^-1 dD_i F_(i-1), carried over the turn entry by entry.
+std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd& V, double log_size) {
+  const Index p = chain.size(), N = chain.num_cells(), entries = p * p;
+  const bool exact = chain.given.cwiseAbs().maxCoeff() == 0;
+  MatrixXd X = V.real(), Y = V.imag(), next_X(p, p), next_Y(p, p);  // F = X + i Y
+  MatrixXd before(p, p), inverse(p, p), part(p, p), squares(p, p), given = MatrixXd::Zero(p, p);
+  VectorXd d(p), g = VectorXd::Ones(p);  // g: growth of each column so far, over 2^exponent
+  EntryErrors change(p);
+  InverseSquares invert(p);
+  int exponent = 0;
+  for (Index i = 0; i < N; ++i) {
+    const auto cell = [&](const MatrixXd& all) { return all.data() + entries * i; };
+    for (Index k = 0; k < entries; ++k) before(k) = X(k) * X(k) + Y(k) * Y(k);
+    multiply(p, cell(chain.factors), X.data(), next_X.data());
+    multiply(p, cell(chain.factors), Y.data(), next_Y.data());
     for (Index j = 0; j < p; ++j) {
-      column[j].squares *= d(j) * d(j);
-      column[j].sizes *= d(j);
-      column[j].given *= d(j);
-      column[j].add(square(j) * g(k) * g(k), given(j) * g(k));
+      d(j) = std::sqrt(next_X.col(j).squaredNorm() + next_Y.col(j).squaredNorm());
+      X.col(j) = next_X.col(j) / d(j);
+      Y.col(j) = next_Y.col(j) / d(j);
     }
-  }
-};
-
-template <class Length>
-std::optional<InexactEigenvalues> framed(Length p, const CellChain& chain, const MatrixXcd& V, double log_size) {
-  Frames<Length> frames{p, V, V};
-  for (Index i = 0; i < chain.num_cells(); ++i)
-    if (!frames.pass(chain, i)) return std::nullopt;
-  const MatrixXcd back = dense::inverse(V), closing = chain.closing.cast<cplx>();
-  MatrixXcd turned = back * closing * frames.F;
-  MatrixXd known(back.rows(), back.cols());
-  for (Index k = 0; k < p; ++k) {
-    turned.col(k) *= frames.g(k);
-    for (Index j = 0; j < p; ++j) {
-      // What the solution with V rounds.
-      const double rounded = 2 * eps * double(p) * back.row(j).norm() * frames.g(k);
-      known(j, k) = frames.change[std::size_t(j + p * k)].total() + rounded;
+    invert(X, Y, inverse);
+    // |F_i^-1|^2 |dD_i|^2 |F_(i-1)|^2 of rounding, |F_i^-1| |dD_i| |F_(i-1)| of coefficients
+    multiply(p, inverse.data(), cell(chain.rounding), part.data());
+    multiply(p, part.data(), before.data(), squares.data());
+    if (!exact) {
+      for (Index k = 0; k < entries; ++k) {
+        before(k) = std::sqrt(before(k));
+        inverse(k) = std::sqrt(inverse(k));
+      }
+      multiply(p, inverse.data(), cell(chain.given), part.data());
+      multiply(p, part.data(), before.data(), given.data());
     }
+    change.carry(d, g, squares, given);
+    for (Index j = 0; j < p; ++j) g(j) *= d(j);
+    const double largest = g.maxCoeff();
+    if (!(largest > 0 && std::isfinite(largest))) return std::nullopt;
+    int e = 0;
+    std::frexp(largest, &e);
+    g *= std::ldexp(1.0, -e);
+    change.divide(std::ldexp(1.0, e));
+    exponent += e;
   }
+  MatrixXcd F(p, p);
+  F.real() = X;
+  F.imag() = Y;
+  const MatrixXcd back = dense::inverse(V), turned = back * (chain.closing * F) * g.asDiagonal();
+  // What the solution with V rounds.
+  const MatrixXd rounded = 2 * eps * double(p) * back.rowwise().norm() * g.transpose();
   const std::optional<dense::Eigenpairs> refined = dense::eigenpairs(turned);
   if (!refined) return std::nullopt;
   const MatrixXcd& W = refined->vectors;
-  const MatrixXd changed = sizes(dense::inverse(W)) * known * sizes(W);
+  const MatrixXd changed = dense::inverse(W).cwiseAbs() * (change.total() + rounded) * W.cwiseAbs();
   InexactEigenvalues result{refined->values, gershgorin_radii(refined->values, changed)};
   pair_up(result);
-  const double factor = std::exp(frames.log_common - log_size);
+  const double factor = std::exp(exponent * std::numbers::ln2 - log_size);
   result.value *= factor;
   result.radius *= factor;
   if (!result.radius.allFinite()) return std::nullopt;
@@ -180,7 +193,7 @@ std::optional<InexactEigenvalues> framed(Length p, const CellChain& chain, const
 
 }  // namespace
 
-double CellErrors::total() const { return eps * (6 * std::sqrt(squares) + 0.75 * sizes) + given; }
+double CellErrors::total() const { return eps * (6 * std::sqrt(squares) + sizes) + given; }
 
 ChainProduct product_of(const CellChain& chain) {
   const Index p = chain.size(), N = chain.num_cells();
@@ -206,14 +219,8 @@ ChainProduct product_of(const CellChain& chain) {
     const double norms = std::min(a.M.norm() * scale * behind.M.norm(), 1e200);
     change.add(norms * norms * rounding.sum(), norms * given.norm());
     multiply(a.M, behind.M, next);
-    double square = 0, sum = 0;
-    for (Index k = 0; k < p; ++k)
-      for (Index j = 0; j < p; ++j) {
-        const double weight = std::min(scale * std::abs(next(k, j)), 1e200);
-        square += weight * weight * rounding(j, k);
-        sum += weight * given(j, k);
-      }
-    trace.add(square, sum);
+    next = (scale * next.cwiseAbs()).cwiseMin(1e200).transpose().eval();
+    trace.add(next.cwiseAbs2().cwiseProduct(rounding).sum(), next.cwiseProduct(given).sum());
     factor = cell(chain.factors, i);
     bound.value *= factor.norm() + eps * std::sqrt(rounding.sum()) + given.norm();
     bound.normalise();
@@ -227,9 +234,7 @@ ChainProduct product_of(const CellChain& chain) {
 std::optional<InexactEigenvalues> framed_eigenvalues(const CellChain& chain, const ChainProduct& product) {
   const std::optional<dense::Eigenpairs> start = dense::eigenpairs(product.M);
   if (!start) return std::nullopt;
-  const std::integral_constant<Index, 2> two;
-  return chain.size() == 2 ? framed(two, chain, start->vectors, product.log_size)
-                           : framed(chain.size(), chain, start->vectors, product.log_size);
+  return framed(chain, start->vectors, product.log_size);
 }
 
 double first_order_change(const CellChain& chain, const ChainProduct& product, cplx mu, double radius) {
@@ -243,10 +248,8 @@ double first_order_change(const CellChain& chain, const ChainProduct& product, c
   const double at_end = std::abs((end.transpose() * start).value());
   // Real and imaginary parts as two columns.
   MatrixXd v(p, 2), w(p, 2), before(p, 2 * N), back(p, 2);
-  for (Index j = 0; j < p; ++j) {
-    v(j, 0) = start(j).real(), v(j, 1) = start(j).imag();
-    w(j, 0) = end(j).real(), w(j, 1) = end(j).imag();
-  }
+  v << start.real(), start.imag();
+  w << end.real(), end.imag();
   for (Index i = 0; i < N; ++i) {
     before.middleCols(2 * i, 2) = v;
     v = chain.factors.middleCols(p * i, p).lazyProduct(before.middleCols(2 * i, 2));

@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 constexpr int largest = 10;
 
 template <class Length>
-void product(Length n, const double* A, const double* B, double* C) {
+void product(Length n, const double* __restrict A, const double* __restrict B, double* __restrict C) {
   for (Index j = 0; j < n; ++j) {
     for (Index i = 0; i < n; ++i) C[i + j * n] = A[i] * B[j * n];
     for (Index k = 1; k < n; ++k)
@@ -64,12 +64,12 @@ bool with_size(Index n, const Function& f, std::integer_sequence<int, sizes...>)
   return ((n == sizes + 1 && (f(std::integral_constant<Index, sizes + 1>()), true)) || ...);
 }
 
+}  // namespace
+
 void multiply(Index n, const double* A, const double* B, double* C) {
   const auto fixed = [&](auto size) { product(size, A, B, C); };
   if (!with_size(n, fixed, std::make_integer_sequence<int, largest>())) product(n, A, B, C);
 }
-
-}  // namespace
 
 void multiply(const MatrixXd& A, const MatrixXd& B, MatrixXd& C) {
   C.resize(A.rows(), A.rows());

@@ -7,6 +7,7 @@
 namespace hb {
 
 // C = A B; n x n, columns contiguous. C is none of A, B.
+void multiply(Eigen::Index n, const double* A, const double* B, double* C);
 void multiply(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, Eigen::MatrixXd& C);
 // The same with A the n columns from `first` of n x n matrices side by side.
 void multiply_columns(const Eigen::MatrixXd& matrices, Eigen::Index first, const Eigen::MatrixXd& B,

@@ -8,6 +8,7 @@
 
 #include "hb/engine/exponents/cell_chain.hpp"
 #include "hb/engine/exponents/qr_sweep.hpp"
+#include "hb/engine/exponents/small_matrix.hpp"
 #include "lib/constants.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -57,18 +58,22 @@ TurnExponents discriminant(double trace, double log_size, double trace_change, d
   return result;
 }
 
-// The rounding of one cell's map, squared: a multiple of the terms that each entry is the sum of, which cannot be
-// larger than the map where damping is strong (measured, hb/engine/README.md, "Propagation").
-MatrixXd rounding_squares(const TurnMaps& maps, Index cell) {
+// The rounding of one cell's map, squared, n x n: a multiple of the terms that each entry is the sum of, which cannot
+// be larger than the map where damping is strong (measured, hb/engine/README.md, "Propagation").
+void rounding_squares(const TurnMaps& maps, Index cell, double* squares) {
   const Index n = maps.num_states();
-  return maps.terms.cwiseMin(maps.cells.middleCols(n * cell, n).norm()).cwiseAbs2();
+  const double largest = maps.cells.middleCols(n * cell, n).norm();
+  for (Index k = 0; k < n * n; ++k) {
+    const double rounding = std::min(maps.terms(k), largest);
+    squares[k] = rounding * rounding;
+  }
 }
 
 // The whole maps as one chain.
 CellChain whole_chain(const TurnMaps& maps, const MatrixXd& given) {
   const Index n = maps.num_states(), N = maps.num_cells;
   CellChain chain{maps.cells, MatrixXd(n, n * N), given.replicate(1, N), MatrixXd::Identity(n, n)};
-  for (Index i = 0; i < N; ++i) chain.rounding.middleCols(n * i, n) = rounding_squares(maps, i);
+  for (Index i = 0; i < N; ++i) rounding_squares(maps, i, chain.rounding.data() + n * n * i);
   return chain;
 }
 
@@ -97,18 +102,29 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
     below.topRows(end).rightCols(n - begin).setZero();
     begin = end;
   }
-  MatrixXd left(n, n), right(n, n), rounding(n, n), changed(n, n);
+  const bool exact = given.cwiseAbs().maxCoeff() == 0;
+  MatrixXd frame(n, n), left(n, n), right(n, n), part(n, n), cell(n, n), rounding(n, n), changed = MatrixXd::Zero(n, n);
   constexpr Index often = 64;  // cells between looks
   for (Index i = 0; i < N; ++i) {
     if (i % often == 0) end_if_wished();
     const auto W = bases->left.middleCols(n * i, n), V = bases->right.middleCols(n * i, n);
-    left.noalias() = W.lazyProduct(sweep.frames.middleCols(n * (i + 1), n).transpose());
-    right.noalias() = sweep.frames.middleCols(n * i, n).lazyProduct(V);
+    frame = sweep.frames.middleCols(n * (i + 1), n).transpose();
+    multiply(n, W.data(), frame.data(), left.data());
+    multiply(n, sweep.frames.data() + n * n * i, V.data(), right.data());
+    left = left.cwiseAbs();
+    right = right.cwiseAbs();
+    if (!exact) {
+      multiply(n, left.data(), given.data(), part.data());
+      multiply(n, part.data(), right.data(), changed.data());
+    }
+    left = left.cwiseAbs2();
+    right = right.cwiseAbs2();
+    rounding_squares(maps, i, cell.data());
+    multiply(n, left.data(), cell.data(), part.data());
+    multiply(n, part.data(), right.data(), rounding.data());
     // The sweep's own rounding knows no entries.
     const double swept = sweep.R.middleCols(n * i, n).norm() / double(n);
-    rounding.noalias() = left.cwiseAbs2() * rounding_squares(maps, i) * right.cwiseAbs2();
     rounding += swept * swept * W.rowwise().squaredNorm() * V.colwise().squaredNorm();
-    changed.noalias() = left.cwiseAbs() * given * right.cwiseAbs();
     if (i == N - 1) changed += W.cwiseAbs() * below * bases->right.leftCols(n).cwiseAbs();
     begin = 0;
     for (std::size_t b = 0; b < chains.size(); ++b) {
@@ -155,19 +171,23 @@ class Collector {
   TurnExponents found_;
 };
 
-// One exponent: sum_i ln |d_i|.
+// One exponent: ln of the product of all d_i, taken to twice the digits, (high + low) 2^exponent.
 void add_single(const CellChain& chain, Collector& collector) {
-  double log = std::log(std::abs(chain.closing(0)));
-  bool negative = chain.closing(0) < 0;
+  double high = chain.closing(0), low = 0;
+  int exponent = 0;
   CellErrors relative;
   for (Index i = 0; i < chain.num_cells(); ++i) {
-    const double d = chain.factors(i);
-    log += std::log(std::max(std::abs(d), 1e-300));
-    negative = negative != (d < 0);
+    const double d = chain.factors(i), product = high * d;
+    low = std::fma(high, d, -product) + low * d;
+    int e = 0;
+    high = std::frexp(product, &e);
+    low = std::ldexp(low, -e);
+    exponent += e;
     relative.add(chain.rounding(i) / (d * d), chain.given(i) / std::abs(d));
   }
-  const double radius = relative.total();
-  collector.add(negative ? -1 : 1, std::isnan(radius) ? HUGE_VAL : radius, log);
+  const double radius = relative.total(), size = std::abs(high);
+  const double log = size > 0 ? std::log(size) + low / high + exponent * std::numbers::ln2 : -HUGE_VAL;
+  collector.add(high < 0 ? -1 : 1, std::isfinite(log + radius) ? radius : HUGE_VAL, log);
 }
 
 // Whether the disc of one eigenvalue is small and touches no other one.
