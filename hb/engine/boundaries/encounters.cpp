@@ -81,16 +81,24 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
   return names;
 }
 
-// Modulation shifts an exponent off its mean one in proportion to its square, hb/engine/README.md (B10).
+// Modulation shifts an exponent off its mean one in proportion to its square, hb/engine/README.md (B10). Which one it
+// has come from is not known: from any that it may be named after, from all but the nearest no farther than (B4) shifts
+// it.
 double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Strand& at_q) {
-  const std::size_t n = at_p.mean.front();
-  const double E_p = p.mean[n].modulation, E_q = q.mean[n].modulation;
-  const double smaller = std::min(E_p, E_q), larger = std::max(E_p, E_q);
-  if (smaller == 0) return 0;
-  const Strand& weaker = E_p <= E_q ? at_p : at_q;
-  const cplx mean = (E_p <= E_q ? p : q).mean[n].value;
-  const double shift = std::max(0.0, std::abs(folded(weaker.s - mean).imag()) - weaker.error);
-  return std::min(0.5, shift * (std::pow(larger / smaller, 2) - 1));
+  const std::size_t nearest = at_p.mean.front();
+  const bool up = p.mean[nearest].modulation <= q.mean[nearest].modulation;
+  const Place &weak = up ? p : q, &strong = up ? q : p;
+  const Strand& weaker = up ? at_p : at_q;
+  double grown = 0;
+  const auto count = [&](std::size_t n, double most) {
+    const double E_weak = weak.mean[n].modulation, E_strong = strong.mean[n].modulation;
+    if (E_weak == 0) return;
+    const double shift = std::abs(folded(weaker.s - weak.mean[n].value).imag()) - weaker.error;
+    grown = std::max(grown, std::min(shift, most) * (std::pow(E_strong / E_weak, 2) - 1));
+  };
+  count(nearest, HUGE_VAL);
+  for (const std::size_t n : weaker.mean) count(n, shift_by_modulation(weak.mean[n]));
+  return std::min(0.5, grown);
 }
 
 // Multiplier +1, -1 or complex, of a locked pair.

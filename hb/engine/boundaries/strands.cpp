@@ -18,9 +18,6 @@ constexpr double detuning = 0.25;
 // group of coupled modes it is a guess.
 constexpr double unlike_decay = 3;
 
-// What modulation may shift an exponent by, of second order.
-double shift(const MeanExponent& mean) { return mean.coupling * mean.coupling / (9 * detuning); }
-
 // Lines Re = const that part exponents and mean ones alike: as many of either beyond, and those next to the line moved
 // by no more than a part of its distance from them. What locks two exponents moves both; their mean counts.
 std::vector<double> parting_lines(const Strands& strands, const std::vector<MeanExponent>& mean) {
@@ -61,7 +58,7 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
   std::sort(distances.begin(), distances.end());
   std::vector<std::size_t> found;
   for (const auto& [distance, n] : distances)
-    if (distance <= distances.front().first + std::max(doubt, shift(mean[n]))) found.push_back(n);
+    if (distance <= distances.front().first + std::max(doubt, shift_by_modulation(mean[n]))) found.push_back(n);
   return found;
 }
 
@@ -86,6 +83,8 @@ void find_partners(std::vector<Strand>& all) {
 }
 
 }  // namespace
+
+double shift_by_modulation(const MeanExponent& mean) { return mean.coupling * mean.coupling / (9 * detuning); }
 
 double growth_by_itself(const Strands& strands, std::size_t k) {
   const Strand& strand = strands.all[k];

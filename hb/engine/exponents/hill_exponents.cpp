@@ -92,13 +92,18 @@ class Window {
     }
     if (through > 0) effect += back * through / (1 - std::min(outer_coupling(s), 1.0));
     const double slope = std::abs(z.dot(derivative(s, x)));
-    const double error = 4 * effect / slope;
+    const double error = 4 * std::max(effect / slope, distance(s, x));
     if (std::isnan(error)) return std::nullopt;
     return Found{s, error};
   }
 
  private:
   cplx at(cplx s, Index k) const { return s + cplx(0, double(k)); }
+  // |x|/|L^-1 L' x|, (E19); zero where L is singular.
+  double distance(cplx s, const VectorXcd& x) const {
+    const VectorXcd y = dense::Lu<cplx>(matrix(s)).solve(derivative(s, x));
+    return y.allFinite() ? x.norm() / y.norm() : 0;
+  }
   // |D| of one unknown.
   double own(cplx s, Index k, Index i) const {
     return std::abs(at(s, k) * at(s, k) + at(s, k) * system_.G(i, i) + system_.K.c(i + I_ * i, 0));
