@@ -38,8 +38,10 @@ pause() { sleep "$(printf '0.%03d' $((RANDOM * 3 % $1)))"; }
 clean() { ! LC_ALL=C grep -q '[^[:print:][:space:]]' <(LC_ALL=C tr -d '\200-\377' <"$1"); }
 known() { [[ " $2 " == *" $1 "* ]]; }
 
+# The step of the sweep: the less time, the fewer speeds.
+step=$((seconds < 60 ? 120 / seconds : 2))
 jobs=(
-  "sweep six_link.toml --rpm 1000:2500:2 --only steady,stability --modes 4"
+  "sweep six_link.toml --rpm 1000:2500:$step --only steady,stability --modes 4"
   "map mathieu.toml --x omega=1:2.6:300 --y hill.stiffness.1.cos.0.0=0.1:0.6:200"
 )
 
@@ -53,9 +55,10 @@ run() {
 # The same in place of the shell that calls it: its process is the one of `hb`.
 exec_run() { in_place="exec" run "$@"; }
 
-# Kills at random moments, then --resume until it ends: the same bytes as without. 143: TERM before hb looked for it.
+# kills JOB NAME SHARE: kills at random moments until its share of the time is used up, then --resume until it ends: the
+# same bytes as without. 143: TERM before hb looked for it.
 kills() {
-  local job=$1 name=$2 status=0 round child signals=(KILL INT TERM)
+  local job=$1 name=$2 share=$3 status=0 round child signals=(KILL INT TERM)
   run "$job" "$work/whole" --no-plots >"$work/whole.txt" 2>"$work/whole.err" || status=$?
   known $status "0 3" || fault "$name: status $status: $(cat "$work/whole.err")"
   for ((round = 0; round < 40; ++round)); do
@@ -67,6 +70,7 @@ kills() {
     wait $child || status=$?
     counted "kills"
     known $status "130 137 143" || break
+    left "$share" || break
   done
   if known $status "130 137 143"; then
     status=0
@@ -166,7 +170,8 @@ two_at_once() {
   rm -rf "$work"/two*
 }
 
-for k in "${!jobs[@]}"; do kills "${jobs[$k]}" "${jobs[$k]%% *}"; done
+kills "${jobs[0]}" sweep 20
+kills "${jobs[1]}" map 40
 two_at_once
 # Some of each kind, however little time there is.
 for attack in full_disks:55 little_memory:70 mutated:100; do
