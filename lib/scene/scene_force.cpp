@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lib/constants.hpp"
+#include "lib/scene/plausibility.hpp"
 #include "lib/scene/sample_file.hpp"
 #include "lib/scene/scene_parts.hpp"
 

@@ -30,7 +30,7 @@ FourierSeries harmonics(std::initializer_list<Eigen::MatrixXd> cosines) {
 }
 
 // x'' + damping x' + (mean + swing cos Omega t) x = 0.
-HillSystem mathieu(double damping, double mean, double swing) {
+HillSystem oscillator(double damping, double mean, double swing) {
   HillSystem system;
   system.mass = Eigen::MatrixXd::Identity(1, 1);
   system.damping = Eigen::MatrixXd::Constant(1, 1, damping);
@@ -57,7 +57,7 @@ std::vector<double> spaced(double from, double to, int n) {
 }
 
 MapSystemAt speed_and_swing(double damping) {
-  return [damping](double Omega, double swing) { return scale_system(mathieu(damping, 1.2, swing), Omega); };
+  return [damping](double Omega, double swing) { return scale_system(oscillator(damping, 1.2, swing), Omega); };
 }
 
 MapSystemAt coupled_map(double damping) {
@@ -97,7 +97,7 @@ TEST(StabilityMap, StruttsChartPassesThroughMathieusCharacteristicValues) {
     if (c.name == "a0") q.push_back(c.q);
   }
   // x'' + (a - 2 q cos 2t) x = 0.
-  const MapSystemAt at = [](double a, double q) { return scale_system(mathieu(0, a, -2 * q), 2); };
+  const MapSystemAt at = [](double a, double q) { return scale_system(oscillator(0, a, -2 * q), 2); };
   const std::vector<double> a = spaced(-3, 20, 47);
   MapOptions options;
   options.sag = 0.05;
@@ -412,7 +412,7 @@ TEST(StabilityMap, TongueTipsAreLocatedToASmallPartOfACell) {
 
 TEST(StabilityMap, AThinGapTakesNoMorePointsThanItsCurvesNeed) {
   // x'' + (a + 2 q cos 2t) x = 0: between a_0 and b_1 stable, 7e-7 wide at q = 25.
-  const MapSystemAt at = [](double a, double swing) { return scale_system(mathieu(0, a, swing), 2); };
+  const MapSystemAt at = [](double a, double swing) { return scale_system(oscillator(0, a, swing), 2); };
   const std::vector<double> a = spaced(-45, -22, 14), swing = spaced(30, 50, 6);
   const StabilityMap map = stability_map(at, a, swing);
   ASSERT_EQ(map.boundaries.size(), 2u);
@@ -445,7 +445,7 @@ TEST(StabilityMap, PointsBetweenCrossingsLieOnTheTongueInOrder) {
   };
   for (std::size_t k = 0; k < p.size(); ++k) {
     between += p[k].along_x ? !of_grid(p[k].y, 0.05, 0.275) : !of_grid(p[k].x, 1.5, 0.5);
-    const double growth = analyse_stability(mathieu(0.1, 1.2, p[k].y), p[k].x).growth_rate;
+    const double growth = analyse_stability(oscillator(0.1, 1.2, p[k].y), p[k].x).growth_rate;
     EXPECT_NEAR(growth, 0, 1e-8) << p[k].x << ", " << p[k].y;
     if (k == 0 || k + 1 == p.size()) continue;
     const double ux = (p[k].x - p[k - 1].x) / 1.5, uy = (p[k].y - p[k - 1].y) / 0.55;

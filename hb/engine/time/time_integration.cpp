@@ -1,11 +1,8 @@
 #include "hb/engine/time/time_integration.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <memory>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "hb/engine/time/sundials_session.hpp"
@@ -111,11 +108,9 @@ int right_hand_side(realtype tau, N_Vector y, N_Vector slope, void* data) {
 //   dx - gamma W dv = bx,   dv + gamma (K dx + G dv) = bv   =>   (1 + gamma G + gamma^2 K W) dv = bv - gamma K bx.
 int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
   auto& problem = *static_cast<Problem*>(solver->content);
-  realtype tau, gamma, rl1;
-  N_Vector predicted, iterate, f, zn1;
-  void* user;
-  if (CVodeGetNonlinearSystemData(problem.cvode, &tau, &predicted, &iterate, &f, &gamma, &rl1, &zn1, &user) != 0)
-    return SUNLS_PACKAGE_FAIL_UNREC;
+  const auto place = newton_place(problem.cvode);
+  if (!place) return SUNLS_PACKAGE_FAIL_UNREC;
+  const auto [tau, gamma] = *place;
   ScaledMotion& motion = problem.motion;
   motion.evaluate(tau);
   const Eigen::Index I = motion.num_modes();
@@ -135,54 +130,17 @@ int solve_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, real
 Trajectory integrate_cvode(ScaledMotion& motion, Integrator method, double tolerance, double tau0,
                            const Eigen::MatrixXd& Y0, const Eigen::VectorXd& load, std::span<const double> outputs,
                            Deadline deadline) {
-  Problem problem{motion, load, deadline};
-  SundialsSession sundials;
-  sundials.y = N_VNew_Serial(Y0.size(), sundials.context);
-  sundials.solver = SUNLinSolNewEmpty(sundials.context);
-  sundials.cvode = CVodeCreate(method == Integrator::adams ? CV_ADAMS : CV_BDF, sundials.context);
-  if (sundials.y == nullptr || sundials.solver == nullptr || sundials.cvode == nullptr) throw std::bad_alloc();
-  problem.cvode = sundials.cvode;
-  sundials.solver->content = &problem;
-  sundials.solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_MATRIX_EMBEDDED; };
-  sundials.solver->ops->solve = solve_newton;
-  problem.matrix(sundials.y) = Y0;
-
-  void* cvode = sundials.cvode;
-  require_success(CVodeInit(cvode, right_hand_side, tau0, sundials.y), "CVodeInit");
-  require_success(CVodeSetErrHandlerFn(
-                      cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
-                  "CVodeSetErrHandlerFn");
-  require_success(CVodeSetUserData(cvode, &problem), "CVodeSetUserData");
-  require_success(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
-  require_success(CVodeSetMaxNumSteps(cvode, std::numeric_limits<long>::max() / 2), "CVodeSetMaxNumSteps");
-  require_success(CVodeSetStopTime(cvode, outputs.back()), "CVodeSetStopTime");
-  require_success(CVodeSetLinearSolver(cvode, sundials.solver, nullptr), "CVodeSetLinearSolver");
-  // The linear solve is exact; never let CVODE skip it as "small enough".
-  require_success(CVodeSetEpsLin(cvode, 1e-14), "CVodeSetEpsLin");
-
-  Trajectory trajectory;
-  trajectory.states.reserve(outputs.size());
-  for (const double tau : outputs) {
-    realtype reached = tau0;
-    int flag = 0;
-    {
-      const StopHeld held;
-      flag = CVode(cvode, tau, sundials.y, &reached, CV_NORMAL);
-    }
-    if (problem.late) end_if_wished();
-    CVodeGetNumSteps(cvode, &trajectory.steps);
-    if (flag < 0) {
-      trajectory.status = problem.late ? IntegrationStatus::time_limit : IntegrationStatus::failed;
-      char* name = CVodeGetReturnFlagName(flag);
-      trajectory.message =
-          (problem.late ? "time limit" : std::string(name)) + " at crank angle " + std::to_string(reached) + " rad";
-      std::free(name);
-      return trajectory;
-    }
-    trajectory.states.emplace_back(problem.matrix(sundials.y));
-  }
-  trajectory.status = IntegrationStatus::finished;
-  return trajectory;
+  SundialsSession sundials(method, Y0.size());
+  Problem problem{motion, load, deadline, sundials.cvode()};
+  problem.matrix(sundials.y()) = Y0;
+  sundials.start({right_hand_side, solve_newton, &problem}, tau0, tolerance, outputs.back());
+  return sundials.follow(
+      outputs, [&](N_Vector y) { return problem.matrix(y); },
+      [&](std::string word) -> SundialsSession::Failure {
+        if (!problem.late) return {IntegrationStatus::failed, std::move(word)};
+        end_if_wished();
+        return {IntegrationStatus::time_limit, "time limit"};
+      });
 }
 
 namespace {

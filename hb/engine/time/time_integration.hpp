@@ -1,6 +1,6 @@
 // Integration of a time-domain system over a stretch of crank angle, several solutions side by side: by CVODE (Adams,
-// BDF) with its own step and order, or by collocation (Radau IIA) on equal cells. Only time_integration.cpp and
-// variational_integration.cpp see SUNDIALS.
+// BDF) with its own step and order, or by collocation (Radau IIA) on equal cells. Only sundials_session.*,
+// time_integration.cpp and variational_integration.cpp see SUNDIALS.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,11 +1,7 @@
 #include "hb/engine/time/variational_integration.hpp"
 
-#include <cstdlib>
-#include <limits>
-
 #include "hb/engine/time/sundials_session.hpp"
 #include "lib/dense.hpp"
-#include "lib/stop_wish.hpp"
 
 namespace hb {
 
@@ -60,11 +56,9 @@ int variational_rhs(realtype tau, N_Vector y, N_Vector slope, void* data) {
 //     (1 + gamma G + gamma^2 K W) du = bu - gamma K bx.
 int solve_variational_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Vector b, realtype) {
   auto& problem = *static_cast<VariationalProblem*>(solver->content);
-  realtype tau, gamma, rl1;
-  N_Vector predicted, iterate, f, zn1;
-  void* user;
-  if (CVodeGetNonlinearSystemData(problem.cvode, &tau, &predicted, &iterate, &f, &gamma, &rl1, &zn1, &user) != 0)
-    return SUNLS_PACKAGE_FAIL_UNREC;
+  const auto place = newton_place(problem.cvode);
+  if (!place) return SUNLS_PACKAGE_FAIL_UNREC;
+  const double gamma = place->gamma;
   const VectorXd& w = problem.motion.w;
   const Index n = problem.motion.num_unknowns();
   const MatrixXd A = MatrixXd::Identity(n, n) + gamma * problem.G + gamma * gamma * problem.K * w.asDiagonal();
@@ -81,57 +75,24 @@ int solve_variational_newton(SUNLinearSolver solver, SUNMatrix, N_Vector x, N_Ve
 Trajectory integrate_variations(const NonlinearMotion& motion, Integrator method, double tolerance, double tau0,
                                 const VectorXd& state, std::span<const double> outputs,
                                 const std::function<bool()>& stop) {
-  VariationalProblem problem{motion, stop, nullptr, false, false, {}, {}, {}};
-  SundialsSession sundials;
-  const Index rows = problem.rows();
-  sundials.y = N_VNew_Serial(rows * (rows + 1), sundials.context);
-  sundials.solver = SUNLinSolNewEmpty(sundials.context);
-  sundials.cvode = CVodeCreate(method == Integrator::adams ? CV_ADAMS : CV_BDF, sundials.context);
-  if (sundials.y == nullptr || sundials.solver == nullptr || sundials.cvode == nullptr) throw std::bad_alloc();
-  void* cvode = problem.cvode = sundials.cvode;
-  sundials.solver->content = &problem;
-  sundials.solver->ops->gettype = [](SUNLinearSolver) { return SUNLINEARSOLVER_MATRIX_EMBEDDED; };
-  sundials.solver->ops->solve = solve_variational_newton;
-  auto Y = problem.matrix(sundials.y);
+  const Index rows = 2 * motion.num_unknowns();
+  SundialsSession sundials(method, rows * (rows + 1));
+  VariationalProblem problem{motion, stop, sundials.cvode(), false, false, {}, {}, {}};
+  auto Y = problem.matrix(sundials.y());
   Y.col(0) = state;
   Y.rightCols(rows).setIdentity();
-
-  require_success(CVodeInit(cvode, variational_rhs, tau0, sundials.y), "CVodeInit");
-  require_success(CVodeSetErrHandlerFn(
-                      cvode, [](int, const char*, const char*, char*, void*) {}, nullptr),
-                  "CVodeSetErrHandlerFn");
-  require_success(CVodeSetUserData(cvode, &problem), "CVodeSetUserData");
-  require_success(CVodeSStolerances(cvode, tolerance, tolerance), "CVodeSStolerances");
+  sundials.start({variational_rhs, solve_variational_newton, &problem}, tau0, tolerance, outputs.back());
   // Where the equations end the steps shrink without an end of their own.
   constexpr long most_steps = 200000;  // to an output
   constexpr double shortest = 1e-10;  // rad of crank angle
-  require_success(CVodeSetMaxNumSteps(cvode, most_steps), "CVodeSetMaxNumSteps");
-  require_success(CVodeSetMinStep(cvode, shortest), "CVodeSetMinStep");
-  require_success(CVodeSetStopTime(cvode, outputs.back()), "CVodeSetStopTime");
-  require_success(CVodeSetLinearSolver(cvode, sundials.solver, nullptr), "CVodeSetLinearSolver");
-  require_success(CVodeSetEpsLin(cvode, 1e-14), "CVodeSetEpsLin");
-
-  Trajectory trajectory;
-  trajectory.states.reserve(outputs.size());
-  for (const double tau : outputs) {
-    realtype reached = tau0;
-    const StopHeld held;
-    const int flag = CVode(cvode, tau, sundials.y, &reached, CV_NORMAL);
-    CVodeGetNumSteps(cvode, &trajectory.steps);
-    if (flag < 0) {
-      trajectory.status = problem.stopped ? IntegrationStatus::time_limit : IntegrationStatus::failed;
-      char* name = CVodeGetReturnFlagName(flag);
-      trajectory.message = problem.stopped   ? "stopped"
-                           : problem.missing ? "the equations do not exist"
-                                             : std::string(name);
-      trajectory.message += " at crank angle " + std::to_string(reached) + " rad";
-      std::free(name);
-      return trajectory;
-    }
-    trajectory.states.emplace_back(problem.matrix(sundials.y));
-  }
-  trajectory.status = IntegrationStatus::finished;
-  return trajectory;
+  require_success(CVodeSetMaxNumSteps(sundials.cvode(), most_steps), "CVodeSetMaxNumSteps");
+  require_success(CVodeSetMinStep(sundials.cvode(), shortest), "CVodeSetMinStep");
+  return sundials.follow(
+      outputs, [&](N_Vector y) { return problem.matrix(y); },
+      [&](std::string word) -> SundialsSession::Failure {
+        if (problem.stopped) return {IntegrationStatus::time_limit, "stopped"};
+        return {IntegrationStatus::failed, problem.missing ? "the equations do not exist" : std::move(word)};
+      });
 }
 
 }  // namespace hb
