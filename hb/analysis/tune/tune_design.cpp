@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/tune/tune_growth.hpp"
 #include "hb/analysis/tune/tune_stress.hpp"
-#include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/design/worst_case.hpp"
 #include "lib/constants.hpp"
 
@@ -156,53 +156,28 @@ void DesignAnalysis::need_whole_stress(const std::vector<Curve>& curves) {
   });
 }
 
+// Growth of every rod at every node, and at new ones in narrow bands between them.
 void DesignAnalysis::find_instabilities() {
   if (!nodes_.front()->growth.empty()) return;
   place_nodes();
-  const std::size_t num_nodes = nodes_.size(), num_rods = model_.rods.size();
-  const StabilityOptions all_exponents = exponent_options(settings_);
-  std::vector<std::vector<Stability>> known(num_nodes);  // by node and rod
-  work_.for_each(num_nodes, [&](std::size_t k) {
-    for (const RodModel& rod : model_.rods) {
-      known[k].push_back(analyse_stability(scale_system(rod.system, nodes_[k]->speed), all_exponents));
-      nodes_[k]->growth.push_back(growth_of(known[k].back()));
-    }
+  for (auto& node : nodes_) node->growth.resize(model_.rods.size());
+  std::vector<double> found;
+  for (std::size_t r = 0; r < model_.rods.size(); ++r) {
+    // The verdict is the mechanism's; conditions are those of the rods asked for.
+    const auto asked = model_.rods[r].reported ? required_ : std::vector<RequiredDecay>(1);
+    std::vector<double> speeds, growth;
+    for (const auto& node : nodes_) speeds.push_back(node->speed);
+    const std::vector<double> own = unstable_speeds(model_.rods[r].system, asked, settings_, work_, speeds, growth);
+    for (std::size_t k = 0; k < nodes_.size(); ++k) nodes_[k]->growth[r] = growth[k];
+    found.insert(found.end(), own.begin(), own.end());
+  }
+  std::vector<std::unique_ptr<Sample>> more(found.size());
+  work_.for_each(found.size(), [&](std::size_t k) {
+    more[k] = std::make_unique<Sample>();
+    more[k]->speed = found[k];
+    for (const RodModel& rod : model_.rods)
+      more[k]->growth.push_back(growth_of(leading_stability(scale_system(rod.system, found[k]), settings_)));
   });
-  // Narrow bands that lie between two nodes.
-  std::vector<std::vector<double>> found(num_nodes);
-  SweepOptions options;
-  options.stability = exponent_options(settings_);
-  for (const RequiredDecay& required : required_) {
-    for (std::size_t r = 0; r < num_rods; ++r) {
-      const RodModel& rod = model_.rods[r];
-      // The verdict is the mechanism's; conditions are those of the rods asked for.
-      if (!rod.reported && &required != &required_.front()) continue;
-      std::vector<StabilitySample> samples;
-      for (std::size_t k = 0; k < num_nodes; ++k) {
-        const double speed = nodes_[k]->speed;
-        samples.push_back({speed, speed, shifted(known[k][r], required.at(speed)), {}});
-      }
-      const SystemAt at = [&](double speed) {
-        return std::optional<ScaledSystem>(scale_system(shifted(rod.system, required.at(speed)), speed));
-      };
-      work_.for_each(num_nodes - 1, [&](std::size_t k) {
-        const SearchedInterval interval =
-            search_interval(at, samples[k], samples[k + 1], k > 0 ? &samples[k - 1] : nullptr,
-                            k + 2 < num_nodes ? &samples[k + 2] : nullptr, options);
-        for (const StabilitySample& sample : interval.samples) found[k].push_back(sample.x);
-      });
-    }
-  }
-  std::vector<std::unique_ptr<Sample>> more;
-  for (const std::vector<double>& speeds : found) {
-    for (const double speed : speeds) {
-      auto sample = std::make_unique<Sample>();
-      sample->speed = speed;
-      for (const RodModel& rod : model_.rods)
-        sample->growth.push_back(growth_of(leading_stability(scale_system(rod.system, speed), settings_)));
-      more.push_back(std::move(sample));
-    }
-  }
   for (auto& sample : more) nodes_.push_back(std::move(sample));
   std::ranges::sort(nodes_, {}, [](const auto& node) { return node->speed; });
 }

@@ -2,24 +2,17 @@
 #pragma once
 
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/tune/tune_growth.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 #include "hb/analysis/tune/tune_quantities.hpp"
 #include "hb/analysis/work.hpp"
 
 namespace hb {
-
-// Decay that a condition asks for, 1/time or per turn.
-struct RequiredDecay {
-  double bound = 0;
-  bool per_turn = false;
-  double at(double speed) const { return per_turn ? bound * speed / (2 * std::numbers::pi) : bound; }
-};
 
 // Response and margin over the speeds sampled, for pictures.
 struct DesignCurves {
