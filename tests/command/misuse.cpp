@@ -274,7 +274,7 @@ const std::vector<Misuse> misuses = {
      {"the number of points is 0.1", "the third number is no step"}},
     {"a_million_speeds_are_announced",
      {},
-     "sweep scene.toml --rpm 1:1000000:1 --modes 1 --no-search --time-limit 2",
+     "sweep scene.toml --rpm 1:1000000:1 --modes 1 --no-search --time-limit 3",
      3,
      {"hb: sweep takes about", "--time-limit"}},
     // Words

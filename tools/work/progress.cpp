@@ -16,6 +16,10 @@ std::string duration(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600);
 }
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 // A forecast by the first parts, and one by which parts of every kind have been seen, after so many seconds.
 constexpr double looks[] = {1, 5}, worth_saying = 10;
 
@@ -71,9 +75,19 @@ void Forecast::advance(std::size_t steps) {
   const std::lock_guard lock(mutex_);
   done_ += steps;
   if (looks_ == std::size(looks)) return;
-  const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  if (spent < looks[looks_] || done_ == 0 || done_ >= total_) return;
+  const double spent = seconds_since(start_);
+  if (spent < looks[looks_]) return;
   while (looks_ < std::size(looks) && spent >= looks[looks_]) ++looks_;
+  look(spent);
+}
+
+void Forecast::end_early() {
+  const std::lock_guard lock(mutex_);
+  if (said_ == 0) look(seconds_since(start_));
+}
+
+void Forecast::look(double spent) {
+  if (done_ == 0 || done_ >= total_) return;
   const double all = spent * static_cast<double>(total_) / static_cast<double>(done_);
   const bool news = said_ == 0 ? all >= worth_saying : all > 2 * said_ || all < said_ / 2;
   if (!news) return;

@@ -33,14 +33,17 @@ class Progress {
 };
 
 // Says on standard error what a step will take, where that is more than ten seconds: by its first parts, and once more
-// where later ones show that it takes twice or half as long.
+// where later ones show that it takes twice or half as long. Of a step that ends early, what it would have taken.
 class Forecast {
  public:
   // `at_most`: the step may end before all parts.
   Forecast(std::string what, std::size_t total, int num_threads, bool at_most = false);
   void advance(std::size_t steps = 1);  // from any thread
+  void end_early();  // where nothing was said: by the parts so far
 
  private:
+  void look(double spent);
+
   std::string what_;
   std::size_t total_, done_ = 0;
   int num_threads_;

@@ -85,15 +85,16 @@ class SharedWork::Chunks {
         [&](std::size_t chunk) {
           if (const Part* earlier = kept(chunk)) {
             split(*earlier, parts_, from(chunk), to(chunk));
+            forecast.advance(to(chunk) - from(chunk));
           } else {
-            compute(chunk);
+            forecast.advance(compute(chunk));
             if (!work_.ends_early()) keep(chunk);
           }
           progress_.advance(to(chunk) - from(chunk));
-          forecast.advance(to(chunk) - from(chunk));
         },
         work_.stop_);
     if (!complete) throw WorkStopped();
+    if (work_.ends_early()) forecast.end_early();
   }
 
   // Rounds of the chunks that are not known, each shared among the ranks: often enough for a kill to lose little.
@@ -116,8 +117,14 @@ class SharedWork::Chunks {
   [[nodiscard]] std::size_t from(std::size_t chunk) const { return chunk * size_; }
   [[nodiscard]] std::size_t to(std::size_t chunk) const { return std::min(from(chunk) + size_, parts_.count); }
 
-  void compute(std::size_t chunk) const {
-    for (std::size_t k = from(chunk); k < to(chunk); ++k) work_.compute_or_leave(parts_.compute, k);
+  // How many parts were not left because the work ends early.
+  std::size_t compute(std::size_t chunk) const {
+    std::size_t in_time = 0;
+    for (std::size_t k = from(chunk); k < to(chunk); ++k) {
+      work_.compute_or_leave(parts_.compute, k);
+      if (!work_.ends_early()) ++in_time;
+    }
+    return in_time;
   }
   [[nodiscard]] const Part* kept(std::size_t chunk) const {
     return work_.kept_ != nullptr ? work_.kept_->find(step_ + chunk) : nullptr;
