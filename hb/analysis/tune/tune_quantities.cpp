@@ -118,6 +118,7 @@ Stability shifted(Stability stability, double m) {
   stability.growth_rate += m;
   stability.growth_low += m;
   stability.growth_high += m;
+  stability.others_below += m;
   const double low = stability.growth_rate - stability.growth_error, high = growth_of(stability);
   stability.verdict = high < 0 ? Verdict::stable : low > 0 ? Verdict::unstable : Verdict::undecided;
   return stability;

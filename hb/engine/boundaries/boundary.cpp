@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "hb/engine/boundaries/finite_growth.hpp"
+#include "hb/engine/boundaries/leading_pair.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
@@ -55,79 +57,152 @@ const char* to_string(BoundaryKind kind) {
   return "";
 }
 
-// ITP: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, doi:10.1145/3423597.
-StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
-                                  const SweepOptions& options) {
-  double low = a.x, high = b.x;
-  const bool unstable_above = is_unstable(b);
+namespace {
+
+// Narrows down where the verdict changes between a and b.
+class Location {
+ public:
+  Location(const SystemAt& at, const StabilitySample& a, const StabilitySample& b, const SweepOptions& options)
+      : at_(at), low_(a.x), high_(b.x), sharp_(options.stability), rough_(options.stability) {
+    boundary_.unstable_above = is_unstable(b);
+    const StabilitySample &stable = is_unstable(b) ? a : b, &unstable = is_unstable(b) ? b : a;
+    by_sign_ = stable.stability.verdict == Verdict::stable;
+    lock_ = lock_of(unstable);
+    const double size = std::max(std::abs(low_), std::abs(high_));
+    wanted_ = options.tolerance * size;
+    promised_ = std::max(boundary_tolerance, options.tolerance) * size;
+    // The boundary is no better known than the growth rate; where its sign decides its verdict may stay open.
+    sharp_.tolerance = std::min(sharp_.tolerance, 0.1 * boundary_tolerance);
+    sharp_.growth_suffices = by_sign_;
+    constexpr double rough = 1e-9;
+    rough_.tolerance = std::max(rough_.tolerance, rough);
+    rough_.growth_suffices = rough_.as_found = true;
+    f_low_ = value(a);
+    f_high_ = value(b);
+    certain_low_ = low_;
+    certain_high_ = high_;
+    g_low_ = growth(a);
+    g_high_ = growth(b);
+    notice_kind(unstable);
+  }
+
+  StabilityBoundary run() {
+    const int half = static_cast<int>(std::ceil(std::log2((high_ - low_) / (2 * wanted_))));
+    const int most = std::max(half, 0) + 1;
+    kappa1_ = 0.2 / (high_ - low_);
+    for (int step = 0; step <= most && high_ - low_ > 2 * wanted_; ++step) {
+      const double x = next(wanted_ * std::exp2(most - step));
+      if (!(x > low_ && x < high_)) break;
+      const std::optional<StabilitySample> sample = sample_at(x);
+      if (!sample || !std::isfinite(sample->stability.growth_rate)) break;
+      narrow(*sample);
+    }
+    set_error();
+    return boundary_;
+  }
+
+ private:
   // Where the stable end is certain the sign of the growth rate decides, which is better known than its bound says.
   // Where it is not (no damping), a growth of a tenth of its bar counts: bars are bounds, an order above the error
   // (chosen by experiment).
-  const bool by_sign = (unstable_above ? a : b).stability.verdict == Verdict::stable;
-  const auto value = [&](const StabilitySample& s) {
+  double growth(const StabilitySample& s) const {
     const double growth = s.stability.growth_rate;
-    return by_sign || growth > 0.1 * s.stability.growth_error ? growth : std::min(growth, 0.0);
-  };
-  double f_low = value(a), f_high = value(b);
-  StabilityBoundary boundary;
-  boundary.unstable_above = unstable_above;
-  const auto notice_kind = [&](const StabilitySample& s) {
-    if (leading_resolved(s.stability)) boundary.kind = boundary_kind(s.stability, s.speed);
-  };
-  notice_kind(unstable_above ? b : a);
-  const double wanted = options.tolerance * std::max(std::abs(low), std::abs(high));
-  // The boundary is no better known than the growth rate; where its sign decides its verdict may stay open.
-  StabilityOptions sharp = options.stability;
-  sharp.tolerance = std::min(sharp.tolerance, 0.1 * boundary_tolerance);
-  sharp.growth_suffices = by_sign;
-  const double kappa1 = 0.2 / (high - low);
-  const int half = static_cast<int>(std::ceil(std::log2((high - low) / (2 * wanted))));
-  const int most = std::max(half, 0) + 1;
-  // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.
-  double certain_low = low, certain_high = high, g_low = f_low, g_high = f_high, growth_error = 0;
-  double largest_error = 0;  // of growth rates that are not certain
-  for (int step = 0; step <= most && high - low > 2 * wanted; ++step) {
-    const double middle = 0.5 * (low + high);
-    const double radius = std::max(0.0, wanted * std::exp2(most - step) - 0.5 * (high - low));
-    const double delta = kappa1 * (high - low) * (high - low);
+    return by_sign_ || growth > 0.1 * s.stability.growth_error ? growth : std::min(growth, 0.0);
+  }
+
+  // Of the growth's sign, and nearly linear in x where the unstable end is locked; hb/engine/README.md (B11).
+  double value(const StabilitySample& s) const {
+    const double g = growth(s);
+    if (lock_ == 0 || !by_sign_) return g;
+    const std::optional<LeadingPair> pair = leading_pair(s);
+    if (!pair) return g;
+    const double beyond = lock_ * pair->half_trace - std::cosh(two_pi * pair->mean);
+    return std::isfinite(beyond) && (beyond > 0) == (g > 0) ? beyond : g;
+  }
+
+  // ITP: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, doi:10.1145/3423597.
+  double next(double reach) const {
+    const double middle = 0.5 * (low_ + high_), width = high_ - low_;
+    const double radius = std::max(0.0, reach - 0.5 * width), delta = kappa1_ * width * width;
     double x = middle;
-    if (f_low != f_high) {
-      const double secant = (f_high * low - f_low * high) / (f_high - f_low);
+    if (f_low_ != f_high_) {
+      const double secant = (f_high_ * low_ - f_low_ * high_) / (f_high_ - f_low_);
       const double sign = middle > secant ? 1 : middle < secant ? -1 : 0;
       const double truncated = delta <= std::abs(middle - secant) ? secant + sign * delta : middle;
       x = std::abs(truncated - middle) <= radius ? truncated : middle - sign * radius;
     }
-    if (!(x > low && x < high)) x = middle;
-    if (!(x > low && x < high)) break;
-    const std::optional<ScaledSystem> system = at(x);
-    if (!system) break;
-    const StabilitySample sample{x, system->speed, with_finite_growth(*system, sharp)};
-    if (!std::isfinite(sample.stability.growth_rate)) break;
-    const double f = value(sample);
-    const bool above = (f > 0) == unstable_above;  // x lies on b's side
-    (above ? high : low) = x;
-    (above ? f_high : f_low) = f;
+    return x > low_ && x < high_ ? x : middle;
+  }
+
+  // Growth per x between the nearest places on both sides where it is certain.
+  double slope() const { return std::abs((g_high_ - g_low_) / (certain_high_ - certain_low_)); }
+
+  // First roughly. That suffices far from the boundary, and where the error moves it by less than is promised.
+  std::optional<StabilitySample> sample_at(double x) const {
+    constexpr double far = 30;
+    const std::optional<ScaledSystem> system = at_(x);
+    if (!system) return std::nullopt;
+    if (by_sign_) {
+      const StabilitySample sample{x, system->speed, with_finite_growth(*system, rough_)};
+      const double error = sample.stability.growth_error;
+      if (std::abs(sample.stability.growth_rate) > far * error || error <= 0.25 * promised_ * slope()) return sample;
+    }
+    return StabilitySample{x, system->speed, with_finite_growth(*system, sharp_)};
+  }
+
+  void notice_kind(const StabilitySample& s) {
+    if (leading_resolved(s.stability)) boundary_.kind = boundary_kind(s.stability, s.speed);
+  }
+
+  void narrow(const StabilitySample& sample) {
+    const double f = value(sample), g = growth(sample);
+    const bool above = (f > 0) == boundary_.unstable_above;  // x lies on b's side
+    (above ? high_ : low_) = sample.x;
+    (above ? f_high_ : f_low_) = f;
     if (f > 0) notice_kind(sample);
-    growth_error = sample.stability.growth_error;
-    if (std::abs(f) > 4 * growth_error) {
-      (above ? certain_high : certain_low) = x;
-      (above ? g_high : g_low) = f;
+    growth_error_ = std::max(sample.stability.growth_error, largest_error_);
+    if (std::abs(g) > 4 * sample.stability.growth_error) {
+      (above ? certain_high_ : certain_low_) = sample.x;
+      (above ? g_high_ : g_low_) = g;
     } else {
-      largest_error = std::max(largest_error, growth_error);
+      largest_error_ = growth_error_;
     }
   }
-  boundary.x = 0.5 * (low + high);
-  boundary.error = 0.5 * (high - low);
-  const double slope = std::abs((g_high - g_low) / (certain_high - certain_low));
-  if (by_sign && slope > 0) boundary.error += std::min(growth_error / slope, certain_high - certain_low);
-  // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
-  // from the boundary to where it is g.
-  if (const double g = unstable_above ? g_high : g_low; !by_sign && g > 0) {
-    const double certain = unstable_above ? certain_high : certain_low, part = std::min(5 * largest_error / g, 1.0);
-    boundary.error += part * part * std::abs(certain - boundary.x);
+
+  void set_error() {
+    boundary_.x = 0.5 * (low_ + high_);
+    boundary_.error = 0.5 * (high_ - low_);
+    const bool known = slope() > 0;
+    if (by_sign_ && known) boundary_.error += std::min(growth_error_ / slope(), certain_high_ - certain_low_);
+    // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
+    // from the boundary to where it is g.
+    if (const double g = boundary_.unstable_above ? g_high_ : g_low_; !by_sign_ && g > 0) {
+      const double certain = boundary_.unstable_above ? certain_high_ : certain_low_;
+      const double part = std::min(5 * largest_error_ / g, 1.0);
+      boundary_.error += part * part * std::abs(certain - boundary_.x);
+    }
+    boundary_.converged = boundary_.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
   }
-  boundary.converged = boundary.error <= boundary_tolerance * std::max(std::abs(low), std::abs(high));
-  return boundary;
+
+  const SystemAt& at_;
+  double low_, high_, f_low_ = 0, f_high_ = 0;
+  StabilityOptions sharp_, rough_;
+  bool by_sign_ = false;
+  double lock_ = 0;  // sign of the multipliers that leave, 0: complex ones
+  double wanted_ = 0, promised_ = 0;  // half of the bracket; error of the boundary
+  double kappa1_ = 0;
+  // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.
+  double certain_low_ = 0, certain_high_ = 0, g_low_ = 0, g_high_ = 0;
+  double growth_error_ = 0;  // of the last growth rate
+  double largest_error_ = 0;  // of growth rates that are not certain
+  StabilityBoundary boundary_;
+};
+
+}  // namespace
+
+StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
+                                  const SweepOptions& options) {
+  return Location(at, a, b, options).run();
 }
 
 }  // namespace hb

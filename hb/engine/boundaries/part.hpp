@@ -110,6 +110,7 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
   visit(stability.growth_error);
   visit(stability.growth_low);
   visit(stability.growth_high);
+  visit(stability.others_below);
   visit_as_number(visit, stability.verdict);
   visit_as_number(visit, stability.converged);
 }

@@ -331,7 +331,9 @@ std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double 
     double growth = -HUGE_VAL;
     for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
       growth = std::max(growth, search.exponents.s[i].real() - search.exponents.error[i]);
-    if (std::max(reduced->others_below, search.exponents.others_below) < growth) {
+    double& others = search.exponents.others_below;
+    others = std::max(others, reduced->others_below);
+    if (others < growth) {
       search.method = StabilityMethod::slaving;
       search.evidence = fmt::format("{} modes kept, the others slaved to them and bounded below the leading exponent",
                                     together.size());

@@ -49,6 +49,7 @@ Stability summary(const ExponentSearch& search, double Omega, double tolerance) 
   sort(result.uncertain);
   const bool known = search.complete && std::isfinite(growth);
   set_growth(result, Omega * growth, known ? Omega * low : -HUGE_VAL, known ? Omega * high : HUGE_VAL);
+  if (known) result.others_below = Omega * found.others_below;
   const double bar = result.growth_error / Omega;
   result.converged = std::isfinite(bar) && bar <= std::max(tolerance, 1e-13) * std::max(std::abs(growth), 1.0);
   return result;

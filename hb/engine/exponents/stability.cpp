@@ -83,7 +83,8 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (options.leading_only && system.num_modes() > 1 && !system.conservative.all())
     if (const auto lead = search_leading(system, tolerance, options.keep)) {
       const Stability result = finished(system, *lead, tolerance);
-      if (suffices(result)) return result;
+      if (suffices(result) || (options.as_found && std::isfinite(result.growth_rate + result.growth_error)))
+        return result;
     }
   Exponents propagated;
   if (options.method == StabilityMethod::automatic && propagates_at_once(system)) {
@@ -112,7 +113,7 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
                     const char* relation) {
   options.keep = {};
   Stability whole;
-  double growth = -HUGE_VAL, high = -HUGE_VAL, low = -HUGE_VAL;
+  double growth = -HUGE_VAL, high = -HUGE_VAL, low = -HUGE_VAL, others = -HUGE_VAL;
   Verdict verdict = Verdict::stable;
   whole.converged = true;
   for (const std::vector<int>& modes : groups) {
@@ -127,6 +128,7 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
     add(part.uncertain, whole.uncertain);
     whole.converged = whole.converged && part.converged;
     verdict = worst(verdict, part.verdict);
+    others = std::max(others, part.others_below);
     // A group of which nothing is known may do anything.
     if (!std::isfinite(part.growth_rate) || !std::isfinite(part.growth_error)) {
       high = HUGE_VAL;
@@ -143,6 +145,7 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
   sort(whole.uncertain);
   whole.evidence = fmt::format("{} groups of modes {}; the leading one: {}", groups.size(), relation, whole.evidence);
   set_growth(whole, growth, low, high);
+  whole.others_below = others;
   if (!std::isfinite(whole.growth_error)) whole.converged = false;
   whole.verdict = verdict;
   return whole;

@@ -1,6 +1,7 @@
 // Floquet exponents with error bars and a verdict. Methods differ, the result does not.
 #pragma once
 
+#include <cmath>
 #include <complex>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ struct StabilityOptions {
   bool verdict_only = false;
   // A growth rate within the tolerance is enough, also where its error leaves the verdict open.
   bool growth_suffices = false;
+  // With leading_only: the leading exponents with the error that they come with, however large; no second method.
+  bool as_found = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};
 };
@@ -56,6 +59,8 @@ struct Stability {
   double growth_rate = 0;  // max Re lambda, 1/time
   double growth_error = 0;  // the larger of growth_high - growth_rate and growth_rate - growth_low; may be infinite
   double growth_low = 0, growth_high = 0;  // the growth rate lies between them: what the verdict rests on
+  // Upper bound on Re lambda of exponents that are in neither list; infinite: unknown which there are.
+  double others_below = HUGE_VAL;
   Verdict verdict = Verdict::undecided;
   bool converged = false;  // growth_error within what was asked; for bounds: they decide
   StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate

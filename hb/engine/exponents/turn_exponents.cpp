@@ -197,6 +197,17 @@ bool apart(const InexactEigenvalues& mu, Index one) {
   return mu.radius(one) < 0.1 * std::abs(mu.value(one));
 }
 
+// The largest multiplier, and where it is real the next one, which it may be locked to.
+std::vector<Index> leading(const Eigen::VectorXcd& value) {
+  Index first = 0;
+  value.cwiseAbs().maxCoeff(&first);
+  if (value(first).imag() != 0) return {first};
+  Index second = first;
+  for (Index j = 0; j < value.size(); ++j)
+    if (j != first && (second == first || std::abs(value(j)) > std::abs(value(second)))) second = j;
+  return {first, second};
+}
+
 // Several exponents of like size, or with `leading_only` all: only those near the largest are sought then.
 void add_several(const CellChain& chain, bool leading_only, Collector& collector) {
   const ChainProduct product = product_of(chain);
@@ -206,12 +217,12 @@ void add_several(const CellChain& chain, bool leading_only, Collector& collector
     const auto framed = framed_eigenvalues(chain, product);
     if (framed && (mu.value.size() == 0 || framed->radius.maxCoeff() < mu.radius.maxCoeff())) mu = *framed;
   } else if (mu.value.size() > 0) {
-    Index first = 0;
-    const double largest = mu.value.cwiseAbs().maxCoeff(&first);
-    if (apart(mu, first)) {
-      const double radius = 1.1 * first_order_change(chain, product, mu.value(first), mu.radius(first)) * largest;
+    for (const Index one : leading(mu.value)) {
+      if (!apart(mu, one)) continue;
+      const double relative = 1.1 * first_order_change(chain, product, mu.value(one), mu.radius(one));
+      const double radius = relative * std::abs(mu.value(one));
       for (Index j = 0; j < mu.value.size(); ++j)
-        if ((j == first || mu.value(j) == std::conj(mu.value(first))) && radius < mu.radius(j)) mu.radius(j) = radius;
+        if ((j == one || mu.value(j) == std::conj(mu.value(one))) && radius < mu.radius(j)) mu.radius(j) = radius;
     }
   }
   if (mu.value.size() == 0) return collector.lose(product.log_bound / two_pi);
