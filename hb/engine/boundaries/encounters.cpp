@@ -149,6 +149,8 @@ Place Encounters::place(const StabilitySample& sample) const {
     if (const std::optional<ScaledSystem> system = at_(sample.x)) made.mean = mean_exponents(*system);
   }
   made.strands = strands_of(sample, made.mean);
+  made.pair = leading_pair(sample);
+  made.alone = leading_alone(sample);
   made.unstable = is_unstable(sample);
   return made;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hb/engine/boundaries/boundary.hpp"
+#include "hb/engine/boundaries/leading_pair.hpp"
 #include "hb/engine/boundaries/stability_sample.hpp"
 #include "hb/engine/boundaries/strands.hpp"
 
@@ -17,6 +18,7 @@ struct Place {
   Strands strands;
   std::vector<MeanExponent> mean;
   std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
+  std::optional<LeadingPair> pair, alone;
   bool unstable = false;
 
   double x() const { return sample.x; }

@@ -21,6 +21,18 @@ GrowthNode pair_node(double x, cplx a, cplx b, double error_a, double error_b) {
           error, (std::abs(apart) + error) * error};
 }
 
+std::vector<double> probes(double from, double to) {
+  std::vector<double> x;
+  const double width = to - from;
+  constexpr int middle = 12;
+  for (int k = 1; k < middle; ++k) x.push_back(from + width * k / middle);
+  for (double t = 0.05; t > 1e-6; t *= 0.3) {
+    x.push_back(from + t * width);
+    x.push_back(to - t * width);
+  }
+  return x;
+}
+
 GrowthModel::GrowthModel(std::vector<GrowthNode> nodes) : nodes_(std::move(nodes)) {
   for (GrowthNode& node : nodes_) {
     real_ = real_ && std::abs(node.Q.imag()) <= 4 * node.Q_error + 1e-14 * std::abs(node.Q);

@@ -23,6 +23,10 @@ struct GrowthNode {
 [[nodiscard]] GrowthNode pair_node(double x, std::complex<double> a, std::complex<double> b, double error_a,
                                    double error_b);
 
+// Between two places, where a model is looked at: dense at both ends, where an interpolation's error vanishes with the
+// distance.
+[[nodiscard]] std::vector<double> probes(double from, double to);
+
 struct GrowthBounds {
   double low = 0, high = 0;
 };

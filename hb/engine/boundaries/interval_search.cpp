@@ -4,9 +4,11 @@
 #include <cmath>
 #include <map>
 #include <queue>
+#include <set>
+#include <span>
 
 #include "hb/engine/boundaries/encounters.hpp"
-#include "hb/engine/boundaries/growth_model.hpp"
+#include "hb/engine/boundaries/place_models.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "lib/constants.hpp"
 
@@ -21,8 +23,6 @@ using cplx = std::complex<double>;
 constexpr double most_motion = 0.25, most_motion_while_unstable = 0.15, most_motion_while_locked = 0.5;
 // ... and by this part at most otherwise than their means.
 constexpr double most_unpredicted_motion = 0.05;
-// Models take places no farther away than that.
-constexpr double most_motion_of_models = 0.5;
 // Intervals are not divided below this, relative to x: narrower bands are not looked for.
 constexpr double least_width = 2e-9;
 constexpr int most_divisions = 48;
@@ -47,7 +47,8 @@ class Search {
   }
 
   SearchedInterval run(const StabilitySample& a, const StabilitySample& b, const StabilitySample* before,
-                       const StabilitySample* after) {
+                       const StabilitySample* after, std::span<const StabilitySample> farther) {
+    for (const StabilitySample& sample : farther) places_.emplace(sample.x, encounters_.place(sample));
     for (const StabilitySample* sample : {before, &a, &b, after})
       if (sample != nullptr) places_.emplace(sample->x, encounters_.place(*sample));
     first_ = a.x;
@@ -65,8 +66,6 @@ class Search {
   }
 
  private:
-  using Node = std::map<double, Place>::iterator;
-
   static bool is_far(double growth) { return std::abs(growth) > far_from_zero; }
 
   // A growth that is not told from none between two places.
@@ -82,6 +81,7 @@ class Search {
     const std::optional<ScaledSystem> system = at_(x);
     if (!system) return false;
     const auto above = places_.lower_bound(x);
+    if (leading_suffices_ && evaluate_leading(*system, x)) return true;
     StabilityOptions options = options_.stability;
     if (above != places_.end() && above != places_.begin() && is_far(above->second.growth()) &&
         is_far(std::prev(above)->second.growth())) {
@@ -97,6 +97,43 @@ class Search {
     return true;
   }
 
+  // The leading exponents alone, where they are apart from the others and the verdict is certain.
+  bool evaluate_leading(const ScaledSystem& system, double x) {
+    StabilityOptions options = options_.stability;
+    options.leading_only = options.as_found = options.growth_suffices = true;
+    const StabilitySample sample = stability_sample(system, x, options);
+    if (sample.stability.verdict == Verdict::undecided) return false;
+    const Place place = encounters_.place(sample);
+    if (!is_apart(place)) return false;
+    places_.emplace(x, place);
+    return true;
+  }
+
+  // All exponents at a place where the leading ones are known.
+  void complete(Place& place) {
+    if (completed_.contains(place.x()) || !is_partial(place.sample)) return;
+    completed_.insert(place.x());
+    ++evaluations_;
+    std::optional<StabilitySample> sample = stability_sample(at_, place.x(), options_.stability);
+    if (!sample || !std::isfinite(sample->stability.growth_rate)) return;
+    const bool unstable = place.unstable;
+    place = encounters_.place(*sample);
+    place.unstable = unstable;
+  }
+
+  static bool is_partial(const StabilitySample& sample) {
+    return sample.stability.exponents.size() + sample.stability.uncertain.size() < sample.mean.size();
+  }
+
+  // With those beside them that models may take.
+  void complete_near(Place& p, Place& q) {
+    complete(p);
+    complete(q);
+    auto below = places_.find(p.x()), above = places_.find(q.x());
+    for (int k = 0; k < 2 && below != places_.begin(); ++k) complete((--below)->second);
+    for (int k = 0; k < 2 && std::next(above) != places_.end(); ++k) complete((++above)->second);
+  }
+
   void give_up(const Cell& cell) { not_excluded_.push_back({cell.from, cell.to}); }
 
   // --- A change of verdict in the cell ---
@@ -104,6 +141,7 @@ class Search {
   void split_at_boundary(const Cell& cell) {
     const Place &p = places_.at(cell.from), &q = places_.at(cell.to);
     StabilityBoundary boundary = locate_boundary(at_, p.sample, q.sample, located_);
+    leading_suffices_ = is_apart(p) && is_apart(q);
     const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
     const StabilitySample& inside = places_.at(boundary.unstable_above ? right : left).sample;
     if (leading_resolved(inside.stability)) boundary.kind = boundary_kind(inside.stability, inside.speed);
@@ -141,7 +179,7 @@ class Search {
     const double width = cell.to - cell.from;
     if (width <= least_width * std::max(std::abs(cell.from), std::abs(cell.to))) return;
     Place &p = places_.at(cell.from), &q = places_.at(cell.to);
-    const double x = p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
+    const double x = doubtful(p, q);
     if (std::isnan(x)) return;
     const int affordable = most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size());
     if (cell.divisions >= most_divisions || evaluations_ >= affordable || !(x > cell.from && x < cell.to) ||
@@ -154,9 +192,21 @@ class Search {
   }
 
   // NaN: settled; otherwise where to look.
+  double doubtful(Place& p, Place& q) {
+    if (!p.unstable && bounded(p, q)) return nan;
+    for (const Apart what : {Apart::pair, Apart::alone})
+      if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())
+        if (const std::optional<double> x = doubtful_while_apart(places, what, options_.least_growth)) {
+          leading_suffices_ = true;
+          return *x;
+        }
+    leading_suffices_ = false;
+    complete_near(p, q);
+    return p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
+  }
+
   double doubtful_while_stable(Place& p, Place& q) {
     const double middle = 0.5 * (p.x() + q.x());
-    if (bounded(p, q)) return nan;
     if (p.strands.all.empty() || q.strands.all.empty()) return middle;
     if (!encounters_.resolved(p, q, most_motion)) return middle;
     // Where it is the modulation that moves them, what they do between the places is not known from their means.
@@ -166,7 +216,7 @@ class Search {
     double worst = least, where = nan;
     const auto meeting = encounters_.meetings(p, q, least);
     for (const Meeting& m : meeting) {
-      const std::optional<GrowthModel> model = pair_model(p, m.a, m.b, q);
+      const std::optional<GrowthModel> model = pair_model(places_, p, m.a, m.b, q);
       if (!model) return clamped(m.x, p, q, 0.2);
       worst = std::max(worst, 2 * model->error());
       const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
@@ -184,7 +234,8 @@ class Search {
     const double slowest = std::min(p.growth(), q.growth());
     for (std::size_t k = 0; k < p.strands.all.size() && p.strands.all[k].s.real() > several * slowest - least; ++k) {
       double high = HUGE_VAL, x = middle;
-      for (const std::optional<GrowthModel>& model : {single_model(p, k, q), partner_model(p, k, q)}) {
+      for (const std::optional<GrowthModel>& model :
+           {single_model(places_, p, k, q), partner_model(places_, p, k, q)}) {
         if (!model) continue;
         if (const auto [x_model, high_model] = highest(*model, p, q); high_model < high) {
           high = high_model;
@@ -216,8 +267,8 @@ class Search {
         if (place->strands.all[k].partner != no_strand) continue;
         const std::vector<std::size_t> near = encounters_.neighbours(*place, other, k);
         if (near.size() > 1) continue;
-        const std::optional<GrowthModel> model =
-            near.empty() ? single_model(*place, k, other) : pair_model(*place, k, near.front(), other);
+        const std::optional<GrowthModel> model = near.empty() ? single_model(places_, *place, k, other)
+                                                              : pair_model(places_, *place, k, near.front(), other);
         if (model) models.push_back(*model);
       }
     }
@@ -231,7 +282,7 @@ class Search {
         where = clamped(x, p, q, nearest);
       }
     };
-    for (const double x : probes(p, q)) look(x, 0.02);
+    for (const double x : probes(p.x(), q.x())) look(x, 0.02);
     // A pair's growth has a notch where the two pass each other.
     for (const GrowthModel& model : models) look(model.centre(), 1e-6);
     return worst > 0 ? nan : where;
@@ -251,7 +302,7 @@ class Search {
   // The largest growth that any exponent has by itself hardly changes.
   bool level(const Place& p, const Place& q, double least) const {
     double low = HUGE_VAL, high = -HUGE_VAL;
-    const std::vector<const Place*> places = window(p, q);
+    const std::vector<const Place*> places = window(places_, p, q);
     if (places.size() < 3) return false;
     for (const Place* place : places) {
       double growth = -HUGE_VAL;
@@ -292,117 +343,9 @@ class Search {
 
   // --- Models ---
 
-  // p, q and up to one more on either side or two on one.
-  std::vector<const Place*> window(const Place& p, const Place& q) const {
-    const double room = 1e-4 * std::abs(q.x() - p.x());
-    const auto low = places_.find(std::min(p.x(), q.x())), high = places_.find(std::max(p.x(), q.x()));
-    std::vector<const Place*> left, right;
-    for (auto it = low; it != places_.begin() && left.size() < 2;) {
-      --it;
-      if (low->first - it->first > room && usable(it->second, p)) left.push_back(&it->second);
-    }
-    for (auto it = std::next(high); it != places_.end() && right.size() < 2; ++it)
-      if (it->first - high->first > room && usable(it->second, p)) right.push_back(&it->second);
-    std::vector<const Place*> chosen = {&p, &q};
-    std::size_t l = 0, r = 0;
-    while (chosen.size() < 4 && (l < left.size() || r < right.size())) {
-      const bool take_left = l < left.size() && (r == right.size() || l < r ||
-                                                 (l == r && low->first - left[l]->x() <= right[r]->x() - high->first));
-      chosen.push_back(take_left ? left[l++] : right[r++]);
-    }
-    return chosen;
-  }
-  static bool usable(const Place& place, const Place& like) {
-    return !place.strands.all.empty() && !like.strands.all.empty();
-  }
-
-  // Where strands of p are at another place of its window, from place to place.
-  std::optional<std::vector<std::size_t>> followed(const Place& p, const Place& to,
-                                                   std::vector<std::size_t> strands) const {
-    auto it = places_.find(p.x());
-    const bool up = to.x() > p.x();
-    while (it->first != to.x()) {
-      const auto next = up ? std::next(it) : std::prev(it);
-      if (!usable(next->second, p)) return std::nullopt;
-      const std::vector<std::size_t> onward = continued(it->second.strands, next->second.strands);
-      for (std::size_t& k : strands) {
-        k = onward[k];
-        if (k == no_strand) return std::nullopt;
-      }
-      it = next;
-    }
-    return strands;
-  }
-
-  static std::optional<GrowthModel> consistent_model(std::vector<GrowthNode> nodes, const Place& p, const Place& q) {
-    if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
-    GrowthModel model(std::move(nodes));
-    if (!model.consistent()) return std::nullopt;
-    return model;
-  }
-
-  std::optional<GrowthModel> single_model(const Place& p, std::size_t k, const Place& q) const {
-    std::vector<GrowthNode> nodes;
-    for (const Place* place : window(p, q)) {
-      const auto at = followed(p, *place, {k});
-      if (!at) continue;
-      if (place != &p && place != &q && mean_motion(p.strands, place->strands, k) > most_motion_of_models) continue;
-      const Strand& s = place->strands.all[(*at)[0]];
-      nodes.push_back({place->x(), s.s.real(), s.s.imag(), 0, s.error, 0});
-    }
-    return consistent_model(std::move(nodes), p, q);
-  }
-
-  std::optional<GrowthModel> pair_model(const Place& p, std::size_t a, std::size_t b, const Place& q) const {
-    std::vector<GrowthNode> nodes;
-    for (const Place* place : window(p, q)) {
-      const auto at = followed(p, *place, {a, b});
-      if (!at) continue;
-      const Strand &s = place->strands.all[(*at)[0]], &t = place->strands.all[(*at)[1]];
-      // Farther apart they are nearer on the other side.
-      constexpr double farthest = 0.4;
-      if (!(std::abs(folded(s.s - t.s).imag()) <= farthest)) continue;
-      if (place != &p && place != &q &&
-          mean_motion(p.strands, place->strands, a) + mean_motion(p.strands, place->strands, b) > most_motion_of_models)
-        continue;
-      nodes.push_back(pair_node(place->x(), s.s, t.s, s.error, t.error));
-    }
-    if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
-    return consistent_model(std::move(nodes), p, q);
-  }
-
-  // With the strand that is nearest.
-  std::optional<GrowthModel> partner_model(const Place& p, std::size_t k, const Place& q) const {
-    std::size_t partner = no_strand;
-    double least = HUGE_VAL;
-    for (std::size_t other = 0; other < p.strands.all.size(); ++other) {
-      if (other == k) continue;
-      const double distance = apart(p.strands, k, other);
-      if (distance < least) {
-        least = distance;
-        partner = other;
-      }
-    }
-    if (partner == no_strand) return std::nullopt;
-    return pair_model(p, k, partner, q);
-  }
-
-  // Dense at both ends, where an interpolation's error vanishes with the distance.
-  static std::vector<double> probes(const Place& p, const Place& q) {
-    std::vector<double> x;
-    const double width = q.x() - p.x();
-    constexpr int middle = 12;
-    for (int k = 1; k < middle; ++k) x.push_back(p.x() + width * k / middle);
-    for (double t = 0.05; t > 1e-6; t *= 0.3) {
-      x.push_back(p.x() + t * width);
-      x.push_back(q.x() - t * width);
-    }
-    return x;
-  }
-
   static std::pair<double, double> highest(const GrowthModel& model, const Place& p, const Place& q) {
     double worst = -HUGE_VAL, where = 0.5 * (p.x() + q.x());
-    std::vector<double> all = probes(p, q);
+    std::vector<double> all = probes(p.x(), q.x());
     all.push_back(model.centre());
     for (const double x : all) {
       const double high = model(x).high;
@@ -441,7 +384,7 @@ class Search {
       if (chosen == nullptr) continue;
       found.samples.push_back(*chosen);
       if (const auto sharp = stability_sample(at_, chosen->x, options_.stability);
-          sharp && sharp->stability.growth_error < chosen->stability.growth_error)
+          sharp && (is_partial(*chosen) || sharp->stability.growth_error < chosen->stability.growth_error))
         found.samples.back() = *sharp;
     }
     std::sort(not_excluded_.begin(), not_excluded_.end());
@@ -458,7 +401,9 @@ class Search {
   const SweepOptions& options_;
   Encounters encounters_;
   SweepOptions located_;
-  std::map<double, Place> places_;
+  Places places_;
+  std::set<double> completed_;  // places with all exponents that could be found
+  bool leading_suffices_ = false;  // at the next place
   std::priority_queue<Cell> cells_;  // the widest first
   std::vector<StabilityBoundary> boundaries_;
   std::vector<std::array<double, 2>> not_excluded_;
@@ -470,8 +415,8 @@ class Search {
 
 SearchedInterval search_interval(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
                                  const StabilitySample* before, const StabilitySample* after,
-                                 const SweepOptions& options) {
-  return Search(at, options).run(a, b, before, after);
+                                 const SweepOptions& options, std::span<const StabilitySample> farther) {
+  return Search(at, options).run(a, b, before, after, farther);
 }
 
 }  // namespace hb

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "hb/engine/boundaries/boundary.hpp"
@@ -17,9 +18,11 @@ struct SearchedInterval {
   int evaluations = 0;
 };
 
-// Between a and b, a.x < b.x. `before` and `after` (or null): samples next to them, which save evaluations.
+// Between a and b, a.x < b.x. `before` and `after` (or null): samples next to them, which save evaluations, as do those
+// `farther` away. Samples of leading exponents alone will do where others_below tells that the rest decays faster.
 [[nodiscard]] SearchedInterval search_interval(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
                                                const StabilitySample* before, const StabilitySample* after,
-                                               const SweepOptions& options = {});
+                                               const SweepOptions& options = {},
+                                               std::span<const StabilitySample> farther = {});
 
 }  // namespace hb

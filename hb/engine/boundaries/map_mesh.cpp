@@ -78,6 +78,24 @@ MapMesh::MapMesh(MapAxis x, MapAxis y) : x_(std::move(x)), y_(std::move(y)) {
           {{node, node + 1, node + nx + 1, node + nx}, {bottom[node], left[node + 1], bottom[node + nx], left[node]}});
     }
   }
+  first_nodes_ = nodes_.size();
+  first_edges_ = edges_.size();
+}
+
+std::vector<std::size_t> MapMesh::farther(std::size_t e) const {
+  std::vector<std::size_t> nodes;
+  if (e >= first_edges_) return nodes;
+  const MapEdge& edge = edges_[e];
+  const std::size_t step = edge.b - edge.a;
+  const auto on_line = [&](std::size_t node) {
+    return node < first_nodes_ &&
+           (edge.along_x ? nodes_[node].j == nodes_[edge.a].j : nodes_[node].i == nodes_[edge.a].i);
+  };
+  for (const std::size_t k : {std::size_t(2), std::size_t(3)}) {
+    if (edge.a >= k * step && on_line(edge.a - k * step)) nodes.push_back(edge.a - k * step);
+    if (on_line(edge.b + k * step)) nodes.push_back(edge.b + k * step);
+  }
+  return nodes;
 }
 
 std::size_t MapMesh::add_node(int i, int j) {

@@ -72,6 +72,9 @@ class MapMesh {
 
   bool divisible(const MapCell& cell) const { return width(cell) >= 2 && height(cell) >= 2; }
 
+  // Of an edge of the first mesh up to two nodes beyond each of those next to it.
+  [[nodiscard]] std::vector<std::size_t> farther(std::size_t edge) const;
+
   // The edge may have a crossing where both ends have one verdict; its half has not, if the whole was searched.
   bool searched_as_a_whole(std::size_t edge) const { return searched_[edge]; }
 
@@ -94,6 +97,7 @@ class MapMesh {
   void append_crossings(std::size_t e, std::vector<std::size_t>& all) const;
 
   MapAxis x_, y_;
+  std::size_t first_nodes_ = 0, first_edges_ = 0;
   std::vector<MapNode> nodes_;
   std::vector<MapEdge> edges_;
   std::vector<bool> searched_;  // by edge

@@ -179,8 +179,11 @@ class MapSearch {
     };
     const auto before = sample_at(edge.before), first = sample_at(edge.a), last = sample_at(edge.b),
                after = sample_at(edge.after);
-    SearchedInterval found =
-        search_interval(along, *first, *last, before ? &*before : nullptr, after ? &*after : nullptr, along_edges_);
+    std::vector<StabilitySample> farther;
+    for (const std::size_t node : mesh_.farther(e))
+      if (auto sample = sample_at(node)) farther.push_back(*std::move(sample));
+    SearchedInterval found = search_interval(along, *first, *last, before ? &*before : nullptr,
+                                             after ? &*after : nullptr, along_edges_, farther);
     found.samples.clear();
     return found;
   }

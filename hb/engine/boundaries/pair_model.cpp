@@ -1,0 +1,109 @@
+#include "hb/engine/boundaries/pair_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lib/constants.hpp"
+
+namespace hb {
+
+namespace {
+
+// The last term of an interpolation may be small by chance.
+constexpr double of_last_term = 3, of_term_before = 0.75;
+
+constexpr int steps_inside = 30;
+
+template <class Function>
+double root(const Function& f, double from, double to) {
+  const bool positive = f(from) > 0;
+  for (int step = 0; step < steps_inside; ++step) {
+    const double middle = 0.5 * (from + to);
+    ((f(middle) > 0) == positive ? from : to) = middle;
+  }
+  return 0.5 * (from + to);
+}
+
+// Golden sections.
+template <class Function>
+double largest(const Function& f, double from, double to) {
+  constexpr double golden = 0.61803398874989485;
+  for (int step = 0; step < steps_inside; ++step) {
+    const double a = to - golden * (to - from), b = from + golden * (to - from);
+    if (f(a) > f(b))
+      to = b;
+    else
+      from = a;
+  }
+  return 0.5 * (from + to);
+}
+
+}  // namespace
+
+PairModel::PairModel(std::vector<PairNode> nodes)
+    : nodes_(std::move(nodes)), mean_(terms(&LeadingPair::mean)), half_trace_(terms(&LeadingPair::half_trace)) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(2, nodes_.size()); ++k) {
+    mean_error_ = std::max(mean_error_, nodes_[k].pair.mean_error);
+    half_trace_error_ = std::max(half_trace_error_, nodes_[k].pair.half_trace_error);
+  }
+}
+
+PairModel::Terms PairModel::terms(double LeadingPair::*of) const {
+  Terms d;
+  for (const PairNode& node : nodes_) d.push_back(node.pair.*of);
+  for (std::size_t order = 1; order < d.size(); ++order)
+    for (std::size_t k = d.size() - 1; k >= order; --k) d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
+  return d;
+}
+
+PairModel::Value PairModel::at(double x, const Terms& terms) const {
+  double sum = terms[0], product = 1, last = HUGE_VAL, before = HUGE_VAL;
+  for (std::size_t k = 1; k < terms.size(); ++k) {
+    product *= x - nodes_[k - 1].x;
+    before = last;
+    last = std::abs(terms[k] * product);
+    sum += terms[k] * product;
+  }
+  return {sum, terms.size() < 4 ? HUGE_VAL : std::max(of_last_term * last, of_term_before * before)};
+}
+
+GrowthBounds PairModel::leading(double x) const {
+  const Value mean = at(x, mean_), c = at(x, half_trace_);
+  const double E = c.error + half_trace_error_, e = mean.error + mean_error_, size = std::abs(c.value);
+  return {mean.value - e + std::acosh(std::max(1.0, size - E)) / two_pi,
+          mean.value + e + std::acosh(std::max(1.0, size + E)) / two_pi};
+}
+
+double PairModel::predicted(double x) const {
+  return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
+}
+
+double PairModel::lower(double x) const {
+  return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
+}
+
+double PairModel::lowest(double x) const {
+  const Value mean = at(x, mean_), c = at(x, half_trace_);
+  return mean.value - mean.error - mean_error_ -
+         std::acosh(std::max(1.0, std::abs(c.value) + c.error + half_trace_error_)) / two_pi;
+}
+
+std::vector<double> PairModel::telling() const {
+  std::vector<double> places = probes(nodes_[0].x, nodes_[1].x), more;
+  std::ranges::sort(places);
+  const auto c = [&](double x) { return at(x, half_trace_).value; };
+  const auto size = [&](double x) { return std::abs(c(x)); };
+  for (std::size_t k = 0; k + 1 < places.size(); ++k) {
+    const double here = places[k], next = places[k + 1];
+    if ((c(here) > 0) != (c(next) > 0)) more.push_back(root(c, here, next));
+    if (k == 0) continue;
+    const double before = places[k - 1];
+    if (size(here) >= size(before) && size(here) >= size(next)) more.push_back(largest(size, before, next));
+    if (size(here) <= size(before) && size(here) <= size(next))
+      more.push_back(largest([&](double x) { return -size(x); }, before, next));
+  }
+  places.insert(places.end(), more.begin(), more.end());
+  return places;
+}
+
+}  // namespace hb

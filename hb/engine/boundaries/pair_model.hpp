@@ -1,0 +1,49 @@
+// Growth between places where the leading exponents are a pair apart from all others, by interpolation of what is
+// analytic there whether the two are locked or not: their mean growth and the half trace of their map over a turn.
+// hb/engine/README.md, (B11).
+#pragma once
+
+#include <vector>
+
+#include "hb/engine/boundaries/growth_model.hpp"
+#include "hb/engine/boundaries/leading_pair.hpp"
+
+namespace hb {
+
+struct PairNode {
+  double x = 0;
+  LeadingPair pair;
+};
+
+class PairModel {
+ public:
+  // Between x of the first two nodes; up to four more beside them, nearest first. Three or more bound anything.
+  explicit PairModel(std::vector<PairNode> nodes);
+
+  // Growth of the two at x, an estimate: the error is three times the last term of the interpolation, or 3/4 of the one
+  // before, and that of the nodes.
+  GrowthBounds leading(double x) const;
+  // The same without errors.
+  double predicted(double x) const;
+  // Of the one that decays faster, predicted and with errors.
+  double lower(double x) const;
+  double lowest(double x) const;
+  // Where growth may be largest or smallest between the first two nodes: dense beside them, where the interpolation's
+  // error vanishes with the distance, and where the half trace turns round or passes zero.
+  std::vector<double> telling() const;
+
+ private:
+  struct Value {
+    double value, error;
+  };
+  // Newton's divided differences.
+  using Terms = std::vector<double>;
+  Terms terms(double LeadingPair::*of) const;
+  Value at(double x, const Terms& terms) const;
+
+  std::vector<PairNode> nodes_;
+  Terms mean_, half_trace_;
+  double mean_error_ = 0, half_trace_error_ = 0;
+};
+
+}  // namespace hb

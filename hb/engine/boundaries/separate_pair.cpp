@@ -1,0 +1,101 @@
+#include "hb/engine/boundaries/separate_pair.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "hb/engine/boundaries/pair_model.hpp"
+#include "lib/constants.hpp"
+
+namespace hb {
+
+namespace {
+
+// The pair moves by this part of a turn at most from place to place: its half trace is sampled twice a period.
+constexpr double most_turns = 0.4;
+constexpr std::size_t fewest_nodes = 4;
+// An interval is not divided more than three times for another exponent's sake.
+constexpr double most_too_far = 8;
+
+const std::optional<LeadingPair>& pair_of(const Place& place, Apart what) {
+  return what == Apart::pair ? place.pair : place.alone;
+}
+
+// Upper estimate of the growth of all other exponents between p and q.
+double others_between(const LeadingPair& p, const LeadingPair& q) {
+  return p.others == q.others ? p.others : std::max(p.others, q.others) + std::abs(p.others - q.others);
+}
+
+// The two mean exponents that decay slowest; both the same if a third one decays as slowly.
+std::array<std::size_t, 2> slowest(const std::vector<MeanExponent>& mean) {
+  std::vector<std::size_t> order(mean.size());
+  for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
+  const auto growth = [&](std::size_t n) { return mean[n].value.real(); };
+  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return growth(a) > growth(b); });
+  if (order.size() > 2 && !(growth(order[1]) > growth(order[2]))) return {order[0], order[0]};
+  return {std::min(order[0], order[1]), std::max(order[0], order[1])};
+}
+
+// Whether places are near enough to each other to show what happens between them: the pair moves by `most_turns` at
+// most, what its modulation may shift it included, and no other exponent moves against it by more than it decays
+// faster.
+enum class Motion { unknown, too_far, followed };
+Motion motion_between(const Place& p, const Place& q) {
+  if (p.mean.size() != q.mean.size() || p.mean.size() < 2) return Motion::unknown;
+  const std::array<std::size_t, 2> slow = slowest(p.mean);
+  if (slow[0] == slow[1] || slow != slowest(q.mean)) return Motion::unknown;
+  double pair = 0, shift = 0, growth = HUGE_VAL;
+  for (const std::size_t n : slow) {
+    const MeanExponent &a = p.mean[n], &b = q.mean[n];
+    pair = std::max(pair, std::abs((b.value - a.value).imag()));
+    const auto [weak, strong] = std::minmax(a.modulation, b.modulation);
+    if (weak > 0) shift = std::max(shift, 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1));
+    growth = std::min({growth, a.value.real(), b.value.real()});
+  }
+  double far = (pair + shift) / most_turns;
+  for (std::size_t n = 0; n < p.mean.size(); ++n) {
+    if (n == slow[0] || n == slow[1]) continue;
+    const std::complex<double> a = p.mean[n].value, b = q.mean[n].value;
+    const double faster = growth - std::max(a.real(), b.real());
+    far = std::max(far, (std::abs((b - a).imag()) + pair) / std::max(faster, 1e-300));
+  }
+  return far <= 1 ? Motion::followed : far <= most_too_far ? Motion::too_far : Motion::unknown;
+}
+
+}  // namespace
+
+bool is_apart(const Place& place, Apart what) {
+  const std::optional<LeadingPair>& pair = pair_of(place, what);
+  if (!pair || !(pair->lower > pair->others)) return false;
+  // Without damping nothing is apart.
+  return place.unstable || (what == Apart::pair && place.sample.stability.verdict == Verdict::stable);
+}
+
+std::optional<double> doubtful_while_apart(const std::vector<const Place*>& places, Apart what, double least) {
+  const Place &p = *places[0], &q = *places[1];
+  const double middle = 0.5 * (p.x() + q.x());
+  const double others = others_between(*pair_of(p, what), *pair_of(q, what));
+  if (!(std::min(pair_of(p, what)->lower, pair_of(q, what)->lower) > others)) return std::nullopt;
+  const Motion motion = motion_between(p, q);
+  if (motion == Motion::unknown) return std::nullopt;
+  if (motion == Motion::too_far || places.size() < fewest_nodes) return middle;
+  std::vector<PairNode> nodes;
+  for (const Place* place : places) nodes.push_back({place->x(), *pair_of(*place, what)});
+  const PairModel model(std::move(nodes));
+  double worst = p.unstable ? 0 : least, where = nan;
+  for (const double x : model.telling()) {
+    if (!(model.lowest(x) > others)) return model.lower(x) > others ? std::optional(middle) : std::nullopt;
+    const GrowthBounds growth = model.leading(x);
+    const double beyond = p.unstable ? -growth.low : growth.high;
+    if (beyond < worst) continue;
+    worst = beyond;
+    where = x;
+  }
+  if (std::isnan(where)) return where;
+  // A change that is foretold is looked at where it should be.
+  const bool foretold = (model.predicted(where) > 0) != p.unstable;
+  const double margin = (foretold ? 1e-6 : 0.02) * (q.x() - p.x());
+  return std::clamp(where, p.x() + margin, q.x() - margin);
+}
+
+}  // namespace hb

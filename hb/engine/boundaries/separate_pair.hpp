@@ -1,0 +1,27 @@
+// Whether the verdict may change between two places where the leading exponents are apart from all others, which decay
+// faster: then nothing but them counts. hb/engine/README.md, "A pair apart from the others".
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hb/engine/boundaries/encounters.hpp"
+
+namespace hb {
+
+// What is apart: a pair, or the leading exponent of a lock where it grows.
+enum class Apart { pair, alone };
+
+// All other exponents, computed or not, decay faster at this place.
+[[nodiscard]] bool is_apart(const Place& place, Apart what);
+[[nodiscard]] inline bool is_apart(const Place& place) {
+  return is_apart(place, Apart::pair) || is_apart(place, Apart::alone);
+}
+
+// NaN where the verdict does not change between the first two of these places, by a growth of more than `least`; else
+// where to look. The two have one verdict, those beside them follow, nearest first; `what` is apart at all of them,
+// alone with multipliers of one sign. Empty if it may not stay apart.
+[[nodiscard]] std::optional<double> doubtful_while_apart(const std::vector<const Place*>& places, Apart what,
+                                                         double least);
+
+}  // namespace hb
