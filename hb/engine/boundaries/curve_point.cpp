@@ -73,7 +73,7 @@ std::optional<CurvePoint> point_by_verdict(const Line& line, const SweepOptions&
   const auto sample = [&](double t) -> std::optional<StabilitySample> {
     const std::optional<ScaledSystem> system = line.at(t);
     if (!system) return std::nullopt;
-    return StabilitySample{t, system->speed, with_finite_growth(*system, options.stability)};
+    return StabilitySample{t, system->speed, with_certain_verdict(*system, options.stability)};
   };
   double t = line.expected, step = line.step;
   std::optional<StabilitySample> here = sample(t);

@@ -17,6 +17,12 @@ constexpr std::size_t fewest_nodes = 4;
 // An interval is not divided more than three times for another exponent's sake.
 constexpr double most_too_far = 8;
 
+// Without damping nothing is apart.
+bool is_apart(const std::optional<LeadingPair>& pair, Apart what, const StabilitySample& sample) {
+  if (!pair || !(pair->lower > pair->others)) return false;
+  return is_unstable(sample) || (what == Apart::pair && sample.stability.verdict == Verdict::stable);
+}
+
 const std::optional<LeadingPair>& pair_of(const Place& place, Apart what) {
   return what == Apart::pair ? place.pair : place.alone;
 }
@@ -64,11 +70,10 @@ Motion motion_between(const Place& p, const Place& q) {
 
 }  // namespace
 
-bool is_apart(const Place& place, Apart what) {
-  const std::optional<LeadingPair>& pair = pair_of(place, what);
-  if (!pair || !(pair->lower > pair->others)) return false;
-  // Without damping nothing is apart.
-  return place.unstable || (what == Apart::pair && place.sample.stability.verdict == Verdict::stable);
+bool is_apart(const Place& place, Apart what) { return is_apart(pair_of(place, what), what, place.sample); }
+
+bool is_apart(const StabilitySample& sample) {
+  return is_apart(leading_pair(sample), Apart::pair, sample) || is_apart(leading_alone(sample), Apart::alone, sample);
 }
 
 std::optional<double> doubtful_while_apart(const std::vector<const Place*>& places, Apart what, double least) {

@@ -14,6 +14,7 @@ enum class Apart { pair, alone };
 
 // All other exponents, computed or not, decay faster at this place.
 [[nodiscard]] bool is_apart(const Place& place, Apart what);
+[[nodiscard]] bool is_apart(const StabilitySample& sample);
 [[nodiscard]] inline bool is_apart(const Place& place) {
   return is_apart(place, Apart::pair) || is_apart(place, Apart::alone);
 }

@@ -13,6 +13,7 @@
 #include "hb/engine/boundaries/map_curves.hpp"
 #include "hb/engine/boundaries/map_grid.hpp"
 #include "hb/engine/boundaries/map_mesh.hpp"
+#include "hb/engine/boundaries/separate_pair.hpp"
 
 namespace hb {
 
@@ -100,12 +101,16 @@ class MapSearch {
     return at_(x, y);
   }
 
-  // All exponents at a node; the leading ones suffice elsewhere.
-  std::optional<StabilitySample> sample(double x, double y, const StabilityOptions& stability) const {
-    if (!grid_alone_) return stability_sample([&](double t) { return system(t, y); }, x, stability);
+  // At a node all exponents, where the leading ones do not suffice to search its edges.
+  std::optional<StabilitySample> node_sample(double x, double y) const {
     const std::optional<ScaledSystem> there = system(x, y);
     if (!there) return std::nullopt;
-    return StabilitySample{x, there->speed, with_finite_growth(*there, stability)};
+    if (grid_alone_) return StabilitySample{x, there->speed, with_finite_growth(*there, at_nodes_)};
+    StabilityOptions leading = at_nodes_;
+    leading.leading_only = true;
+    StabilitySample sample = stability_sample(*there, x, leading);
+    if (!is_apart(sample)) sample.stability = with_finite_growth(*there, at_nodes_);
+    return sample;
   }
 
   bool unstable(std::size_t node) const { return samples_[node] && is_unstable(*samples_[node]); }
@@ -122,7 +127,7 @@ class MapSearch {
     for (std::size_t node = samples_.size(); node < mesh_.nodes().size(); ++node) nodes.push_back(node);
     std::vector<Sample> samples = results_of<Sample>(
         nodes, [&](std::size_t node) { return place_of(mesh_.nodes()[node]); },
-        [&](std::size_t node) { return sample(mesh_.x_of(node), mesh_.y_of(node), at_nodes_); },
+        [&](std::size_t node) { return node_sample(mesh_.x_of(node), mesh_.y_of(node)); },
         [](auto& visit, Sample& sample) {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
         });
@@ -309,8 +314,8 @@ class MapSearch {
     if (thin_band(cell)) return !unstable(cell.corners[0]);
     const double x = 0.5 * (mesh_.x_of(cell.corners[0]) + mesh_.x_of(cell.corners[2]));
     const double y = 0.5 * (mesh_.y_of(cell.corners[0]) + mesh_.y_of(cell.corners[2]));
-    const std::optional<StabilitySample> s = sample(x, y, along_curves_.stability);
-    return s && is_unstable(*s);
+    const std::optional<ScaledSystem> there = system(x, y);
+    return there && with_certain_verdict(*there, along_curves_.stability).verdict == Verdict::unstable;
   }
 
   bool curves_bend() const { return options_.varies[0] && options_.varies[1]; }
