@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hb/engine/boundaries/boundary_location.hpp"
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/leading_pair.hpp"
 #include "lib/constants.hpp"
@@ -64,7 +65,7 @@ class Location {
  public:
   Location(const SystemAt& at, const StabilitySample& a, const StabilitySample& b, const SweepOptions& options)
       : at_(at), low_(a.x), high_(b.x), sharp_(options.stability), rough_(options.stability) {
-    boundary_.unstable_above = is_unstable(b);
+    found_.boundary.unstable_above = is_unstable(b);
     const StabilitySample &stable = is_unstable(b) ? a : b, &unstable = is_unstable(b) ? b : a;
     by_sign_ = stable.stability.verdict == Verdict::stable;
     lock_ = lock_of(unstable);
@@ -86,19 +87,16 @@ class Location {
     notice_kind(unstable);
   }
 
-  StabilityBoundary run() {
+  BoundaryLocation run(std::optional<std::array<double, 2>> expected) {
+    for (int k = 0; expected && k < 2; ++k)
+      if (!look((*expected)[static_cast<std::size_t>(k)])) break;
     const int half = static_cast<int>(std::ceil(std::log2((high_ - low_) / (2 * wanted_))));
     const int most = std::max(half, 0) + 1;
     kappa1_ = 0.2 / (high_ - low_);
-    for (int step = 0; step <= most && high_ - low_ > 2 * wanted_; ++step) {
-      const double x = next(wanted_ * std::exp2(most - step));
-      if (!(x > low_ && x < high_)) break;
-      const std::optional<StabilitySample> sample = sample_at(x);
-      if (!sample || !std::isfinite(sample->stability.growth_rate)) break;
-      narrow(*sample);
-    }
+    for (int step = 0; step <= most && high_ - low_ > 2 * wanted_; ++step)
+      if (!look(next(wanted_ * std::exp2(most - step)))) break;
     set_error();
-    return boundary_;
+    return found_;
   }
 
  private:
@@ -123,15 +121,30 @@ class Location {
   // ITP: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, doi:10.1145/3423597.
   double next(double reach) const {
     const double middle = 0.5 * (low_ + high_), width = high_ - low_;
-    const double radius = std::max(0.0, reach - 0.5 * width), delta = kappa1_ * width * width;
+    const double radius = std::max(0.0, reach - 0.5 * width);
     double x = middle;
     if (f_low_ != f_high_) {
-      const double secant = (f_high_ * low_ - f_low_ * high_) / (f_high_ - f_low_);
-      const double sign = middle > secant ? 1 : middle < secant ? -1 : 0;
-      const double truncated = delta <= std::abs(middle - secant) ? secant + sign * delta : middle;
+      const auto [zero, error] = interpolated();
+      // Beyond the zero by more than it is wrong, so that it is bracketed from both sides.
+      const double delta = std::min(kappa1_ * width * width, std::max(0.7 * wanted_, 0.1 * error));
+      const double sign = middle > zero ? 1 : middle < zero ? -1 : 0;
+      const double truncated = delta <= std::abs(middle - zero) ? zero + sign * delta : middle;
       x = std::abs(truncated - middle) <= radius ? truncated : middle - sign * radius;
     }
     return x > low_ && x < high_ ? x : middle;
+  }
+
+  // Where the value is zero: x as a parabola of it through both ends and the one before, where they ascend or descend,
+  // with its distance from the secant's zero; else that.
+  std::pair<double, double> interpolated() const {
+    const double secant = (f_high_ * low_ - f_low_ * high_) / (f_high_ - f_low_);
+    const double before = (f_before_ - f_low_) / (f_high_ - f_low_);
+    const bool monotonic = before_ < low_ ? before < 0 : before_ > high_ && before > 1;
+    if (!monotonic) return {secant, HUGE_VAL};
+    const double a = (high_ - low_) / (f_high_ - f_low_), b = (before_ - high_) / (f_before_ - f_high_);
+    const double x = low_ - a * f_low_ + (b - a) / (f_before_ - f_low_) * f_low_ * f_high_;
+    if (!(x > low_ && x < high_)) return {secant, HUGE_VAL};
+    return {x, std::abs(x - secant)};
   }
 
   // Growth per x between the nearest places on both sides where it is certain.
@@ -151,12 +164,23 @@ class Location {
   }
 
   void notice_kind(const StabilitySample& s) {
-    if (leading_resolved(s.stability)) boundary_.kind = boundary_kind(s.stability, s.speed);
+    if (leading_resolved(s.stability)) found_.boundary.kind = boundary_kind(s.stability, s.speed);
+  }
+
+  // False if there is no answer at x.
+  bool look(double x) {
+    if (!(x > low_ && x < high_)) return false;
+    const std::optional<StabilitySample> sample = sample_at(x);
+    if (!sample || !std::isfinite(sample->stability.growth_rate)) return false;
+    narrow(*sample);
+    return true;
   }
 
   void narrow(const StabilitySample& sample) {
     const double f = value(sample), g = growth(sample);
-    const bool above = (f > 0) == boundary_.unstable_above;  // x lies on b's side
+    const bool above = (f > 0) == found_.boundary.unstable_above;  // x lies on b's side
+    before_ = above ? high_ : low_;
+    f_before_ = above ? f_high_ : f_low_;
     (above ? high_ : low_) = sample.x;
     (above ? f_high_ : f_low_) = f;
     if (f > 0) notice_kind(sample);
@@ -164,28 +188,30 @@ class Location {
     if (std::abs(g) > 4 * sample.stability.growth_error) {
       (above ? certain_high_ : certain_low_) = sample.x;
       (above ? g_high_ : g_low_) = g;
+      (above ? found_.above : found_.below) = sample;
     } else {
       largest_error_ = growth_error_;
     }
   }
 
   void set_error() {
-    boundary_.x = 0.5 * (low_ + high_);
-    boundary_.error = 0.5 * (high_ - low_);
+    found_.boundary.x = 0.5 * (low_ + high_);
+    found_.boundary.error = 0.5 * (high_ - low_);
     const bool known = slope() > 0;
-    if (by_sign_ && known) boundary_.error += std::min(growth_error_ / slope(), certain_high_ - certain_low_);
+    if (by_sign_ && known) found_.boundary.error += std::min(growth_error_ / slope(), certain_high_ - certain_low_);
     // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
     // from the boundary to where it is g.
-    if (const double g = boundary_.unstable_above ? g_high_ : g_low_; !by_sign_ && g > 0) {
-      const double certain = boundary_.unstable_above ? certain_high_ : certain_low_;
+    if (const double g = found_.boundary.unstable_above ? g_high_ : g_low_; !by_sign_ && g > 0) {
+      const double certain = found_.boundary.unstable_above ? certain_high_ : certain_low_;
       const double part = std::min(5 * largest_error_ / g, 1.0);
-      boundary_.error += part * part * std::abs(certain - boundary_.x);
+      found_.boundary.error += part * part * std::abs(certain - found_.boundary.x);
     }
-    boundary_.converged = boundary_.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
+    found_.boundary.converged = found_.boundary.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
   }
 
   const SystemAt& at_;
   double low_, high_, f_low_ = 0, f_high_ = 0;
+  double before_ = nan, f_before_ = 0;  // the end that was left last
   StabilityOptions sharp_, rough_;
   bool by_sign_ = false;
   double lock_ = 0;  // sign of the multipliers that leave, 0: complex ones
@@ -195,14 +221,19 @@ class Location {
   double certain_low_ = 0, certain_high_ = 0, g_low_ = 0, g_high_ = 0;
   double growth_error_ = 0;  // of the last growth rate
   double largest_error_ = 0;  // of growth rates that are not certain
-  StabilityBoundary boundary_;
+  BoundaryLocation found_;
 };
 
 }  // namespace
 
+BoundaryLocation locate(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
+                        const SweepOptions& options, std::optional<std::array<double, 2>> expected) {
+  return Location(at, a, b, options).run(expected);
+}
+
 StabilityBoundary locate_boundary(const SystemAt& at, const StabilitySample& a, const StabilitySample& b,
                                   const SweepOptions& options) {
-  return Location(at, a, b, options).run();
+  return locate(at, a, b, options, std::nullopt).boundary;
 }
 
 }  // namespace hb

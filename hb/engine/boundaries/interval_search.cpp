@@ -7,6 +7,7 @@
 #include <set>
 #include <span>
 
+#include "hb/engine/boundaries/boundary_location.hpp"
 #include "hb/engine/boundaries/encounters.hpp"
 #include "hb/engine/boundaries/place_models.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
@@ -140,8 +141,13 @@ class Search {
 
   void split_at_boundary(const Cell& cell) {
     const Place &p = places_.at(cell.from), &q = places_.at(cell.to);
-    StabilityBoundary boundary = locate_boundary(at_, p.sample, q.sample, located_);
+    const std::vector<const Place*> places = apart_beside(places_, p, q, Apart::pair);
+    const BoundaryLocation found = locate(at_, p.sample, q.sample, located_, expected_change(places));
+    StabilityBoundary boundary = found.boundary;
     leading_suffices_ = is_apart(p) && is_apart(q);
+    for (const auto* sample : {&found.below, &found.above})
+      if (*sample && leading_suffices_ && std::abs((*sample)->x - boundary.x) < 16 * beyond(boundary, cell))
+        keep(**sample);
     const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
     const StabilitySample& inside = places_.at(boundary.unstable_above ? right : left).sample;
     if (leading_resolved(inside.stability)) boundary.kind = boundary_kind(inside.stability, inside.speed);
@@ -150,13 +156,30 @@ class Search {
     if (left > cell.from) cells_.push({cell.from, left, cell.divisions + 1});
   }
 
+  // How far from a boundary places are looked at first.
+  static double beyond(const StabilityBoundary& boundary, const Cell& cell) {
+    return std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
+  }
+
+  // A place beside a boundary that was computed to find that.
+  void keep(StabilitySample sample) {
+    const std::optional<ScaledSystem> system = at_(sample.x);
+    if (!system || sample.stability.verdict == Verdict::undecided) return;
+    sample.mean = mean_exponents(*system);
+    const Place place = encounters_.place(sample);
+    if (is_apart(place)) places_.emplace(sample.x, place);
+  }
+
   // The nearest place on one side of the boundary that shows the verdict of that side.
   double beside(const StabilityBoundary& boundary, const Cell& cell, int side) {
     const double end = side < 0 ? cell.from : cell.to, room = std::abs(end - boundary.x);
     const bool unstable = boundary.unstable_above == (side > 0);
     const double least = least_width * std::abs(boundary.x);
-    const double first = std::max(4 * boundary.error, 1e-7 * (cell.to - cell.from));
+    const double first = beyond(boundary, cell);
     double beside = end;
+    const auto above = places_.upper_bound(boundary.x);
+    const auto known = side > 0 ? above : std::prev(above);
+    if (known->first != end && known->second.unstable == unstable) return known->first;
     for (double step = first; step < 0.5 * room; step *= 16) {
       const double x = boundary.x + side * step;
       if (places_.contains(x) || !evaluate(x)) break;

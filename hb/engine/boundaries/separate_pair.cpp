@@ -27,6 +27,12 @@ const std::optional<LeadingPair>& pair_of(const Place& place, Apart what) {
   return what == Apart::pair ? place.pair : place.alone;
 }
 
+PairModel model_of(const std::vector<const Place*>& places, Apart what) {
+  std::vector<PairNode> nodes;
+  for (const Place* place : places) nodes.push_back({place->x(), *pair_of(*place, what)});
+  return PairModel(std::move(nodes));
+}
+
 // Upper estimate of the growth of all other exponents between p and q.
 double others_between(const LeadingPair& p, const LeadingPair& q) {
   return p.others == q.others ? p.others : std::max(p.others, q.others) + std::abs(p.others - q.others);
@@ -84,9 +90,7 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   const Motion motion = motion_between(p, q);
   if (motion == Motion::unknown) return std::nullopt;
   if (motion == Motion::too_far || places.size() < fewest_nodes) return middle;
-  std::vector<PairNode> nodes;
-  for (const Place* place : places) nodes.push_back({place->x(), *pair_of(*place, what)});
-  const PairModel model(std::move(nodes));
+  const PairModel model = model_of(places, what);
   double worst = p.unstable ? 0 : least, where = nan;
   for (const double x : model.telling()) {
     if (!(model.lowest(x) > others)) return model.lower(x) > others ? std::optional(middle) : std::nullopt;
@@ -101,6 +105,29 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   const bool foretold = (model.predicted(where) > 0) != p.unstable;
   const double margin = (foretold ? 1e-6 : 0.02) * (q.x() - p.x());
   return std::clamp(where, p.x() + margin, q.x() - margin);
+}
+
+std::optional<std::array<double, 2>> expected_change(const std::vector<const Place*>& places) {
+  if (places.size() < fewest_nodes) return std::nullopt;
+  const PairModel model = model_of(places, Apart::pair);
+  const double from = places[0]->x(), width = places[1]->x() - from;
+  const bool unstable = places[0]->unstable;
+  constexpr int looks = 32, halvings = 30;
+  double low = 0, high = 1.0 / looks;  // parts of the interval
+  const auto beyond = [&](double part) { return (model.predicted(from + part * width) > 0) != unstable; };
+  while (high < 1 && !beyond(high)) {
+    low = high;
+    high += 1.0 / looks;
+  }
+  if (high >= 1) return std::nullopt;
+  for (int k = 0; k < halvings; ++k) (beyond(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
+  // As far as a third of the growth's error, which is three times the last term, moves it.
+  const double x = from + high * width, step = 1e-4 * width;
+  const GrowthBounds growth = model.leading(x);
+  const double slope = std::abs(model.predicted(x + step) - model.predicted(x - step)) / (2 * step);
+  const double off = (growth.high - growth.low) / (6 * slope);
+  if (!(off < 0.25 * width)) return std::nullopt;
+  return std::array{x - off, x + off};
 }
 
 }  // namespace hb

@@ -2,6 +2,7 @@
 // faster: then nothing but them counts. hb/engine/README.md, "A pair apart from the others".
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -24,5 +25,8 @@ enum class Apart { pair, alone };
 // alone with multipliers of one sign. Empty if it may not stay apart.
 [[nodiscard]] std::optional<double> doubtful_while_apart(const std::vector<const Place*>& places, Apart what,
                                                          double least);
+
+// Two places, ascending, between which one of the changes of verdict between the first two should be; empty: not told.
+[[nodiscard]] std::optional<std::array<double, 2>> expected_change(const std::vector<const Place*>& places);
 
 }  // namespace hb
