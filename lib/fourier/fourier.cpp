@@ -226,15 +226,20 @@ class Plans {
       fftw_.emplace(N);
   }
 
-  // Any arrays aligned as FFTW's own; forward with the factor 1/N.
-  void forward(double* samples, fftw_complex* spectrum) const {
-    if (short_) return short_->forward(samples, reinterpret_cast<std::complex<double>*>(spectrum), 1 / double(N_));
-    fftw_->forward(samples, spectrum);
-    Eigen::Map<Eigen::VectorXcd>(reinterpret_cast<std::complex<double>*>(spectrum), N_ / 2 + 1) /= double(N_);
+  // `columns` arrays of N and N/2 + 1 numbers after each other, aligned as FFTW's own; forward with the factor 1/N.
+  void forward(double* samples, fftw_complex* spectrum, Eigen::Index columns) const {
+    if (short_)
+      return short_->forward(samples, reinterpret_cast<std::complex<double>*>(spectrum), 1 / double(N_),
+                             static_cast<std::size_t>(columns));
+    for (Eigen::Index i = 0; i < columns; ++i) fftw_->forward(samples + i * N_, spectrum + i * (N_ / 2 + 1));
+    Eigen::Map<Eigen::VectorXcd>(reinterpret_cast<std::complex<double>*>(spectrum), columns * (N_ / 2 + 1)) /=
+        double(N_);
   }
-  void backward(fftw_complex* spectrum, double* samples) const {
-    if (short_) return short_->backward(reinterpret_cast<const std::complex<double>*>(spectrum), samples);
-    fftw_->backward(spectrum, samples);
+  void backward(fftw_complex* spectrum, double* samples, Eigen::Index columns) const {
+    if (short_)
+      return short_->backward(reinterpret_cast<const std::complex<double>*>(spectrum), samples,
+                              static_cast<std::size_t>(columns));
+    for (Eigen::Index i = 0; i < columns; ++i) fftw_->backward(spectrum + i * (N_ / 2 + 1), samples + i * N_);
   }
 
  private:
@@ -286,15 +291,9 @@ Eigen::Map<Eigen::MatrixXcd> RealTransform::spectrum() {
   return {reinterpret_cast<std::complex<double>*>(impl_->spectrum), impl_->N / 2 + 1, impl_->n};
 }
 
-void RealTransform::forward() {
-  for (Eigen::Index i = 0; i < impl_->n; ++i)
-    impl_->plan.forward(impl_->samples + i * impl_->N, impl_->spectrum + i * (impl_->N / 2 + 1));
-}
+void RealTransform::forward() { impl_->plan.forward(impl_->samples, impl_->spectrum, impl_->n); }
 
-void RealTransform::backward() {
-  for (Eigen::Index i = 0; i < impl_->n; ++i)
-    impl_->plan.backward(impl_->spectrum + i * (impl_->N / 2 + 1), impl_->samples + i * impl_->N);
-}
+void RealTransform::backward() { impl_->plan.backward(impl_->spectrum, impl_->samples, impl_->n); }
 
 Eigen::Index fast_length(Eigen::Index n) {
   Eigen::Index N = 2;

@@ -7,6 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "lib/fourier/butterfly.hpp"
+#include "lib/fourier/short_transform_lanes.hpp"
+
 namespace hb::fourier {
 namespace {
 
@@ -60,24 +63,10 @@ double* scratch(size_t M) {
 using In = const double* __restrict;
 using Out = double* __restrict;
 
-// Four outputs of a butterfly of radix 4, decimation in frequency; c, s: cosines and sines of its three twiddles.
-struct Butterfly {
-  double y0, z0, y1, z1, y2, z2, y3, z3;
-};
-
-inline Butterfly butterfly(double ar, double ai, double br, double bi, double cr, double ci, double dr, double di,
-                           double c1, double c2, double c3, double s1, double s2, double s3) {
-  const double pr = ar + cr, pi = ai + ci, qr = ar - cr, qi = ai - ci;
-  const double rr = br + dr, ri = bi + di, tr = br - dr, ti = bi - di;
-  const double ur = qr + ti, ui = qi - tr, vr = pr - rr, vi = pi - ri, xr = qr - ti, xi = qi + tr;
-  return {pr + rr,           pi + ri,           c1 * ur + s1 * ui, c1 * ui - s1 * ur,
-          c2 * vr + s2 * vi, c2 * vi - s2 * vr, c3 * xr + s3 * xi, c3 * xi - s3 * xr};
-}
-
 // Stride 1: places p of the sub-transforms are neighbours.
 void first_radix_4(size_t m, In re, In im, In w, Out y, Out z) {
   for (size_t p = 0; p < m; ++p) {
-    const Butterfly b =
+    const Butterfly<double> b =
         butterfly(re[p], im[p], re[p + m], im[p + m], re[p + 2 * m], im[p + 2 * m], re[p + 3 * m], im[p + 3 * m], w[p],
                   w[p + m], w[p + 2 * m], w[p + 3 * m], w[p + 4 * m], w[p + 5 * m]);
     y[4 * p] = b.y0;
@@ -94,8 +83,8 @@ void first_radix_4(size_t m, In re, In im, In w, Out y, Out z) {
 template <class Length>
 inline void radix_4_at(Length s, size_t far, In re, In im, const double (&w)[6], Out y, Out z) {
   for (size_t q = 0; q < s; ++q) {
-    const Butterfly b = butterfly(re[q], im[q], re[q + far], im[q + far], re[q + 2 * far], im[q + 2 * far],
-                                  re[q + 3 * far], im[q + 3 * far], w[0], w[1], w[2], w[3], w[4], w[5]);
+    const Butterfly<double> b = butterfly(re[q], im[q], re[q + far], im[q + far], re[q + 2 * far], im[q + 2 * far],
+                                          re[q + 3 * far], im[q + 3 * far], w[0], w[1], w[2], w[3], w[4], w[5]);
     y[q] = b.y0;
     y[q + s] = b.y1;
     y[q + 2 * s] = b.y2;
@@ -255,6 +244,21 @@ void ShortTransform::backward(const std::complex<double>* spectrum, double* samp
   im[0] = in[0] - in[2 * M];
   transform(im, re, other_im, other_re);
   join(M, re, im, samples);
+}
+
+void ShortTransform::forward(const double* samples, std::complex<double>* spectrum, double factor,
+                             std::size_t columns) const {
+  std::size_t c = lanes::in_lanes(N_, columns, [&](std::size_t first, std::size_t count) {
+    Lanes{*this}.forward(samples + first * N_, reinterpret_cast<double*>(spectrum + first * (M_ + 1)), factor, count);
+  });
+  for (; c < columns; ++c) forward(samples + c * N_, spectrum + c * (M_ + 1), factor);
+}
+
+void ShortTransform::backward(const std::complex<double>* spectrum, double* samples, std::size_t columns) const {
+  std::size_t c = lanes::in_lanes(N_, columns, [&](std::size_t first, std::size_t count) {
+    Lanes{*this}.backward(reinterpret_cast<const double*>(spectrum + first * (M_ + 1)), samples + first * N_, count);
+  });
+  for (; c < columns; ++c) backward(spectrum + c * (M_ + 1), samples + c * N_);
 }
 
 }  // namespace hb::fourier

@@ -20,6 +20,11 @@ class ShortTransform {
   // And back, without a factor; the imaginary parts of c_0 and c_{N/2} count as zero.
   void backward(const std::complex<double>* spectrum, double* samples) const;
 
+  // Of `columns` functions, N samples and N/2 + 1 coefficients after each other: as many at once as the machine's
+  // vectors hold numbers. The bits of one column may depend on how many there are.
+  void forward(const double* samples, std::complex<double>* spectrum, double factor, std::size_t columns) const;
+  void backward(const std::complex<double>* spectrum, double* samples, std::size_t columns) const;
+
  private:
   // One pass of the autosort transform of M = N/2 complex numbers: sub-transforms of length n, radix r, stride M/n.
   struct Pass {
@@ -28,6 +33,8 @@ class ShortTransform {
   };
   // In split form; the result lies in (re, im), the other pair is scratch.
   void transform(double*& re, double*& im, double*& other_re, double*& other_im) const;
+  // short_transform_lanes.hpp
+  struct Lanes;
 
   std::size_t N_, M_;
   std::vector<Pass> passes_;

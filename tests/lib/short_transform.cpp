@@ -83,4 +83,31 @@ TEST(ShortTransform, AColumnHasTheSameBitsWhereverItLies) {
   for (std::size_t k = 0; k <= N / 2; ++k) EXPECT_EQ(first[k], shifted[k + 1]);
 }
 
+TEST(ShortTransform, ColumnsTogetherAreThoseAlone) {
+  for (const std::size_t N : lengths()) {
+    if (N > 600) break;
+    const ShortTransform transform(N);
+    const double rounding = 4e-16 * std::log2(static_cast<double>(N));
+    for (const std::size_t columns : {1u, 2u, 3u, 4u, 5u, 8u, 11u, 17u}) {
+      const std::vector<double> f = samples_of(N * columns);
+      std::vector<std::complex<double>> together(columns * (N / 2 + 1)), alone(N / 2 + 1);
+      std::vector<double> back(N * columns);
+      transform.forward(f.data(), together.data(), 1.0 / static_cast<double>(N), columns);
+      for (std::size_t c = 0; c < columns; ++c) {
+        transform.forward(f.data() + c * N, alone.data(), 1.0 / static_cast<double>(N));
+        std::complex<double>* here = together.data() + c * (N / 2 + 1);
+        for (std::size_t k = 0; k <= N / 2; ++k)
+          EXPECT_LE(std::abs(here[k] - alone[k]), rounding) << N << " " << columns << " " << c << " " << k;
+        EXPECT_EQ(here[0].imag(), 0);
+        EXPECT_EQ(here[N / 2].imag(), 0);
+        here[0].imag(3);
+        here[N / 2].imag(-5);
+      }
+      transform.backward(together.data(), back.data(), columns);
+      for (std::size_t j = 0; j < N * columns; ++j)
+        EXPECT_NEAR(back[j], f[j], 2e-15) << N << " " << columns << " " << j;
+    }
+  }
+}
+
 }  // namespace
