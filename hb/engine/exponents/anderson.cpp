@@ -11,6 +11,11 @@ using Eigen::VectorXd;
 
 VectorXd Anderson::step(const VectorXd& x, const VectorXd& f) {
   if (last_x_.size() > 0) {
+    if (taken_ == 0) {
+      dx_.resize(x.size(), depth);
+      df_.resize(x.size(), depth);
+      gram_.resize(depth, depth);
+    }
     const Index column = taken_++ % depth;
     dx_.col(column) = x - last_x_;
     df_.col(column) = f - last_f_;

@@ -8,14 +8,12 @@ namespace hb {
 
 class Anderson {
  public:
-  explicit Anderson(Eigen::Index size) : dx_(size, depth), df_(size, depth), gram_(depth, depth) {}
-
   // The next x, from x and f(x).
   Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& f);
 
  private:
   static constexpr Eigen::Index depth = 8;
-  Eigen::MatrixXd dx_, df_;  // the last differences, a ring of columns
+  Eigen::MatrixXd dx_, df_;  // the last differences, a ring of columns; none before the second step
   Eigen::MatrixXd gram_;  // df' df, of the columns taken so far
   Eigen::VectorXd last_x_, last_f_;
   Eigen::Index taken_ = 0;

@@ -19,10 +19,37 @@ using slaving::Iteration;
 using slaving::modulus;
 using slaving::Partition;
 
+namespace {
+
+// N x I*I samples of K.
+MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
+  std::vector<Index> own;  // components that are not those of the transposed place
+  std::vector<Index> from(std::size_t(I * I));
+  for (Index j = 0; j < I; ++j)
+    for (Index i = 0; i < I; ++i) {
+      const Index here = i + I * j, transposed = j + I * i;
+      const bool copy = i < j && K.c.row(here) == K.c.row(transposed);
+      from[std::size_t(here)] = copy ? from[std::size_t(transposed)] : Index(own.size());
+      if (!copy) own.push_back(here);
+    }
+  fourier::RealTransform& transform = fourier::thread_transform(N, Index(own.size()));
+  auto spectrum = transform.spectrum();
+  spectrum.topRows(K.c.cols()) = K.c(own, Eigen::all).transpose();
+  spectrum.bottomRows(spectrum.rows() - K.c.cols()).setZero();
+  transform.backward();
+  return transform.samples()(Eigen::all, from);
+}
+
+}  // namespace
+
+// Slaving asks for twice as many angles in the end: these show the others, too.
 const SampledStiffness::Samples& SampledStiffness::at(Index num_samples) {
   const auto [place, is_new] = samples_.try_emplace(num_samples);
   if (is_new) {
-    place->second.K = fourier::synthesise(system_.K, num_samples).transpose();
+    const Index I = system_.num_modes();
+    const auto finer = samples_.find(2 * num_samples);
+    place->second.K = finer != samples_.end() ? MatrixXd(finer->second.K(Eigen::seqN(0, num_samples, 2), Eigen::all))
+                                              : sampled(system_.K, I, num_samples);
     place->second.largest = place->second.K.cwiseAbs().colwise().maxCoeff();
   }
   return place->second;
@@ -59,6 +86,7 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   // Few samples for the iteration; twice as many judge what it gave.
   constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
+  if (2 * start <= most_samples) (void)stiffness.at(2 * start);
   auto iteration = std::make_unique<Iteration>(stiffness, p, start);
   for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
     if (2 * N > most_samples) break;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
@@ -31,11 +30,11 @@ Partition partition(Index I, std::span<const Index> slow) {
 
 void drop_tail(FourierSeries& series, MatrixXd& error) {
   Index H = series.num_harmonics();
-  VectorXd sum = VectorXd::Zero(error.size());
+  VectorXd sum = VectorXd::Zero(error.size()), more(error.size());
   for (; H > 0; --H) {
-    const VectorXd more = sum + 2 * series.c.col(H).cwiseAbs();
+    more = sum + 2 * series.c.col(H).cwiseAbs2().cwiseSqrt();
     if (!(more.array() <= 0.1 * error.reshaped().array()).all()) break;
-    sum = more;
+    sum.swap(more);
   }
   series = fourier::resized(series, H);
   error += sum.reshaped(error.rows(), error.cols());
@@ -51,6 +50,7 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       H_((num_samples - 1) / 2),
       G_(system.G),
       rounding_(system.K_rounding),
+      given_(system.K),
       diagonal_damping_(system.diagonal_damping),
       I_(system.num_modes()),
       samples_(samples),
@@ -156,12 +156,14 @@ bool Iteration::solved_by_start(double tolerance) {
 
 bool Iteration::run(double tolerance, int& iterations) {
   constexpr int most_iterations = 80, window = 8;
-  VectorXd f(x_.size()), last_x, last_f;
+  VectorXd f(x_.size()), last_x, last_f, difference;
   VectorXd& x = x_;
-  Anderson anderson(x.size());
+  Anderson anderson;
   bool mixing = false;
   double previous = HUGE_VAL, best = HUGE_VAL;
-  std::deque<double> secants, bests;
+  std::vector<double> secants, bests;  // of the last steps
+  secants.reserve(8);
+  bests.reserve(window + 1);
   int stalled = 0;
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     ++iterations;
@@ -175,9 +177,11 @@ bool Iteration::run(double tolerance, int& iterations) {
     best = std::min(best, change);
     // What a residual f means for x: |dx|/|df| of the last steps, as far as they stand above rounding.
     if (last_x.size() > 0) {
-      const double df = norm(f - last_f);
-      if (kappa_ * df > 100 * eps * scale) secants.push_back(norm(x - last_x) / df);
-      if (secants.size() > 6) secants.pop_front();
+      difference = f - last_f;
+      const double df = norm(difference);
+      difference = x - last_x;
+      if (kappa_ * df > 100 * eps * scale) secants.push_back(norm(difference) / df);
+      if (secants.size() > 6) secants.erase(secants.begin());
     }
     last_x = x;
     last_f = f;
@@ -192,7 +196,7 @@ bool Iteration::run(double tolerance, int& iterations) {
     bests.push_back(best);
     if (bests.size() > window) {
       const double pace = std::log(best / bests.front()) / window;
-      bests.pop_front();
+      bests.erase(bests.begin());
       if (!(pace < -0.1)) return false;
       if (iteration > 2 * window && iteration + std::log(goal / best) / pace > most_iterations) return false;
     }
@@ -214,7 +218,7 @@ ReducedSystem Iteration::result(bool bounds_others) {
   reduced.beta = fourier::analyse(beta_.transpose());
   // Harmonic by harmonic where the bound of the iteration is more than rounding.
   const double rounding = 4 * eps * alpha_.cwiseAbs().maxCoeff();
-  const double iteration = amplification_ * (2 * change_ <= rounding ? 2 * change_ : carried_change());
+  const double iteration = amplification_ * (2 * change_ <= rounding ? 2 * change_ : carried_change(reduced.alpha));
   reduced.alpha_error =
       iteration +
       2 * eps * (alpha_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * A_.cwiseAbs().maxCoeff()).reshaped(m_, m_);

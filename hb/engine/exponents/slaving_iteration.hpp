@@ -61,7 +61,7 @@ class Iteration {
   // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
   double alpha_change() const { return effect_.cwiseProduct(residual_).sum(); }
   // The same in the end, harmonic by harmonic and with rounding as independent; hb/engine/README.md (E7).
-  double carried_change();
+  double carried_change(const FourierSeries& alpha);
   double others_below() const;
   Eigen::MatrixXd start() const;
 
@@ -96,6 +96,7 @@ class Iteration {
   std::vector<Eigen::Index> S_, F_;
   Eigen::Index m_, n_, N_, H_;
   const Eigen::MatrixXd &G_, &rounding_;
+  const FourierSeries& given_;  // K as it is given
   bool diagonal_damping_;
   Eigen::Index I_;
   const SampledStiffness::Samples& samples_;

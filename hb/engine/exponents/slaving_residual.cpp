@@ -15,49 +15,46 @@ namespace {
 // Nothing is taken to be carried by less than this part (a choice).
 constexpr double least_carried = 0.01;
 
-// exp(sum_m z_m y^m) = sum_d c_d y^d by c_d = sum_m m z_m c_(d-m)/d; from each d on the largest, at most 1.
-VectorXd carried_by(const VectorXd& phase, Index H) {
+// exp(sum_m (z_m/m) y^m) = sum_d c_d y^d by c_d = sum_m z_m c_(d-m)/d; from each d on the largest, at most 1.
+VectorXd carried_by(const VectorXd& z) {
   constexpr double most = 1e100;
-  VectorXd c = VectorXd::Zero(H + 1);
-  c(0) = 1;
-  for (Index d = 1; d < c.size(); ++d) {
-    double sum = 0;
-    for (Index m = 1; m <= std::min(d, phase.size()); ++m) sum += double(m) * phase(m - 1) * c(d - m);
-    c(d) = std::min(sum / double(d), most);
-  }
-  for (Index d = c.size() - 1; d-- > 0;) c(d) = std::max(c(d), c(d + 1));
+  const Index H = z.size();
+  VectorXd back = VectorXd::Zero(H + 1);  // c_H .. c_0
+  back(H) = 1;
+  for (Index d = 1; d <= H; ++d) back(H - d) = std::min(z.head(d).dot(back.segment(H - d + 1, d)) / double(d), most);
+  VectorXd c = back.reverse();
+  for (Index d = H; d-- > 0;) c(d) = std::max(c(d), c(d + 1));
   return c.cwiseMin(1.0).cwiseMax(least_carried);
 }
 
 // For each harmonic k the largest size_l carried from k to l.
 VectorXd reached(const VectorXd& size, const VectorXd& carried) {
   const Index H = size.size() - 1;
-  Index far = 0;
-  while (far < H && carried(far) > least_carried) ++far;
   VectorXd result = size.cwiseMax(least_carried * size.maxCoeff());
-  for (Index k = 0; k <= H; ++k)
-    for (Index l = std::max<Index>(0, k - far); l <= std::min(H, k + far); ++l)
-      result(k) = std::max(result(k), size(l) * carried(std::abs(k - l)));
+  for (Index d = 1; d <= H && carried(d) > least_carried; ++d) {
+    auto below = result.head(H + 1 - d), above = result.tail(H + 1 - d);
+    below = below.cwiseMax(carried(d) * size.tail(H + 1 - d));
+    above = above.cwiseMax(carried(d) * size.head(H + 1 - d));
+  }
   return result;
 }
 
 }  // namespace
 
-double Iteration::carried_change() {
+double Iteration::carried_change(const FourierSeries& alpha) {
   const auto spectrum = forward_.spectrum();
   const Index nm = n_ * m_;
-  const FourierSeries alpha = fourier::analyse(alpha_.transpose());
   double sum = 0, squares = 0;
   VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1);
   for (Index j = 0; j < n_; ++j) {
-    const FourierSeries stiffness = fourier::analyse(K(F_[j], F_[j]).matrix().transpose());
-    const double fast = std::max(std::sqrt(std::abs(stiffness.c(0, 0))), 1e-3);
+    const auto own = given_.c.row(F_[j] + I_ * F_[j]);
+    const double fast = std::max(std::sqrt(std::abs(own(0).real())), 1e-3);
     for (Index l = 0; l < m_; ++l) {
       const Index q = j + n_ * l;
-      VectorXd phase = stiffness.c.row(0).tail(H_).cwiseAbs().transpose() / fast;
+      VectorXd phase = VectorXd::Zero(H_);  // |K_m|/w_F + |alpha_m|/w_S of the harmonics from 1
+      phase.head(own.size() - 1) = own.tail(own.size() - 1).cwiseAbs2().cwiseSqrt() / fast;
       for (Index s = 0; s < m_; ++s)
-        phase += alpha.c.row(s + m_ * l).segment(1, H_).cwiseAbs().transpose() / weight_[std::size_t(l)];
-      for (Index k = 1; k <= H_; ++k) phase(k - 1) /= double(k);
+        phase += alpha.c.row(s + m_ * l).segment(1, H_).cwiseAbs2().cwiseSqrt().transpose() / weight_[std::size_t(l)];
       for (Index k = 0; k <= H_; ++k) {
         const cplx ik(0, double(k));
         r1(k) = modulus(spectrum(k, 2 * nm + q) + ik * spectrum(k, q));
@@ -67,7 +64,7 @@ double Iteration::carried_change() {
         size1(k) = rate * (modulus(M(0, 0)) + weight_[std::size_t(l)] * modulus(M(1, 0)));
         size2(k) = rate * (modulus(M(0, 1)) + weight_[std::size_t(l)] * modulus(M(1, 1)));
       }
-      const VectorXd carried = carried_by(phase, H_);
+      const VectorXd carried = carried_by(phase);
       const auto add = [&](const VectorXd& r, const VectorXd& size, double effect) {
         const VectorXd part = reached(size, carried) * (effect / size.maxCoeff());
         for (Index k = 0; k <= H_; ++k) {
