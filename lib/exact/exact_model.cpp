@@ -11,6 +11,7 @@
 #include "lib/exact/bent_rod.hpp"
 #include "lib/exact/rod_quadrature.hpp"
 #include "lib/stop_wish.hpp"
+#include "lib/workspace.hpp"
 
 namespace hb {
 
@@ -119,20 +120,30 @@ using Influence = Eigen::Matrix<double, 7, 7>;
 class Influences {
  public:
   Influences(const ExactModel::Impl& model, const std::vector<BentRod>& rods, const CrankAngles& angles, double speed)
-      : rods_(rods.size()), all_(rods.size() * rods.size() * static_cast<std::size_t>(angles.size())) {
+      : rods_(static_cast<Index>(rods.size())),
+        all_(kept().matrix(Influence::SizeAtCompileTime, rods_ * rods_ * angles.size())) {
     exact::BentMechanism<Dual> mechanism;
     mechanism.rods.resize(rods.size());
     for (Index j = 0; j < angles.size(); ++j)
       for (std::size_t s = 0; s < rods.size(); ++s) {
         for (std::size_t r = 0; r < rods.size(); ++r) place(rods[r], j, mechanism.rods[r], r == s);
         solve(model, angles, j, varied(speed, speed_direction, true), mechanism);
-        for (std::size_t r = 0; r < rods.size(); ++r) read(mechanism.rods[r], all_[index(j, r, s)]);
+        for (std::size_t r = 0; r < rods.size(); ++r)
+          read(mechanism.rods[r], Eigen::Map<Influence>(all_.col(index(j, r, s)).data()));
       }
   }
 
-  const Influence& operator()(Index angle, std::size_t r, std::size_t s) const { return all_[index(angle, r, s)]; }
+  Eigen::Map<const Influence> operator()(Index angle, std::size_t r, std::size_t s) const {
+    return Eigen::Map<const Influence>(all_.col(index(angle, r, s)).data());
+  }
 
  private:
+  // A thread has one of them at a time.
+  static Workspace& kept() {
+    thread_local Workspace workspace;
+    return workspace;
+  }
+
   static Dual varied(double value, Index direction, bool yes) {
     Dual dual(value);
     if (yes) dual.slope(direction) = 1;
@@ -148,19 +159,19 @@ class Influences {
     state.added_moment = varied(0, load_direction + 2, yes);
   }
 
-  static void read(const exact::RodState<Dual>& state, Influence& out) {
+  static void read(const exact::RodState<Dual>& state, Eigen::Map<Influence> out) {
     const exact::BaseMotion<Dual>& b = state.base;
     Index row = 0;
     for (const Dual* answer : {&b.v_x, &b.v_y, &b.a_x, &b.a_y, &b.phi1, &b.phi2, &state.axial_force})
       out.row(row++) = answer->slope.head<7>().transpose();
   }
 
-  std::size_t index(Index angle, std::size_t r, std::size_t s) const {
-    return (static_cast<std::size_t>(angle) * rods_ + r) * rods_ + s;
+  Index index(Index angle, std::size_t r, std::size_t s) const {
+    return (angle * rods_ + static_cast<Index>(r)) * rods_ + static_cast<Index>(s);
   }
 
-  std::size_t rods_;
-  std::vector<Influence> all_;
+  Index rods_;
+  Eigen::Map<Eigen::MatrixXd> all_;  // a column each
 };
 
 // dr/dq of rod r by rod s: its own part, then through base motion b and axial force X of the mechanism,

@@ -19,6 +19,7 @@
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/stop_wish.hpp"
+#include "lib/workspace.hpp"
 
 namespace hb {
 
@@ -331,7 +332,9 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::Matri
   const double l = table.length;
   const Eigen::Index num_x = x.size() - 1, N = time.cols();
   end_if_wished();
-  const Eigen::MatrixXd F = (order == 0 ? table.deflection : table.curvature) * time;
+  thread_local Workspace surface_values;
+  Eigen::Map<Eigen::MatrixXd> F = surface_values.matrix(num_x + 1, N);
+  F.noalias() = (order == 0 ? table.deflection : table.curvature) * time;
   end_if_wished();
   const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
   const double top = F.cwiseAbs().maxCoeff();

@@ -33,21 +33,16 @@ struct Size {
   double log() const { return std::log(std::max(value, 1e-300)) + exponent * std::numbers::ln2; }
 };
 
-// A product so far, of size near 1 but for a power of two kept apart.
-struct Partial {
-  MatrixXd M;
-  int exponent = 0;
-
-  void normalise() {
-    const double size = M.cwiseAbs().maxCoeff();
-    if (size < 1e100 && size > 1e-100) return;
-    int e = 0;
-    std::frexp(std::max(size, 1e-300), &e);
-    M *= std::ldexp(1.0, -e);
-    exponent += e;
-  }
-  Size size() const { return {std::max(M.norm(), 1e-300), exponent}; }
-};
+// Brings a product to a size near 1; returned is the power of two that it lost.
+template <class Product>
+int normalised(Product&& product) {
+  const double size = product.cwiseAbs().maxCoeff();
+  if (size < 1e100 && size > 1e-100) return 0;
+  int e = 0;
+  std::frexp(std::max(size, 1e-300), &e);
+  product *= std::ldexp(1.0, -e);
+  return e;
+}
 
 // |F^-1|^2 entry by entry, F = X + i Y, by Gauss and Jordan with row pivots.
 class InverseSquares {
@@ -197,38 +192,38 @@ double CellErrors::total() const { return eps * (6 * std::sqrt(squares) + sizes)
 
 ChainProduct product_of(const CellChain& chain) {
   const Index p = chain.size(), N = chain.num_cells();
-  MatrixXd factor(p, p), next(p, p);
   const auto cell = [&](const MatrixXd& all, Index i) { return all.middleCols(p * i, p); };
-  std::vector<Partial> before{{MatrixXd::Identity(p, p)}};
-  before.reserve(std::size_t(N) + 1);
+  // Products of the cells before each, over 2^exponent.
+  MatrixXd before(p, p * (N + 1));
+  std::vector<int> exponents(std::size_t(N) + 1, 0);
+  before.leftCols(p).setIdentity();
   for (Index i = 0; i < N; ++i) {
-    factor = cell(chain.factors, i);
-    multiply(factor, before.back().M, next);
-    before.push_back({next, before.back().exponent});
-    before.back().normalise();
+    auto next = before.middleCols(p * (i + 1), p);
+    multiply(p, cell(chain.factors, i).data(), cell(before, i).data(), next.data());
+    exponents[std::size_t(i) + 1] = exponents[std::size_t(i)] + normalised(next);
   }
-  const Size total = before.back().size();
-  Partial behind{MatrixXd::Identity(p, p)};
+  const Size total{std::max(before.rightCols(p).norm(), 1e-300), exponents.back()};
+  MatrixXd behind = MatrixXd::Identity(p, p), next(p, p), turned(p, p);
+  int behind_exponent = 0;
   Size bound;
   CellErrors change, trace;
   for (Index i = N - 1; i >= 0; --i) {
-    const Partial& a = before[std::size_t(i)];
-    const auto rounding = cell(chain.rounding, i), given = cell(chain.given, i);
-    const double scale =
-        std::ldexp(1 / total.value, std::clamp(a.exponent + behind.exponent - total.exponent, -1000, 1000));
-    const double norms = std::min(a.M.norm() * scale * behind.M.norm(), 1e200);
+    const auto a = cell(before, i), rounding = cell(chain.rounding, i), given = cell(chain.given, i);
+    const double scale = std::ldexp(
+        1 / total.value, std::clamp(exponents[std::size_t(i)] + behind_exponent - total.exponent, -1000, 1000));
+    const double norms = std::min(a.norm() * scale * behind.norm(), 1e200);
     change.add(norms * norms * rounding.sum(), norms * given.norm());
-    multiply(a.M, behind.M, next);
-    next = (scale * next.cwiseAbs()).cwiseMin(1e200).transpose().eval();
-    trace.add(next.cwiseAbs2().cwiseProduct(rounding).sum(), next.cwiseProduct(given).sum());
-    factor = cell(chain.factors, i);
+    multiply(p, a.data(), behind.data(), next.data());
+    turned = (scale * next.cwiseAbs()).cwiseMin(1e200).transpose();
+    trace.add(turned.cwiseAbs2().cwiseProduct(rounding).sum(), turned.cwiseProduct(given).sum());
+    const auto factor = cell(chain.factors, i);
     bound.value *= factor.norm() + eps * std::sqrt(rounding.sum()) + given.norm();
     bound.normalise();
-    multiply(behind.M, factor, next);
-    behind.M.swap(next);
-    behind.normalise();
+    multiply(p, behind.data(), factor.data(), next.data());
+    behind.swap(next);
+    behind_exponent += normalised(behind);
   }
-  return {chain.closing * (before.back().M / total.value), total.log(), change.total(), trace.total(), bound.log()};
+  return {chain.closing * (before.rightCols(p) / total.value), total.log(), change.total(), trace.total(), bound.log()};
 }
 
 std::optional<InexactEigenvalues> framed_eigenvalues(const CellChain& chain, const ChainProduct& product) {
@@ -248,6 +243,7 @@ double first_order_change(const CellChain& chain, const ChainProduct& product, c
   const double at_end = std::abs((end.transpose() * start).value());
   // Real and imaginary parts as two columns.
   MatrixXd v(p, 2), w(p, 2), before(p, 2 * N), back(p, 2);
+  VectorXd left(p), right(p);
   v << start.real(), start.imag();
   w << end.real(), end.imag();
   for (Index i = 0; i < N; ++i) {
@@ -261,9 +257,12 @@ double first_order_change(const CellChain& chain, const ChainProduct& product, c
     const auto here = before.middleCols(2 * i, 2);
     const cplx grown(back.col(0).dot(here.col(0)) - back.col(1).dot(here.col(1)),
                      back.col(0).dot(here.col(1)) + back.col(1).dot(here.col(0)));
-    const VectorXd left = w.rowwise().squaredNorm(), right = here.rowwise().squaredNorm();
-    const double square = left.dot(chain.rounding.middleCols(p * i, p) * right);
-    const double given = left.cwiseSqrt().dot(chain.given.middleCols(p * i, p) * right.cwiseSqrt());
+    left = w.rowwise().squaredNorm();
+    right = here.rowwise().squaredNorm();
+    const double square = left.dot(chain.rounding.middleCols(p * i, p).lazyProduct(right));
+    left = left.cwiseSqrt();
+    right = right.cwiseSqrt();
+    const double given = left.dot(chain.given.middleCols(p * i, p).lazyProduct(right));
     change.add(square / std::norm(grown), given / std::abs(grown));
     w = back / back.norm();
   }

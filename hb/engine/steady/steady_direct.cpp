@@ -116,18 +116,19 @@ DirectInverse::DirectInverse(Operator& A) : A_(A) {
   Eigen::MatrixXd core(n, n);
   const auto place = [I](Index k) { return k == 0 ? 0 : I * (2 * k - 1); };
   for (Index l = 0; l <= c_; ++l)
-    for (Index k = 0; k <= c_; ++k) {
-      const Eigen::MatrixXcd here = linear.block(I * k, I * l, I, I);
-      Eigen::MatrixXcd conjugate = Eigen::MatrixXcd::Zero(I, I);
-      if (l > 0 && k + l <= P_) conjugate = s.K.col(k + l).reshaped(I, I);
-      const Eigen::MatrixXcd cosine = here + conjugate;
-      core.block(place(k), place(l), I, I) = cosine.real();
-      if (k > 0) core.block(place(k) + I, place(l), I, I) = cosine.imag();
-      if (l == 0) continue;
-      const Eigen::MatrixXcd sine = here - conjugate;
-      core.block(place(k), place(l) + I, I, I) = -sine.imag();
-      if (k > 0) core.block(place(k) + I, place(l) + I, I, I) = sine.real();
-    }
+    for (Index j = 0; j < I; ++j)
+      for (Index k = 0; k <= c_; ++k)
+        for (Index i = 0; i < I; ++i) {
+          const std::complex<double> here = linear(I * k + i, I * l + j);
+          const std::complex<double> conjugate = l > 0 && k + l <= P_ ? s.K(i + I * j, k + l) : 0;
+          const std::complex<double> cosine = here + conjugate, sine = here - conjugate;
+          const Index row = place(k) + i, column = place(l) + j;
+          core(row, column) = cosine.real();
+          if (k > 0) core(row + I, column) = cosine.imag();
+          if (l == 0) continue;
+          core(row, column + I) = -sine.imag();
+          if (k > 0) core(row + I, column + I) = sine.real();
+        }
   core_.compute(core);
   regular_ = regular_ && core_.pivots().cwiseAbs().minCoeff() > smallest_pivot;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/workspace.hpp"
+
 namespace hb::steady {
 
 namespace {
@@ -145,7 +147,8 @@ bool IterativeInverse::gmres(const Spectrum& b, double relative, Spectrum& z) {
     Eigen::Map<Eigen::VectorXd>(reinterpret_cast<double*>(x.data()), n) = v / sqrt(2.0);
     x.row(0) *= sqrt(2.0);
   };
-  Eigen::MatrixXd V(n, most + 1);
+  thread_local Workspace directions;
+  Eigen::Map<Eigen::MatrixXd> V = directions.matrix(n, most + 1);
   Eigen::MatrixXd R = Eigen::MatrixXd::Zero(most + 1, most);
   Eigen::VectorXd cosines(most), sines(most), g = Eigen::VectorXd::Zero(most + 1);
   V.col(0) = to_vector(start);

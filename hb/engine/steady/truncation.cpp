@@ -23,13 +23,16 @@ Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index 
   Index P_cut = P;
   while (P_cut > 0 && (K.col(P_cut).array() <= floor.array()).all()) --P_cut;
 
-  Eigen::MatrixXd a(I, most + 1);
+  Eigen::MatrixXd a(I, std::min(most, F + 4 * P_cut + 64) + 1);
+  Eigen::VectorXd response(I);
   double largest = 0;
   Index H = 0;  // last harmonic that mattered
   for (Index k = 0; k <= most; ++k) {
     end_if_wished();
-    Eigen::VectorXd response = Eigen::VectorXd::Zero(I);
-    for (Index m = 1; m <= std::min(k, P_cut); ++m) response.noalias() += K.col(m).reshaped(I, I) * a.col(k - m);
+    if (k == a.cols()) a.conservativeResize(Eigen::NoChange, std::min(most + 1, 2 * k));
+    response.setZero();
+    for (Index m = 1; m <= std::min(k, P_cut); ++m)
+      response.noalias() += K.col(m).reshaped(I, I).lazyProduct(a.col(k - m));
     for (Index i = 0; i < I; ++i) {
       const double d = std::max(modulus(system.D(i, k)), 1e-12 * system.magnitude(i, k));
       const double load = k <= F ? modulus(system.f(k, i)) : 0;
