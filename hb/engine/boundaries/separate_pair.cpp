@@ -93,7 +93,8 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   const PairModel model = model_of(places, what);
   double worst = p.unstable ? 0 : least, where = nan;
   for (const double x : model.telling()) {
-    if (!(model.lowest(x) > others)) return model.lower(x) > others ? std::optional(middle) : std::nullopt;
+    if (!(model.lowest(x) > others))
+      return what == Apart::alone || model.lower(x) > others ? std::optional(middle) : std::nullopt;
     const GrowthBounds growth = model.leading(x);
     const double beyond = p.unstable ? -growth.low : growth.high;
     if (beyond < worst) continue;
