@@ -16,10 +16,11 @@ run() {
   build/release/tools/attack/attack_"$name" --cases 1000000 --seconds "$seconds" --seed "$seed" "$@" || failed=1
 }
 
-exponents() {  # half of the time all exponents, a quarter each the leading ones and propagation alone
+exponents() {  # half of the time all exponents, a sixth each the leading ones, propagation and Hill's determinant
   run exponents $(($1 / 2)) "$2"
-  run exponents $(($1 / 4)) $(($2 + 1)) --leading
-  run exponents $(($1 / 4)) $(($2 + 2)) --method propagation
+  run exponents $(($1 / 6)) $(($2 + 1)) --leading
+  run exponents $(($1 / 6)) $(($2 + 2)) --method propagation
+  run exponents $(($1 / 6)) $(($2 + 3)) --method determinant
 }
 
 part=${1:-exponents}

@@ -31,9 +31,9 @@ double expected_seconds(const SceneModel& model, const Settings& settings) {
   }
   const Only& only = settings.only;
   if (only.stability && settings.stability_method == StabilityMethod::determinant) {
-    // Up to six circles and one for the winding, 2 I + 2 values on each, of up to 0.3 s.
+    // Up to six circles and one for the winding, I + 2 values on each, of up to 0.3 s.
     constexpr double per_value = 0.3;
-    for (const RodModel& rod : model.rods) seconds += per_value * 7 * static_cast<double>(2 * rod.num_modes + 2);
+    for (const RodModel& rod : model.rods) seconds += per_value * 7 * static_cast<double>(rod.num_modes + 2);
     return seconds;
   }
   const bool response = only.steady || only.reactions || only.shape;

@@ -20,9 +20,14 @@ LARGEST = {"slowest_s", "allowed"}
 
 
 def rows(part):
-    """Family -> list of rows of numbers, one for each seed."""
+    """Family -> list of rows of numbers, one for each seed; of exponents those of the automatic method."""
     found = {}
+    counts = True
     for line in (here / f"{part}.txt").read_text().splitlines():
+        if title := re.match(r"(automatic|slaving|propagation|hill|determinant)(, leading.*)?, seed", line):
+            counts = title[1] == "automatic" and not title[2]
+        if not counts:
+            continue
         words = re.sub(r" (%|ms|s)(?= |$)", r"\1", line).split()
         if len(words) != len(COLUMNS[part]) + 1 or words[0] in ("family", "all"):
             continue

@@ -2,9 +2,11 @@
 // where the product itself has lost its small multipliers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <vector>
 
 #include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/exponents/turn_exponents.hpp"
@@ -124,6 +126,30 @@ TEST(TurnExponents, SweepsKeepMultipliersThatTheProductLoses) {
   const Eigen::VectorXcd multipliers = product(maps).eigenvalues();
   const double least = std::log(multipliers.cwiseAbs().minCoeff()) / turn;
   EXPECT_GT(std::abs(least + 9), 1e-6) << "the product alone would have done";
+}
+
+// A leading subspace came back to 1e-13 only, and what that does was told too small by the growth over the last cell.
+TEST(TurnExponents, SubspacesThatHaveNotQuiteComeBackCostNoAccuracy) {
+  FourierSeries alpha(4, 0), beta(4, 0);
+  alpha.c.col(0).real() = Eigen::Vector4d(-0.30, -0.02425, -1.2, -0.185);
+  const Eigen::Matrix2d growth2 = -Eigen::Map<const Eigen::Matrix2d>(Eigen::MatrixXd(alpha.c.col(0).real()).data());
+  const double half = growth2.trace() / 2, root = std::sqrt(half * half - growth2.determinant());
+  const std::vector<double> exact = {std::sqrt(half + root), std::sqrt(half - root), -std::sqrt(half - root),
+                                     -std::sqrt(half + root)};
+  const TurnMaps maps = radau_turn(alpha, beta, 2, radau_cells(12));
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(4, 4);
+  const Eigen::MatrixXd settled = turn_exponents(maps, none).subspaces;
+  for (const double turned : {0.0, 5e-13, 1e-12, 2e-12}) {
+    Eigen::MatrixXd start = settled;
+    start.col(0) += turned * settled.col(1);
+    start.col(1) -= turned * settled.col(0);
+    const TurnExponents found = turn_exponents(maps, none, false, start);
+    ASSERT_EQ(found.s.size(), 4u);
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(found.s[i].real(), exact[i], std::min(found.error[i], 2e-15)) << turned << ' ' << i;
+      EXPECT_LT(found.error[i], 2e-14) << turned << ' ' << i;
+    }
+  }
 }
 
 }  // namespace

@@ -81,32 +81,42 @@ class InverseSquares {
   std::vector<Index> pivots_;
 };
 
+// Standard deviation of what a product with a matrix and one with an inverse of p rows round, over sqrt(p) epsilon.
+constexpr double multiplied = 0.35;
+
 // The errors of all entries of a matrix as they add up over the cells.
 struct EntryErrors {
-  MatrixXd squares, sizes, given;
+  MatrixXd variance, deviation, given;
 
-  explicit EntryErrors(Index p) : squares(MatrixXd::Zero(p, p)), sizes(squares), given(squares) {}
+  explicit EntryErrors(Index p) : variance(MatrixXd::Zero(p, p)), deviation(variance), given(variance) {}
 
   // E <- diag(d) E + e diag(g) with what one cell adds.
-  void carry(const VectorXd& d, const VectorXd& g, const MatrixXd& new_squares, const MatrixXd& new_given) {
+  void carry(const VectorXd& d, const VectorXd& g, const MatrixXd& new_variance, const MatrixXd& new_given) {
     for (Index j = 0; j < g.size(); ++j)
       for (Index i = 0; i < d.size(); ++i) {
-        squares(i, j) = d(i) * d(i) * squares(i, j) + new_squares(i, j) * g(j) * g(j);
-        sizes(i, j) = d(i) * sizes(i, j) + std::sqrt(new_squares(i, j)) * g(j);
+        variance(i, j) = d(i) * d(i) * variance(i, j) + new_variance(i, j) * g(j) * g(j);
+        deviation(i, j) = d(i) * deviation(i, j) + std::sqrt(new_variance(i, j)) * g(j);
         given(i, j) = d(i) * given(i, j) + new_given(i, j) * g(j);
       }
   }
   void divide(double scale) {
-    squares /= scale * scale;
-    sizes /= scale;
+    variance /= scale * scale;
+    deviation /= scale;
     given /= scale;
   }
-  MatrixXd total() const {
-    return squares.binaryExpr(sizes, [](double q, double s) { return CellErrors{q, s, 0}.total(); }) + given;
+  // real: which of the eigenvectors are.
+  MatrixXd total(const std::vector<bool>& real) const {
+    MatrixXd result = given;
+    for (Index j = 0; j < result.cols(); ++j)
+      for (Index i = 0; i < result.rows(); ++i)
+        result(i, j) +=
+            CellErrors{variance(i, j), deviation(i, j), 0}.total(real[std::size_t(i)] && real[std::size_t(j)]);
+    return result;
   }
 };
 
-// The map is real: an eigenvalue whose disc holds its conjugate is real, the others come in pairs.
+// The map is real: an eigenvalue whose disc holds its conjugate is real, the others come in pairs. Two values for one
+// are averaged, where their discs tell that they are.
 void pair_up(InexactEigenvalues& mu) {
   for (Index j = 0; j < mu.value.size(); ++j) {
     const cplx mirrored = std::conj(mu.value(j));
@@ -118,10 +128,27 @@ void pair_up(InexactEigenvalues& mu) {
     Index partner = j;
     (mu.value.array() - mirrored).abs().minCoeff(&partner);
     if (partner <= j) continue;
-    mu.radius(j) = mu.radius(partner) =
-        std::max(mu.radius(j), mu.radius(partner)) + std::abs(mu.value(partner) - mirrored);
-    mu.value(partner) = mirrored;
+    const double apart = std::abs(mu.value(partner) - mirrored), radius = std::max(mu.radius(j), mu.radius(partner));
+    mu.radius(j) = mu.radius(partner) = apart <= radius ? radius : radius + apart;
+    mu.value(j) = (mu.value(j) + std::conj(mu.value(partner))) / 2.0;
+    mu.value(partner) = std::conj(mu.value(j));
   }
+}
+
+// Eigenvalues of M = diag + what is left beside it, known to `change`: to first order the diagonal, or by the
+// eigenvectors where what is left beside it would count.
+std::optional<InexactEigenvalues> nearly_diagonal(const MatrixXcd& M, const MatrixXd& change) {
+  MatrixXd beside = M.cwiseAbs();
+  beside.diagonal().setZero();
+  InexactEigenvalues result{M.diagonal(), gershgorin_radii(M.diagonal(), change + beside)};
+  if ((result.radius.array() <= 1.1 * change.diagonal().array()).all()) return result;
+  const std::optional<dense::Eigenpairs> pairs = dense::eigenpairs(M);
+  if (!pairs) return std::nullopt;
+  const MatrixXcd& W = pairs->vectors;
+  const MatrixXd solved = MatrixXd::Constant(M.rows(), M.rows(), eps * M.norm());
+  InexactEigenvalues turned{
+      pairs->values, gershgorin_radii(pairs->values, dense::inverse(W).cwiseAbs() * (change + solved) * W.cwiseAbs())};
+  return turned.radius.maxCoeff() < result.radius.maxCoeff() ? turned : result;
 }
 
 // F_0 = V, F_i diag(d_i) = D_i F_(i-1) with columns of length 1: in these frames the turn's map is diagonal and a
@@ -130,7 +157,7 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
   const Index p = chain.size(), N = chain.num_cells(), entries = p * p;
   const bool exact = chain.given.cwiseAbs().maxCoeff() == 0;
   MatrixXd X = V.real(), Y = V.imag(), next_X(p, p), next_Y(p, p);  // F = X + i Y
-  MatrixXd before(p, p), inverse(p, p), part(p, p), squares(p, p), given = MatrixXd::Zero(p, p);
+  MatrixXd before(p, p), inverse(p, p), part(p, p), variance(p, p), given = MatrixXd::Zero(p, p);
   VectorXd d(p), g = VectorXd::Ones(p);  // g: growth of each column so far, over 2^exponent
   EntryErrors change(p);
   InverseSquares invert(p);
@@ -148,7 +175,7 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
     invert(X, Y, inverse);
     // |F_i^-1|^2 |dD_i|^2 |F_(i-1)|^2 of rounding, |F_i^-1| |dD_i| |F_(i-1)| of coefficients
     multiply(p, inverse.data(), cell(chain.rounding), part.data());
-    multiply(p, part.data(), before.data(), squares.data());
+    multiply(p, part.data(), before.data(), variance.data());
     if (!exact) {
       for (Index k = 0; k < entries; ++k) {
         before(k) = std::sqrt(before(k));
@@ -157,7 +184,7 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
       multiply(p, inverse.data(), cell(chain.given), part.data());
       multiply(p, part.data(), before.data(), given.data());
     }
-    change.carry(d, g, squares, given);
+    change.carry(d, g, variance, given);
     for (Index j = 0; j < p; ++j) g(j) *= d(j);
     const double largest = g.maxCoeff();
     if (!(largest > 0 && std::isfinite(largest))) return std::nullopt;
@@ -171,24 +198,26 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
   F.real() = X;
   F.imag() = Y;
   const MatrixXcd back = dense::inverse(V), turned = back * (chain.closing * F) * g.asDiagonal();
-  // What the solution with V rounds.
-  const MatrixXd rounded = 2 * eps * double(p) * back.rowwise().norm() * g.transpose();
-  const std::optional<dense::Eigenpairs> refined = dense::eigenpairs(turned);
-  if (!refined) return std::nullopt;
-  const MatrixXcd& W = refined->vectors;
-  const MatrixXd changed = dense::inverse(W).cwiseAbs() * (change.total() + rounded) * W.cwiseAbs();
-  InexactEigenvalues result{refined->values, gershgorin_radii(refined->values, changed)};
-  pair_up(result);
+  change.variance += multiplied * multiplied * double(p) * back.rowwise().squaredNorm() * g.cwiseAbs2().transpose();
+  std::vector<bool> real(static_cast<std::size_t>(p));
+  for (Index j = 0; j < p; ++j) real[std::size_t(j)] = V.col(j).imag().isZero(0);
+  std::optional<InexactEigenvalues> result = nearly_diagonal(turned, change.total(real));
+  if (!result) return std::nullopt;
+  pair_up(*result);
   const double factor = std::exp(exponent * std::numbers::ln2 - log_size);
-  result.value *= factor;
-  result.radius *= factor;
-  if (!result.radius.allFinite()) return std::nullopt;
+  result->value *= factor;
+  result->radius *= factor;
+  if (!result->radius.allFinite()) return std::nullopt;
   return result;
 }
 
 }  // namespace
 
-double CellErrors::total() const { return eps * (6 * std::sqrt(squares) + sizes) + given; }
+double CellErrors::total(bool real) const {
+  constexpr double deviations = 3;
+  const double alike = real ? 0.7 : 0.4;
+  return deviations * eps * std::sqrt(variance + alike * alike * deviation * deviation) + given;
+}
 
 ChainProduct product_of(const CellChain& chain) {
   const Index p = chain.size(), N = chain.num_cells();
@@ -217,13 +246,14 @@ ChainProduct product_of(const CellChain& chain) {
     turned = (scale * next.cwiseAbs()).cwiseMin(1e200).transpose();
     trace.add(turned.cwiseAbs2().cwiseProduct(rounding).sum(), turned.cwiseProduct(given).sum());
     const auto factor = cell(chain.factors, i);
-    bound.value *= factor.norm() + eps * std::sqrt(rounding.sum()) + given.norm();
+    bound.value *= factor.norm() + 4 * eps * std::sqrt(rounding.sum()) + given.norm();
     bound.normalise();
     multiply(p, behind.data(), factor.data(), next.data());
     behind.swap(next);
     behind_exponent += normalised(behind);
   }
-  return {chain.closing * (before.rightCols(p) / total.value), total.log(), change.total(), trace.total(), bound.log()};
+  return {chain.closing * (before.rightCols(p) / total.value), total.log(), change.total(false), trace.total(false),
+          bound.log()};
 }
 
 std::optional<InexactEigenvalues> framed_eigenvalues(const CellChain& chain, const ChainProduct& product) {
@@ -259,15 +289,16 @@ double first_order_change(const CellChain& chain, const ChainProduct& product, c
                      back.col(0).dot(here.col(1)) + back.col(1).dot(here.col(0)));
     left = w.rowwise().squaredNorm();
     right = here.rowwise().squaredNorm();
-    const double square = left.dot(chain.rounding.middleCols(p * i, p).lazyProduct(right));
+    const double variance = left.dot(chain.rounding.middleCols(p * i, p).lazyProduct(right));
     left = left.cwiseSqrt();
     right = right.cwiseSqrt();
     const double given = left.dot(chain.given.middleCols(p * i, p).lazyProduct(right));
-    change.add(square / std::norm(grown), given / std::abs(grown));
+    change.add(variance / std::norm(grown), given / std::abs(grown));
     w = back / back.norm();
   }
-  // With the rounding of the eigenvalue of the product.
-  return change.total() + 2 * eps * double(p) / (at_end * std::abs(mu));
+  // The rounding of the eigenvalue of the product.
+  change.variance += double(p) / std::pow(at_end * std::abs(mu), 2);
+  return change.total(mu.imag() == 0);
 }
 
 }  // namespace hb

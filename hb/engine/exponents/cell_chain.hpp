@@ -10,25 +10,25 @@
 namespace hb {
 
 // How errors of the cells add up, hb/engine/README.md (E14): rounding errors are independent from cell to cell for the
-// most part, what is wrong with the coefficients is alike in all of them. The factors are choices, which tools/attack
-// puts to the test.
+// most part, what is wrong with the coefficients is alike in all of them. tools/attack puts it to the test.
 struct CellErrors {
-  double squares = 0;  // sum of the squares of rounding errors, in units of the machine epsilon
-  double sizes = 0;  // sum of their sizes
+  double variance = 0;  // sum of the variances of rounding errors, in units of the machine epsilon squared
+  double deviation = 0;  // sum of their standard deviations
   double given = 0;  // sum of the effects of wrong coefficients
 
-  void add(double rounding_square, double coefficient) {
-    squares += rounding_square;
-    sizes += std::sqrt(rounding_square);
+  void add(double rounding_variance, double coefficient) {
+    variance += rounding_variance;
+    deviation += std::sqrt(rounding_variance);
     given += coefficient;
   }
-  [[nodiscard]] double total() const;
+  // `real`: of something without phase, so that what is alike in the cells does not turn and cancel.
+  [[nodiscard]] double total(bool real) const;
 };
 
 // M = closing D_N .. D_1.
 struct CellChain {
   Eigen::MatrixXd factors;  // D_1 .. D_N, p x p each, side by side
-  Eigen::MatrixXd rounding;  // of the entries of D_i: squares of their sizes in units of the machine epsilon
+  Eigen::MatrixXd rounding;  // of the entries of D_i: variances in units of the machine epsilon squared
   Eigen::MatrixXd given;  // bound on the effect of wrong coefficients on the entries of D_i
   Eigen::MatrixXd closing;
 

@@ -76,7 +76,7 @@ class HillDeterminant::Matrix {
   }
 
   // Of harmonics up to H: S = A_nn - A_n,n+1 S_{n+1}^-1 A_n+1,n from the outermost harmonics to the core, on both
-  // sides.
+  // sides. All blocks but the outermost one hold P harmonics, so that none reaches past its neighbour.
   [[nodiscard]] Value window_determinant(Index H, Index core) const {
     cplx log_det = 0;
     MatrixXcd A = block({-core, core}, {-core, core});
@@ -86,7 +86,7 @@ class HillDeterminant::Matrix {
       MatrixXcd S;
       Range outer;  // the block before
       for (Index to = H; to > core;) {
-        const Index from = std::max(core + 1, to - step + 1);
+        const Index rest = (to - core) % step, from = to - (rest > 0 ? rest : step) + 1;
         const Range range = rows(from, to);
         MatrixXcd here = block(range, range);
         if (S.size() > 0) log_det += eliminate(S, outer, range, here);
@@ -164,11 +164,13 @@ class HillDeterminant::Matrix {
   [[nodiscard]] MatrixXcd block(Range rows, Range columns) const {
     MatrixXcd A = MatrixXcd::Zero((rows.to - rows.from + 1) * I_, (columns.to - columns.from + 1) * I_);
     for (Index k = rows.from; k <= rows.to; ++k)
-      for (Index l = std::max(columns.from, k - P_); l <= std::min(columns.to, k + P_); ++l)
-        for (Index i = 0; i < I_; ++i)
-          for (Index j = 0; j < I_; ++j)
-            A((k - rows.from) * I_ + i, (l - columns.from) * I_ + j) =
-                (E(i, j, k - l) + (k == l && i == j ? D(i, k) : cplx(0))) / divisor(i, k);
+      for (Index i = 0; i < I_; ++i) {
+        const Index row = (k - rows.from) * I_ + i;
+        const cplx inverse = 1.0 / divisor(i, k);
+        for (Index l = std::max(columns.from, k - P_); l <= std::min(columns.to, k + P_); ++l)
+          for (Index j = 0; j < I_; ++j) A(row, (l - columns.from) * I_ + j) = inverse * E(i, j, k - l);
+        if (columns.from <= k && k <= columns.to) A(row, (k - columns.from) * I_ + i) += inverse * D(i, k);
+      }
     return A;
   }
 
@@ -215,8 +217,8 @@ HillDeterminant::Value HillDeterminant::operator()(cplx s) const {
 }
 
 HillDeterminant::Polynomial HillDeterminant::on_circle(double c) const {
-  // e^{2 pi I s} F at s = c + i (m + 1/2)/M, more points than the polynomial has coefficients.
-  const Index degree = 2 * I_, M = 4 * I_ + 4;
+  // e^{2 pi I s} F at s = c + i (m + 1/2)/M, three points more than the polynomial has coefficients.
+  const Index degree = 2 * I_, M = degree + 4;
   VectorXcd log_P(M / 2);
   VectorXd error(M / 2);
   for (Index m = 0; m < M / 2; ++m) {

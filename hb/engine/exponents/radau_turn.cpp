@@ -351,7 +351,9 @@ TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index
       rates(num_modes + i, num_modes + j) = fourier::wiener_norm(beta, i + num_modes * j);
     }
   rates *= turn.h;
-  MatrixXd terms = MatrixXd::Identity(2 * num_modes, 2 * num_modes) + rates + 0.5 * rates.lazyProduct(rates);
+  const MatrixXd square = rates.lazyProduct(rates);
+  MatrixXd terms =
+      MatrixXd::Identity(2 * num_modes, 2 * num_modes) + rates + square / 2 + square.lazyProduct(rates) / 6;
   TurnMaps maps{num_cells, std::move(turn.cells), std::move(turn.scale), std::move(terms)};
   for (Index i = 0; i < num_modes; ++i) maps.damping_trace += beta.c(i + num_modes * i, 0).real();
   return maps;

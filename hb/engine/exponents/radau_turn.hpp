@@ -13,9 +13,8 @@ struct TurnMaps {
   Eigen::Index num_cells = 0;  // N
   Eigen::MatrixXd cells;  // 2m x 2m N, one map beside the other
   Eigen::VectorXd scale;
-  // 1 + h |B| + (h |B|)^2/2, h the cell's length and B the rates of the scaled state, each entry with all its
-  // harmonics: size of the terms that the entries of a cell's map are the sum of. Rounding errors are about epsilon
-  // times that.
+  // hb/engine/README.md (E11): size of the terms that the entries of a cell's map are the sum of. Rounding errors are
+  // about half of epsilon times that.
   Eigen::MatrixXd terms;
   double damping_trace = 0;  // mean over the turn of tr beta: minus the sum of all exponents (Liouville)
 

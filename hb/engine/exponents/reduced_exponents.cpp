@@ -133,11 +133,12 @@ std::vector<std::size_t> compare(const Cells& coarse, Cells& fine) {
 
 // hb/engine/README.md (E17), (E18).
 TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
-  constexpr double asymptotic = 1e-3;  // larger changes do not tell how errors fall
+  constexpr double asymptotic = 1e-3, unresolved = 2;  // larger changes do not tell how errors fall
   const std::size_t n = fine.turn.s.size();
   const std::vector<std::size_t> nearest = compare(coarse, fine);
   const double ratio = double(coarse.count) / double(fine.count);
-  const double of_order = std::pow(ratio, 15), slower = std::pow(ratio, n > 2 ? 10 : 7.5);
+  const double of_order = std::pow(ratio, 15), slower = std::pow(ratio, n > 2 ? 9 : 7.5),
+               slowest = std::pow(ratio, n > 2 ? 6 : 7.5);  // of real multipliers
   double largest = 0;
   for (const double change : fine.change) largest = change < asymptotic ? std::max(largest, change) : largest;
   TruncatedErrors errors;
@@ -153,7 +154,9 @@ TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
       if (fine.turn.s[k].imag() == angle && fine.change[k] < asymptotic)
         least = std::max(least, 2 * of_order * fine.change[k]);
     const bool falls = change < asymptotic;
-    errors.left.push_back(std::max(falls ? std::min(change, slower * largest) : change, least) + rounding);
+    errors.left.push_back(
+        std::max(falls ? std::min(change, (real ? slowest : slower) * largest) : unresolved * change, least) +
+        rounding);
     errors.imaginary.push_back(
         falls ? std::max({std::min(fine.turned[i], slower * largest), 2 * of_order * change, least}) + rounding
               : errors.left.back());

@@ -10,6 +10,7 @@
 #include "hb/engine/exponents/qr_sweep.hpp"
 #include "hb/engine/exponents/small_matrix.hpp"
 #include "lib/constants.hpp"
+#include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -58,14 +59,14 @@ TurnExponents discriminant(double trace, double log_size, double trace_change, d
   return result;
 }
 
-// The rounding of one cell's map, squared, n x n: a multiple of the terms that each entry is the sum of, which cannot
-// be larger than the map where damping is strong (measured, hb/engine/README.md, "Propagation").
-void rounding_squares(const TurnMaps& maps, Index cell, double* squares) {
+// Variances of the rounding of one cell's map, n x n: half the terms that each entry is the sum of, which cannot be
+// larger than the map where damping is strong (E11).
+void rounding_variance(const TurnMaps& maps, Index cell, double* variance) {
   const Index n = maps.num_states();
   const double largest = maps.cells.middleCols(n * cell, n).norm();
   for (Index k = 0; k < n * n; ++k) {
-    const double rounding = std::min(maps.terms(k), largest);
-    squares[k] = rounding * rounding;
+    const double rounding = 0.5 * std::min(maps.terms(k), largest);
+    variance[k] = rounding * rounding;
   }
 }
 
@@ -73,8 +74,32 @@ void rounding_squares(const TurnMaps& maps, Index cell, double* squares) {
 CellChain whole_chain(const TurnMaps& maps, const MatrixXd& given) {
   const Index n = maps.num_states(), N = maps.num_cells;
   CellChain chain{maps.cells, MatrixXd(n, n * N), given.replicate(1, N), MatrixXd::Identity(n, n)};
-  for (Index i = 0; i < N; ++i) rounding_squares(maps, i, chain.rounding.data() + n * n * i);
+  for (Index i = 0; i < N; ++i) rounding_variance(maps, i, chain.rounding.data() + n * n * i);
   return chain;
+}
+
+// What leading subspaces have not come back by, to first order (E20).
+void close_turn(const QrSweep& sweep, const SubspaceBases& bases, std::vector<CellChain>& chains) {
+  const Index n = sweep.R.rows();
+  MatrixXd below = sweep.turned;
+  Index begin = 0;
+  for (const Index end : sweep.ends) {
+    below.topRows(end).rightCols(n - begin).setZero();
+    begin = end;
+  }
+  const MatrixXd start = dense::inverse(MatrixXd(bases.right.leftCols(n)));
+  const MatrixXd end = dense::inverse(MatrixXd(bases.left.rightCols(n)));
+  const MatrixXd change = start * below * end, size = start.cwiseAbs() * below.cwiseAbs() * end.cwiseAbs();
+  constexpr double known_to = 0.1;  // of the bases
+  begin = 0;
+  for (CellChain& chain : chains) {
+    const Index p = chain.size();
+    chain.closing += change.block(begin, begin, p, p);
+    // As a change of the last cell's factor.
+    chain.given.rightCols(p) += known_to * chain.closing.transpose().cwiseAbs() * size.block(begin, begin, p, p) *
+                                chain.factors.rightCols(p).cwiseAbs();
+    begin += p;
+  }
 }
 
 // The diagonal blocks of R as chains: with V_i the bases of the invariant subspaces and W_i = V_i^-1, a change E_i of a
@@ -95,13 +120,6 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
     begin = end;
   }
   if (!bases) return chains;
-  // What leading subspaces have not come back by.
-  MatrixXd below = sweep.turned.cwiseAbs();
-  begin = 0;
-  for (const Index end : sweep.ends) {
-    below.topRows(end).rightCols(n - begin).setZero();
-    begin = end;
-  }
   const bool exact = given.cwiseAbs().maxCoeff() == 0;
   MatrixXd frame(n, n), left(n, n), right(n, n), part(n, n), cell(n, n), rounding(n, n), changed = MatrixXd::Zero(n, n);
   constexpr Index often = 64;  // cells between looks
@@ -119,13 +137,13 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
     }
     left = left.cwiseAbs2();
     right = right.cwiseAbs2();
-    rounding_squares(maps, i, cell.data());
+    rounding_variance(maps, i, cell.data());
     multiply(n, left.data(), cell.data(), part.data());
     multiply(n, part.data(), right.data(), rounding.data());
-    // The sweep's own rounding knows no entries.
-    const double swept = sweep.R.middleCols(n * i, n).norm() / double(n);
+    // The sweep's own rounding knows no entries (E11).
+    constexpr double per_entry = 0.6;
+    const double swept = per_entry * sweep.R.middleCols(n * i, n).norm() / std::sqrt(double(n));
     rounding += swept * swept * W.rowwise().squaredNorm() * V.colwise().squaredNorm();
-    if (i == N - 1) changed += W.cwiseAbs() * below * bases->right.leftCols(n).cwiseAbs();
     begin = 0;
     for (std::size_t b = 0; b < chains.size(); ++b) {
       const Index p = chains[b].size();
@@ -134,6 +152,7 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
       begin += p;
     }
   }
+  close_turn(sweep, *bases, chains);
   return chains;
 }
 
@@ -185,7 +204,7 @@ void add_single(const CellChain& chain, Collector& collector) {
     exponent += e;
     relative.add(chain.rounding(i) / (d * d), chain.given(i) / std::abs(d));
   }
-  const double radius = relative.total(), size = std::abs(high);
+  const double radius = relative.total(true), size = std::abs(high);
   const double log = size > 0 ? std::log(size) + low / high + exponent * std::numbers::ln2 : -HUGE_VAL;
   collector.add(high < 0 ? -1 : 1, std::isfinite(log + radius) ? radius : HUGE_VAL, log);
 }
