@@ -93,16 +93,17 @@ void expect_at_most(const Only& only, double most_allocations, double most_page_
   EXPECT_LE(found.page_faults, most_page_faults);
 }
 
-// Upper limits, a tenth above what was reached (994, 7352 and 9369 allocations; 0.3, 0.1 and 6 page faults, most of
-// them for the results, which stay): none in the loop itself is what is aimed at.
+// Upper limits, a tenth above what was reached (994, 7352 and 9369 allocations). Page faults depend on where the C
+// library trims its heap, the same program seen from elsewhere: 0.3 to 1.1, 0.1 and 6 to 31 were seen. None in the loop
+// itself is what is aimed at.
 TEST(Allocations, PerSpeedOfTheGrowthRateAlone) {
-  expect_at_most({.steady = false, .stability = true, .reactions = false, .shape = false, .growth = true}, 1100, 1);
+  expect_at_most({.steady = false, .stability = true, .reactions = false, .shape = false, .growth = true}, 1100, 2);
 }
 
 TEST(Allocations, PerSpeedOfSteadyStateAndExponents) {
-  expect_at_most({.steady = true, .stability = true, .reactions = false, .shape = false}, 8100, 1);
+  expect_at_most({.steady = true, .stability = true, .reactions = false, .shape = false}, 8100, 2);
 }
 
-TEST(Allocations, PerSpeedOfEverything) { expect_at_most({}, 10300, 15); }
+TEST(Allocations, PerSpeedOfEverything) { expect_at_most({}, 10300, 45); }
 
 }  // namespace
