@@ -1,3 +1,11 @@
+set(HB_NATIVE_FLAGS)
+if(HB_NATIVE)
+  set(HB_NATIVE_FLAGS -march=native)
+  if(NOT HB_AVX512 AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND HB_NATIVE_FLAGS -mno-avx512f)  # turns off all that build on it too
+  endif()
+endif()
+
 # Flags of our own targets only.
 function(hb_target_options target)
   target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic
@@ -11,7 +19,7 @@ function(hb_target_options target)
     # GCC clears its memory away less often: some percent of its time for 100 to 300 MB.
     $<$<CXX_COMPILER_ID:GNU>:--param=ggc-min-heapsize=800000>)
   if(HB_NATIVE)
-    target_compile_options(${target} PRIVATE -march=native
+    target_compile_options(${target} PRIVATE ${HB_NATIVE_FLAGS}
       # GCC 12 warns of its own AVX-512 intrinsics, whose undefined operands are meant (GCC bug 105593) and whose masked
       # loads of small matrices it takes for whole ones.
       $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-maybe-uninitialized$<SEMICOLON>-Wno-uninitialized$<SEMICOLON>-Wno-array-bounds>)

@@ -15,7 +15,7 @@ packages=(
 case $purpose in
   command) ;;
   tests) packages+=(libsundials-dev libgtest-dev libbenchmark-dev libopenmpi-dev openmpi-bin chromium chromium-driver python3-selenium
-    scdoc pkg-config file clang-format
+    scdoc pkg-config file clang-format valgrind
     python3-dev python3-numpy pybind11-dev python3-pytest python3-matplotlib python3-pandas python3-xarray python3-scipy
     mypy) ;;
   *)

@@ -60,4 +60,13 @@ double relative_error(const FourierSeries& q, const FourierSeries& reference) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
 
+double relative_error(const Eigen::MatrixXd& samples, const FourierSeries& reference) {
+  const Eigen::MatrixXd q = fourier::synthesise(reference, std::max<Index>(samples.cols(), 1024));
+  const Index stride = q.cols() / samples.cols();
+  double error = 0;
+  for (Index j = 0; j < samples.cols(); ++j)
+    error = std::max(error, (q.col(j * stride) - samples.col(j)).cwiseAbs().maxCoeff());
+  return error / q.cwiseAbs().maxCoeff();
+}
+
 }  // namespace hb::benchmarks

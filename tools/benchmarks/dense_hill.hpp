@@ -13,4 +13,7 @@ namespace hb::benchmarks {
 // max_tau |q - reference| / max_tau |reference|, norm max_i |q_i|.
 [[nodiscard]] double relative_error(const FourierSeries& q, const FourierSeries& reference);
 
+// The same of q at equally spaced times over a turn, a column each.
+[[nodiscard]] double relative_error(const Eigen::MatrixXd& samples, const FourierSeries& reference);
+
 }  // namespace hb::benchmarks

@@ -55,12 +55,7 @@ void steady_rows(const Case& c) {
     const ShootingOptions options{.integrator = Integrator::adams, .time_limit = 5, .single_run = tolerance};
     const ShootingResult result = solve_by_shooting(time_domain_system(c.system, c.speed), options);
     if (result.orbit.q.cols() == 0) continue;
-    const Eigen::MatrixXd q = fourier::synthesise(exact, std::max<Eigen::Index>(result.orbit.q.cols(), 1024));
-    const Eigen::Index stride = q.cols() / result.orbit.q.cols();
-    double error = 0;
-    for (Eigen::Index j = 0; j < result.orbit.q.cols(); ++j)
-      error = std::max(error, (q.col(j * stride) - result.orbit.q.col(j)).cwiseAbs().maxCoeff());
-    row(c, "steady", "cvode_shooting", tolerance, result.steps, error / q.cwiseAbs().maxCoeff(), 0,
+    row(c, "steady", "cvode_shooting", tolerance, result.steps, relative_error(result.orbit.q, exact), 0,
         timed([&] { (void)solve_by_shooting(time_domain_system(c.system, c.speed), options); }));
   }
 }

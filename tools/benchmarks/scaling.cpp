@@ -19,15 +19,6 @@ namespace hb::benchmarks {
 
 namespace {
 
-// Flops per second of C += A B.
-double dgemm_rate() {
-  constexpr Eigen::Index n = 512;
-  const Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, n), B = Eigen::MatrixXd::Random(n, n);
-  Eigen::MatrixXd C = Eigen::MatrixXd::Zero(n, n);
-  const Timing timing = timed([&] { C.noalias() += A * B; });
-  return 2.0 * n * n * n / timing.best;
-}
-
 double peak_megabytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -7,11 +7,14 @@
 namespace hb::benchmarks {
 
 struct Timing {
-  double best, median;  // seconds
+  double best, median;  // seconds of the processor, of all threads: other programs do not count
 };
 
 // At least `fewest` and at most 200 runs, about 0.2 s; no more than 10 s.
 [[nodiscard]] Timing timed(const std::function<void()>& run, std::size_t fewest = 3);
+
+// Flops per second of Eigen's C += A B, 512 x 512.
+[[nodiscard]] double dgemm_rate();
 
 [[nodiscard]] std::string cpu_model();
 [[nodiscard]] std::string eigen_version();
