@@ -9,9 +9,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "hb/analysis/chebyshev.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/request.hpp"
+#include "lib/chebyshev.hpp"
 #include "lib/rod/rod.hpp"
 
 namespace hb {

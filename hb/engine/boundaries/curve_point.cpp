@@ -5,6 +5,7 @@
 
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/surface_search.hpp"
 
 namespace hb {
 
@@ -110,10 +111,29 @@ std::optional<CurvePoint> point_by_search(const Line& line, SweepOptions options
   return line.point(*nearest);
 }
 
+// The zero of the surface nearest to the expected place; `open`: it is not known.
+std::optional<CurvePoint> point_by_surface(const Line& line, const SweepOptions& options,
+                                           const DiscriminantSurface& surface, bool& open) {
+  const MapLine whole{line.along_x, line.fixed, line.low, line.top};
+  const auto zeros = surface_zeros(surface, whole);
+  open = !zeros;
+  const SurfaceZero* nearest = nullptr;
+  if (zeros)
+    for (const SurfaceZero& zero : *zeros) {
+      if ((zero.slope > 0) != line.unstable_above) continue;
+      if (!nearest || std::abs(zero.place - line.expected) < std::abs(nearest->place - line.expected)) nearest = &zero;
+    }
+  if (!nearest) return std::nullopt;
+  const auto boundary = boundary_at(surface, line.at, whole, *nearest, options.tolerance);
+  open = !boundary;
+  if (!boundary) return std::nullopt;
+  return line.point(*boundary);
+}
+
 }  // namespace
 
 std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretch& s, double wide, double high,
-                                        const SweepOptions& options) {
+                                        const SweepOptions& options, const DiscriminantSurface* surface) {
   const auto scaled = [&](const CurvePoint& p) { return Vector{p.place.x / wide, p.place.y / high}; };
   const Vector p1 = scaled(s.a), p2 = scaled(s.b), d = p2 - p1, left{-d.y, d.x};
   const int side = unstable_side(s, left);
@@ -132,6 +152,11 @@ std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretc
                   unit * std::max(0.3 * (curved - straight).length(), 1e-3 * d.length()),
                   (along_x ? left.x : left.y) * side > 0,
                   [&at, along_x, fixed](double t) { return along_x ? at(t, fixed) : at(fixed, t); }};
+  if (surface) {
+    bool open = false;
+    const std::optional<CurvePoint> point = point_by_surface(line, options, *surface, open);
+    if (!open) return point;
+  }
   std::optional<CurvePoint> point = point_by_verdict(line, options);
   if (!point && s.crowded) point = point_by_search(line, options);
   return point;

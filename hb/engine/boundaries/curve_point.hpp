@@ -13,6 +13,8 @@ namespace hb {
 // when the parts are computed by several.
 using MapSystemAt = std::function<std::optional<ScaledSystem>(double x, double y)>;
 
+class DiscriminantSurface;
+
 struct CurvePoint {
   BoundaryPoint place;
   BoundaryKind kind = BoundaryKind::complex;
@@ -29,9 +31,10 @@ struct CurveStretch {
 
 // Near the middle of the stretch, by a cubic through its ends (hb/engine/README.md, (B8)), then along x or y, whichever
 // is more across the curve. `wide`, `high`: of the map, which scale x and y. Empty if no boundary is there that has the
-// same side unstable as both ends.
+// same side unstable as both ends. `surface` (or null) is of this map.
 [[nodiscard]] std::optional<CurvePoint> point_between(const MapSystemAt& at, const CurveStretch& stretch, double wide,
-                                                      double high, const SweepOptions& options);
+                                                      double high, const SweepOptions& options,
+                                                      const DiscriminantSurface* surface = nullptr);
 
 // The curve through these points, apart where its kind changes. `closed`: the last point repeats the first.
 [[nodiscard]] std::vector<BoundaryCurve> pieces_of_one_kind(const std::vector<CurvePoint>& points, bool closed);

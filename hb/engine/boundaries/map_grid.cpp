@@ -5,15 +5,11 @@
 
 namespace hb {
 
-namespace {
-
-MapPoint known_at_node(const StabilitySample& sample) {
+MapPoint map_point(const StabilitySample& sample) {
   const Stability& s = sample.stability;
   return {MapSource::evaluated,           sample.speed, s.growth_rate, s.growth_error, s.verdict,
           boundary_kind(s, sample.speed), s.converged};
 }
-
-}  // namespace
 
 std::vector<MapPoint> map_grid(const MapMesh& mesh, const std::vector<std::optional<StabilitySample>>& samples) {
   const MapAxis &along_x = mesh.x(), &along_y = mesh.y();
@@ -26,14 +22,14 @@ std::vector<MapPoint> map_grid(const MapMesh& mesh, const std::vector<std::optio
     const std::size_t place =
         static_cast<std::size_t>(node.i / along_x.units) + nx * static_cast<std::size_t>(node.j / along_y.units);
     done[place] = true;
-    if (samples[n]) points[place] = known_at_node(*samples[n]);
+    if (samples[n]) points[place] = map_point(*samples[n]);
   }
   for (const MapCell& cell : mesh.cells()) {
     if (cell.halved || (mesh.width(cell) <= along_x.units && mesh.height(cell) <= along_y.units)) continue;
     const MapNode &low = mesh.nodes()[cell.corners[0]], &high = mesh.nodes()[cell.corners[2]];
     std::array<MapPoint, 4> corner;
     for (std::size_t k = 0; k < 4; ++k) {
-      if (const auto& s = samples[cell.corners[k]]) corner[k] = known_at_node(*s);
+      if (const auto& s = samples[cell.corners[k]]) corner[k] = map_point(*s);
     }
     for (int j = (low.j + along_y.units - 1) / along_y.units; j * along_y.units <= high.j; ++j) {
       for (int i = (low.i + along_x.units - 1) / along_x.units; i * along_x.units <= high.i; ++i) {

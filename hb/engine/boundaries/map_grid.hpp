@@ -9,6 +9,9 @@
 
 namespace hb {
 
+// As evaluated there.
+[[nodiscard]] MapPoint map_point(const StabilitySample& sample);
+
 // Those of the nodes (`samples`, by node), and inside larger cells between the corners; x fastest.
 [[nodiscard]] std::vector<MapPoint> map_grid(const MapMesh& mesh,
                                              const std::vector<std::optional<StabilitySample>>& samples);

@@ -14,6 +14,8 @@
 #include "hb/engine/boundaries/map_grid.hpp"
 #include "hb/engine/boundaries/map_mesh.hpp"
 #include "hb/engine/boundaries/separate_pair.hpp"
+#include "hb/engine/boundaries/surface_grid.hpp"
+#include "hb/engine/boundaries/surface_search.hpp"
 
 namespace hb {
 
@@ -33,7 +35,11 @@ void visit_curve_point(Visit& visit, CurvePoint& point) {
 class MapSearch {
  public:
   MapSearch(const MapSystemAt& at, MapAxis x, MapAxis y, bool every_value, const MapOptions& options)
-      : at_(at), options_(options), grid_alone_(every_value && !options.boundaries), mesh_(std::move(x), std::move(y)) {
+      : at_(at),
+        options_(options),
+        every_value_(every_value),
+        grid_alone_(every_value && !options.boundaries),
+        mesh_(std::move(x), std::move(y)) {
     along_edges_ = options.search;
     constexpr double rough_tolerance = 1e-9;
     along_edges_.stability.tolerance = std::max(options.search.stability.tolerance, rough_tolerance);
@@ -44,10 +50,15 @@ class MapSearch {
     along_curves_.stability.leading_only = true;
   }
 
-  void begin() { evaluate_nodes(); }
+  void begin() {
+    if (!grid_alone_ && at_nodes_.method == StabilityMethod::automatic) find_surface();
+    if (surface_alone()) return;
+    evaluate_nodes();
+  }
 
   void finish() {
-    if (grid_alone_) return;
+    if (surface_ && !every_value_ && !options_.curves_only) evaluate_grid();
+    if (grid_alone_ || surface_alone()) return;
     search_edges();
     growth_range();
     do refine();
@@ -56,7 +67,7 @@ class MapSearch {
 
   StabilityMap result() {
     StabilityMap map;
-    if (!options_.curves_only) map.points = map_grid(mesh_, samples_);
+    if (!options_.curves_only) map.points = surface_ && !every_value_ ? std::move(points_) : map_grid(mesh_, samples_);
     if (options_.boundaries) {
       for (const CurveChain& chain : curves_.chains()) {
         const std::vector<CurvePoint> points = curves_.points(chain);
@@ -94,6 +105,77 @@ class MapSearch {
                                                        std::abs(point.place.along_x ? point.place.x : point.place.y);
   }
 
+  // --- One mode: the surface of its discriminant ---
+
+  void find_surface() {
+    const std::vector<double>&x = mesh_.x().values, &y = mesh_.y().values;
+    constexpr std::size_t least_evaluations = 4000, points_for_one = 16;
+    const DiscriminantSurface::Request request{
+        .box = {{x.front(), y.front()}, {x.back(), y.back()}},
+        .varies = options_.varies,
+        .most_evaluations = least_evaluations + x.size() * y.size() / points_for_one,
+        .parts = options_.parts};
+    surface_ = DiscriminantSurface::over([this](double u, double v) { return system(u, v); }, request);
+  }
+
+  // The grid is all that is asked for, and the surface tells it.
+  bool surface_alone() const { return surface_ && !every_value_ && !options_.boundaries; }
+
+  void evaluate_grid() {
+    using Sample = std::optional<StabilitySample>;
+    const std::vector<double>&x = mesh_.x().values, &y = mesh_.y().values;
+    std::vector<std::size_t> open;
+    points_ = surface_grid(*surface_, x, y, at_nodes_.tolerance, open);
+    const std::vector<Sample> samples = results<Sample>(
+        open.size(), [&](std::size_t k) { return single_answer(x[open[k] % x.size()], y[open[k] / x.size()]); },
+        [](auto& visit, Sample& sample) {
+          visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
+        });
+    for (std::size_t k = 0; k < open.size(); ++k)
+      if (samples[k]) points_[open[k]] = map_point(*samples[k]);
+  }
+
+  std::optional<StabilitySample> single_answer(double x, double y) const {
+    const std::optional<ScaledSystem> there = system(x, y);
+    if (!there) return std::nullopt;
+    return StabilitySample{x, there->speed, with_finite_growth(*there, at_nodes_)};
+  }
+
+  std::optional<StabilitySample> sample_by_surface(double x, double y) const {
+    if (!surface_ || every_value_) return std::nullopt;
+    const MapPoint point = surface_point(*surface_, x, y, at_nodes_.tolerance);
+    if (point.source == MapSource::missing) return std::nullopt;
+    StabilitySample sample;
+    sample.x = x;
+    sample.speed = point.speed;
+    sample.stability.growth_rate = point.growth_rate;
+    sample.stability.growth_error = point.growth_error;
+    sample.stability.verdict = point.verdict;
+    return sample;
+  }
+
+  // Empty where the surface leaves something open, or says something else than the verdicts at both ends.
+  std::optional<SearchedInterval> crossings_by_surface(const MapLine& line, bool unstable_first,
+                                                       bool unstable_last) const {
+    const auto zeros = surface_zeros(*surface_, line);
+    if (!zeros) return std::nullopt;
+    SearchedInterval found;
+    bool inside = unstable_first;
+    for (const SurfaceZero& zero : *zeros) {
+      const auto boundary = boundary_at(*surface_, along(line), line, zero, options_.search.tolerance);
+      if (!boundary || boundary->unstable_above == inside) return std::nullopt;
+      if (!found.boundaries.empty() && !(found.boundaries.back().x < boundary->x)) return std::nullopt;
+      inside = !inside;
+      found.boundaries.push_back(*boundary);
+    }
+    if (inside != unstable_last) return std::nullopt;
+    return found;
+  }
+
+  SystemAt along(const MapLine& line) const {
+    return [this, line](double t) { return line.along_x ? system(t, line.fixed) : system(line.fixed, t); };
+  }
+
   // --- What the system says ---
 
   std::optional<ScaledSystem> system(double x, double y) const {
@@ -103,9 +185,9 @@ class MapSearch {
 
   // At a node all exponents, where the leading ones do not suffice to search its edges.
   std::optional<StabilitySample> node_sample(double x, double y) const {
+    if (grid_alone_) return single_answer(x, y);
     const std::optional<ScaledSystem> there = system(x, y);
     if (!there) return std::nullopt;
-    if (grid_alone_) return StabilitySample{x, there->speed, with_finite_growth(*there, at_nodes_)};
     StabilityOptions leading = at_nodes_;
     leading.leading_only = true;
     StabilitySample sample = stability_sample(*there, x, leading);
@@ -127,7 +209,11 @@ class MapSearch {
     for (std::size_t node = samples_.size(); node < mesh_.nodes().size(); ++node) nodes.push_back(node);
     std::vector<Sample> samples = results_of<Sample>(
         nodes, [&](std::size_t node) { return place_of(mesh_.nodes()[node]); },
-        [&](std::size_t node) { return node_sample(mesh_.x_of(node), mesh_.y_of(node)); },
+        [&](std::size_t node) {
+          const double x = mesh_.x_of(node), y = mesh_.y_of(node);
+          const Sample told = sample_by_surface(x, y);
+          return told ? told : node_sample(x, y);
+        },
         [](auto& visit, Sample& sample) {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
         });
@@ -174,20 +260,27 @@ class MapSearch {
   SearchedInterval crossings_of(std::size_t e) const {
     const MapEdge& edge = mesh_.edge(e);
     if (!options_.varies[edge.along_x ? 0 : 1]) return {};
-    const double fixed = mesh_.coordinate(edge.a, !edge.along_x);
-    const SystemAt along = [&](double t) { return edge.along_x ? system(t, fixed) : system(fixed, t); };
+    const MapLine line{edge.along_x, mesh_.coordinate(edge.a, !edge.along_x), mesh_.coordinate(edge.a, edge.along_x),
+                       mesh_.coordinate(edge.b, edge.along_x)};
+    if (surface_)
+      if (auto found = crossings_by_surface(line, unstable(edge.a), unstable(edge.b))) return *found;
     const auto sample_at = [&](std::size_t node) {
       std::optional<StabilitySample> sample;
-      if (node != no_node) sample = samples_[node];
-      if (sample) sample->x = mesh_.coordinate(node, edge.along_x);
+      if (node == no_node) return sample;
+      const double t = mesh_.coordinate(node, edge.along_x);
+      // What the surface told has no exponents.
+      sample =
+          surface_ && !every_value_ && samples_[node] ? stability_sample(along(line), t, at_nodes_) : samples_[node];
+      if (sample) sample->x = t;
       return sample;
     };
     const auto before = sample_at(edge.before), first = sample_at(edge.a), last = sample_at(edge.b),
                after = sample_at(edge.after);
+    if (!first || !last) return {};
     std::vector<StabilitySample> farther;
-    for (const std::size_t node : mesh_.farther(e))
+    for (const std::size_t node : surface_ ? std::vector<std::size_t>() : mesh_.farther(e))
       if (auto sample = sample_at(node)) farther.push_back(*std::move(sample));
-    SearchedInterval found = search_interval(along, *first, *last, before ? &*before : nullptr,
+    SearchedInterval found = search_interval(along(line), *first, *last, before ? &*before : nullptr,
                                              after ? &*after : nullptr, along_edges_, farther);
     found.samples.clear();
     return found;
@@ -216,15 +309,25 @@ class MapSearch {
     return mesh_.width(cell) > mesh_.x().units || mesh_.height(cell) > mesh_.y().units;
   }
 
-  bool wants_halving(const MapCell& cell) const {
+  bool wants_halving(std::size_t c) const {
+    const MapCell& cell = mesh_.cells()[c];
     if (!mesh_.divisible(cell)) return false;
     const auto present = std::ranges::count_if(cell.corners, [&](std::size_t n) { return samples_[n].has_value(); });
     const std::size_t crossings = mesh_.rim(cell).size();
     if (larger_than_the_grid(cell)) {
-      if (options_.curves_only) return (crossings != 0 && crossings != 2) || mesh_.holds_tip(cell);
+      if (surface_ || options_.curves_only)
+        return (crossings != 0 && crossings != 2) || mesh_.holds_tip(cell) || holds_island(c, crossings);
       return crossings != 0 || (present > 0 && present < 4) || (present == 4 && uneven(cell));
     }
     return present == 4 && (crossings > 2 ? !thin_band(cell) : mesh_.holds_tip(cell));
+  }
+
+  // No curve crosses the rim, but one may lie inside.
+  bool holds_island(std::size_t c, std::size_t crossings) const {
+    if (!surface_ || crossings != 0 || c < islands_sought_) return false;
+    const MapCell& cell = mesh_.cells()[c];
+    return verdict_may_change(*surface_, {{mesh_.x_of(cell.corners[0]), mesh_.y_of(cell.corners[0])},
+                                          {mesh_.x_of(cell.corners[2]), mesh_.y_of(cell.corners[2])}});
   }
 
   // Two crossings of one kind on each of two sides: a tongue, or the gap between two, passes through. Points on both
@@ -265,10 +368,11 @@ class MapSearch {
       changed = false;
       const std::size_t count = mesh_.cells().size();
       for (std::size_t c = 0; c < count; ++c) {
-        if (mesh_.cells()[c].halved || !wants_halving(mesh_.cells()[c])) continue;
+        if (mesh_.cells()[c].halved || !wants_halving(c)) continue;
         mesh_.halve(c);
         changed = true;
       }
+      islands_sought_ = count;
       evaluate();
     }
   }
@@ -293,7 +397,8 @@ class MapSearch {
           wanted.size(),
           [&](std::size_t k) {
             const MapSystemAt counted = [this](double x, double y) { return system(x, y); };
-            return point_between(counted, wanted[k].stretch, wide(), high(), along_curves_);
+            return point_between(counted, wanted[k].stretch, wide(), high(), along_curves_,
+                                 surface_ ? &*surface_ : nullptr);
           },
           [](auto& visit, Found& point) {
             visit_if_there(visit, point, [&](CurvePoint& there) { visit_curve_point(visit, there); });
@@ -323,6 +428,7 @@ class MapSearch {
   double high() const { return mesh_.y().values.back() - mesh_.y().values.front(); }
   const MapSystemAt at_;
   const MapOptions options_;
+  const bool every_value_;  // each point of the grid is a node
   const bool grid_alone_;  // every point evaluated, nothing between them
   SweepOptions along_edges_, along_curves_;  // along_curves_: the leading exponents suffice
   StabilityOptions at_nodes_;
@@ -330,7 +436,9 @@ class MapSearch {
   MapMesh mesh_;
   MapCurves curves_{mesh_, options_.sag, curves_bend()};
   std::vector<std::optional<StabilitySample>> samples_;  // by node
-  std::size_t searched_edges_ = 0;
+  std::optional<DiscriminantSurface> surface_;
+  std::vector<MapPoint> points_;  // of the grid, by the surface
+  std::size_t searched_edges_ = 0, islands_sought_ = 0;
   std::vector<std::array<double, 4>> not_excluded_;
   double range_ = 0;
 };

@@ -1,5 +1,6 @@
 // Stability of one system over two of its parameters x, y: growth rate and verdict on a grid, and the curves where the
-// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (interval_search.hpp).
+// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (interval_search.hpp). With
+// one mode the discriminant, interpolated over the whole map, tells both (discriminant_surface.hpp).
 #pragma once
 
 #include <array>
@@ -18,7 +19,7 @@ namespace hb {
 
 struct MapOptions {
   SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
-  std::size_t evaluate_all = 40000;  // grids of at most so many points are evaluated at every point
+  std::size_t evaluate_all = 40000;  // grids of at most so many points have exponents computed at every point
   double sag = 5e-4;  // of a boundary's chord, relative to the map's width and height
   bool boundaries = true;  // false: the grid alone
   bool verdict_only = false;  // of a grid without boundaries: growth where no bound proves stability
@@ -30,7 +31,7 @@ struct MapOptions {
 
 enum class MapSource {
   evaluated,
-  interpolated,  // inside a cell whose corners and edges have one verdict, growth bilinear
+  interpolated,  // inside a cell whose corners and edges have one verdict, growth bilinear; or by the discriminant
   missing,  // no system here
 };
 
@@ -38,7 +39,7 @@ struct MapPoint {
   MapSource source = MapSource::missing;
   double speed = 0;  // rad per unit time
   double growth_rate = 0;  // 1/time
-  double growth_error = 0;  // bound where evaluated, NaN where interpolated
+  double growth_error = 0;  // as that of exponents; estimate where the discriminant tells, NaN where bilinear
   Verdict verdict = Verdict::undecided;
   BoundaryKind kind = BoundaryKind::complex;  // of the leading exponent
   bool converged = false;

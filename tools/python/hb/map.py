@@ -65,7 +65,7 @@ class _Grid:
 
     @cached_property
     def growth_error(self) -> "NDArray[Any]":
-        """Its error; NaN where it was interpolated."""
+        """Its error; NaN where the growth rate itself was interpolated (several modes)."""
         return floats(self._entry["growth_error"])
 
     @cached_property

@@ -6,14 +6,14 @@
 
 namespace hb {
 
-// t_k = -cos(k pi/n), k = 0..n; 0 for n = 0.
-[[nodiscard]] Eigen::VectorXd lobatto_nodes(Eigen::Index n);
+// t_k = -cos(k pi/n), k = 0..n; 0 for n = 0. Kept per thread, as the next.
+[[nodiscard]] const Eigen::VectorXd& lobatto_nodes(Eigen::Index n);
 
 // T_0(t) .. T_n(t).
 [[nodiscard]] Eigen::VectorXd chebyshev(double t, Eigen::Index n);
 
 // (n+1) x (n+1): values at the nodes, a row vector, times this are the coefficients of T_0 .. T_n.
-[[nodiscard]] Eigen::MatrixXd to_coefficients(Eigen::Index n);
+[[nodiscard]] const Eigen::MatrixXd& to_coefficients(Eigen::Index n);
 
 // The same where all values are one: exactly that one.
 [[nodiscard]] Eigen::MatrixXd first_value(Eigen::Index n);

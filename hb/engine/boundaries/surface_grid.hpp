@@ -1,0 +1,20 @@
+// Values of a stability map of one mode from the surface of its discriminant.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "hb/engine/boundaries/discriminant_surface.hpp"
+#include "hb/engine/boundaries/stability_map.hpp"
+
+namespace hb {
+
+// At the places (x_i, y_j), x fastest. Those whose verdict or growth rate the surface does not settle are missing, and
+// their numbers are put into `open`.
+[[nodiscard]] std::vector<MapPoint> surface_grid(const DiscriminantSurface& surface, const std::vector<double>& x,
+                                                 const std::vector<double>& y, std::vector<std::size_t>& open);
+
+// At one place; missing where it is not settled.
+[[nodiscard]] MapPoint surface_point(const DiscriminantSurface& surface, double x, double y);
+
+}  // namespace hb
