@@ -13,7 +13,7 @@ constexpr std::size_t max_lines = 10;
 
 // Least stable point of all rods: by the worst verdict, then by growth.
 MapPoint worse(const MapPoint& a, const MapPoint& b) {
-  if (a.source == MapSource::missing || b.source == MapSource::missing) return {};
+  if (a.source == MapSource::missing || b.source == MapSource::missing) return MapPoint();
   MapPoint result = b.growth_rate > a.growth_rate ? b : a;
   result.verdict = worst(a.verdict, b.verdict);
   if (a.source == MapSource::interpolated || b.source == MapSource::interpolated) {
@@ -149,10 +149,11 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
   for (const StabilityMapSearch& one : searches) one.begin();
   for (const StabilityMapSearch& one : searches) one.finish();
   for (const StabilityMapSearch& one : searches) result.maps.push_back(one.result());
-  result.worst = result.maps.front().points;
+  if (result.maps.size() > 1) result.worst_of_several = result.maps.front().points;
   for (std::size_t r = 1; r < result.maps.size(); ++r) {
-    for (std::size_t p = 0; p < result.worst.size(); ++p) {
-      result.worst[p] = worse(result.worst[p], result.maps[r].points[p]);
+    for (std::size_t p = 0; p < result.worst_of_several.size(); ++p) {
+      MapPoint& point = result.worst_of_several[p];
+      point = worse(point, result.maps[r].points[p]);
     }
   }
   if (search.boundaries) result.boundaries = worst_boundaries(plane, result.maps, search);

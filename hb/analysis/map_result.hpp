@@ -35,14 +35,16 @@ struct MapResult {
   PlaneAxis x_axis, y_axis;
   std::vector<std::string> rods;
   std::vector<StabilityMap> maps;  // one per rod
-  std::vector<MapPoint> worst;  // largest growth over the rods; x fastest
+  std::vector<MapPoint> worst_of_several;  // empty for one rod
   std::vector<RodCurve> boundaries;  // of the worst: each rod's where no other rod is unstable
   std::vector<BandEnd> band;  // both ends of MapRequest::damping_range or band
   BandParameter band_of = BandParameter::damping;  // what the factors multiply
   std::vector<ResonanceLine> lines;  // of the first rod
   std::vector<MissingPoints> missing;
-  std::vector<PlaceLoads> loads;  // at every point, as `worst`; empty: not asked for
+  std::vector<PlaceLoads> loads;  // at every point, as `worst()`; empty: not asked for
 
+  // Largest growth over the rods; x fastest.
+  const std::vector<MapPoint>& worst() const { return maps.size() > 1 ? worst_of_several : maps.front().points; }
   const std::vector<double>& x() const { return maps.front().x; }
   const std::vector<double>& y() const { return maps.front().y; }
 };

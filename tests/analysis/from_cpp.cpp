@@ -115,10 +115,10 @@ TEST(FromCpp, AFunctionGivesTheSameMapAsTheText) {
   const Map by_text = map(SceneSource(scenes + "four_bar.toml"), request);
   request.y.path = "J";
   const Map by_function = map(four_bar_by_function(), request);
-  ASSERT_EQ(by_text.worst.size(), 6u);
+  ASSERT_EQ(by_text.worst().size(), 6u);
   for (std::size_t p = 0; p < 6; ++p) {
-    EXPECT_EQ(by_text.worst[p].verdict, by_function.worst[p].verdict);
-    EXPECT_EQ(by_text.worst[p].growth_rate, by_function.worst[p].growth_rate);
+    EXPECT_EQ(by_text.worst()[p].verdict, by_function.worst()[p].verdict);
+    EXPECT_EQ(by_text.worst()[p].growth_rate, by_function.worst()[p].growth_rate);
   }
 }
 

@@ -1,9 +1,11 @@
 // `hb map` as its users meet it: documents, files, exit codes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/support/run_command.hpp"
 
@@ -27,6 +29,13 @@ class Map : public CommandTest {
     EXPECT_EQ(num_entries(folder_), 0u) << arguments;
   }
 };
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
 
 const std::string swing = "hill.stiffness.1.cos.0.0";
 
@@ -294,6 +303,29 @@ TEST_F(Map, WritesGridCurvesAndPictures) {
   std::size_t rows = 0;
   while (std::getline(grid, line)) rows += !line.empty() && line[0] != '#' && line[0] != 'o';
   EXPECT_EQ(rows, 96u);
+}
+
+// Longer than the pieces that documents are written in.
+TEST_F(Map, ALargeDocumentIsTheSameInTheFolder) {
+  const std::string plane = scene("mathieu") + " --x omega=0.6:3:x320 --y " + swing + "=0:1:x200";
+  const Json printed = document(plane);
+  EXPECT_EQ(hb("map " + plane + " --out out --no-plots").status, 0);
+  const std::string text = read(folder_ / "out" / "map.json");
+  EXPECT_GT(text.size(), std::size_t{1} << 22);
+  Json written = Json::parse(text);
+  EXPECT_EQ(written.erase("provenance"), 1u);
+  EXPECT_EQ(written, printed);
+  ASSERT_EQ(printed["growth_error"].size(), 200u);
+  std::size_t interpolated = 0;
+  for (std::size_t j = 0; j < 200; ++j)
+    for (std::size_t i = 0; i < 320; ++i) {
+      if (printed["interpolated"][j][i] == 1) ++interpolated;
+      ASSERT_TRUE(printed["growth_error"][j][i].is_number());
+      ASSERT_LE(printed["growth_error"][j][i], 1e-7);
+    }
+  EXPECT_GT(interpolated, 60000u);
+  const std::string rows = read(folder_ / "out" / "map_grid.csv");
+  EXPECT_EQ(std::ranges::count_if(lines_of(rows), [](const std::string& line) { return line[0] != '#'; }), 64001);
 }
 
 TEST_F(Map, AFullDiskIsAnErrorThatLeavesNoPartOfAResultAndLosesNoWork) {

@@ -57,6 +57,7 @@ int deliver(OutputFolder* folder, const PictureStyle& style, int status, const D
   } else if (delivery.committed) {
     delivery.committed();
   }
+  if (delivery.document) delivery.document(print_piece);
   print_out(delivery.printed);
   if (!written) return status;
   if (asked_to_end()) return status == exit_ok && !figures.empty() ? exit_no_pictures : status;

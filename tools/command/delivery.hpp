@@ -14,6 +14,7 @@ namespace hb::tools {
 
 struct Delivery {
   std::string printed;  // for standard output
+  LongText document = {};  // instead; printable as it is; may be empty
   // Writes the data into the folder and says which pictures there are of them.
   std::function<std::vector<Figure>(OutputFolder&)> write_data;
   // Further pictures whose data take time to compute; may be empty.

@@ -55,9 +55,13 @@ int run_map(const MapCommandFlags& flags) {
 
   const MapDocument document = document_of(*map);
   Delivery delivery;
-  delivery.printed = out.json ? map_text(document) : map_summary(document);
+  const LongText text = [&](const TextSink& sink) { write_map(document, sink); };
+  if (out.json)
+    delivery.document = text;
+  else
+    delivery.printed = map_summary(document);
   delivery.write_data = [&](OutputFolder& place) {
-    place.write("map.json", map_text(document));
+    place.write_long("map.json", text);
     return map_files(document, colour, place);
   };
   delivery.committed = [&] { run.delivered(); };

@@ -16,7 +16,7 @@
 namespace hb::tools {
 namespace {
 
-constexpr std::size_t max_points = 4000000;
+constexpr std::size_t max_points = 20000000;
 
 Along axis_range(const std::string& flag, const std::string& text, const SceneSource& source) {
   if (text.empty())

@@ -83,7 +83,8 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
     return file.name;
   };
   MapFiles files;
-  files.grid = write(map_grid_csv(document));
+  files.grid = "map_grid.csv";
+  folder.write_long(files.grid, [&](const TextSink& sink) { write_map_grid(document, sink); });
   files.boundaries = write(
       map_boundary_csv(document, result.boundaries, "map_boundaries.csv", "boundaries of stability of the worst rod"));
   for (std::size_t r = 0; r < result.rods.size() && result.rods.size() > 1; ++r) {

@@ -85,22 +85,27 @@ CsvFile shape_csv(const SceneModel& model, const SpeedResult& result, const RodR
 
 }  // namespace
 
-std::string csv_text(const CsvFile& file) {
+std::string csv_rows(const Eigen::MatrixXd& rows) {
   fmt::memory_buffer text;
   const auto out = std::back_inserter(text);
-  for (std::string line : file.comment) {
-    line = printable(line);
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    fmt::format_to(out, "# {}\n", line);
-  }
-  fmt::format_to(out, "{}\n", printable(fmt::format("{}", fmt::join(file.columns, ","))));
-  for (Eigen::Index row = 0; row < file.rows.rows(); ++row) {
-    for (Eigen::Index column = 0; column < file.rows.cols(); ++column) {
-      fmt::format_to(out, "{}{}", column == 0 ? "" : ",", file.rows(row, column));
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    for (Eigen::Index column = 0; column < rows.cols(); ++column) {
+      fmt::format_to(out, "{}{}", column == 0 ? "" : ",", rows(row, column));
     }
     fmt::format_to(out, "\n");
   }
   return fmt::to_string(text);
+}
+
+std::string csv_text(const CsvFile& file) {
+  std::string text;
+  for (std::string line : file.comment) {
+    line = printable(line);
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    text += fmt::format("# {}\n", line);
+  }
+  text += fmt::format("{}\n", printable(fmt::format("{}", fmt::join(file.columns, ","))));
+  return text + csv_rows(file.rows);
 }
 
 CsvFile response_csv(const SceneModel& model, const SpeedResult& result, const RodResult& rod) {

@@ -17,6 +17,7 @@ struct CsvFile {
 };
 
 [[nodiscard]] std::string csv_text(const CsvFile& file);
+[[nodiscard]] std::string csv_rows(const Eigen::MatrixXd& rows);
 
 // Crank angle, q_i, dq_i/dt.
 [[nodiscard]] CsvFile response_csv(const SceneModel& model, const SpeedResult& result, const RodResult& rod);

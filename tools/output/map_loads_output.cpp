@@ -95,7 +95,7 @@ WorstPlace worst_place(const MapResult& result, std::size_t r, bool smallest, co
 
 bool trusted_loads(const MapResult& result, std::size_t place, std::size_t r) {
   const RodLoads* loads = loads_at(result, place, r);
-  return loads && result.worst[place].verdict != Verdict::unstable &&
+  return loads && result.worst()[place].verdict != Verdict::unstable &&
          loads->theory_error.value_or(HUGE_VAL) <= theory_error_limit;
 }
 

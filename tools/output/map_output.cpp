@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -13,6 +12,7 @@
 #include "lib/constants.hpp"
 #include "lib/scene/scene_keys.hpp"
 #include "tools/output/json.hpp"
+#include "tools/output/json_digits.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/map_loads_output.hpp"
 #include "tools/output/output_units.hpp"
@@ -25,55 +25,42 @@ namespace {
 
 bool missing(const MapPoint& point) { return point.source == MapSource::missing; }
 
-// As a document has it; null where it is not finite.
-void append(std::string& text, double value) {
-  if (!std::isfinite(value)) {
-    text += "null";
-    return;
-  }
-  std::array<char, 64> digits;
-  text.append(digits.data(), nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), value));
-}
-
-void append(std::string& text, const char* word) {
-  text += '"';
-  text += word;
-  text += '"';
-}
-
-void append(std::string& text, int value) { text += value == 0 ? '0' : '1'; }
-
 // The members of an object in their order. Grids, which have millions of values, go into the text without becoming
 // values of a document before.
 class Members {
  public:
   void add(const std::string& key, Json value) { members_.push_back({key, std::move(value), {}}); }
   void add(const std::string& key, const Members& object) {
-    members_.push_back({key, {}, [object](std::string& text) { object.write(text); }});
+    members_.push_back({key, {}, [object](TextPieces& pieces) { object.write(pieces); }});
   }
   // Rows along x, one per y; `map` and `points` outlive the object.
   template <class Value>
   void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value) {
-    members_.push_back({key, {}, [nx = map.x.size(), &points, value](std::string& text) {
+    members_.push_back({key, {}, [nx = map.x.size(), &points, value](TextPieces& pieces) {
+                          std::string& text = pieces.text();
+                          RepeatedDigits digits;
                           text += '[';
                           for (std::size_t p = 0; p < points.size(); ++p) {
-                            text += p % nx > 0 ? "," : p > 0 ? "],[" : "[";
+                            const bool begins = p % nx == 0;
+                            if (begins) pieces.end_row();
+                            text += !begins ? "," : p > 0 ? "],[" : "[";
                             if (missing(points[p]))
                               text += "null";
                             else
-                              append(text, value(points[p]));
+                              digits.append_to(text, value(points[p]));
                           }
                           text += "]]";
                         }});
   }
-  void write(std::string& text) const {
+  void write(TextPieces& pieces) const {
+    std::string& text = pieces.text();
     char before = '{';
     for (const Member& member : members_) {
       text += before;
       before = ',';
       text += printable(Json(member.key).dump()) + ":";
       if (member.write)
-        member.write(text);
+        member.write(pieces);
       else
         text += printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace));
     }
@@ -84,7 +71,7 @@ class Members {
   struct Member {
     std::string key;
     Json value;
-    std::function<void(std::string&)> write;  // instead of the value
+    std::function<void(TextPieces&)> write;  // instead of the value
   };
   std::vector<Member> members_;
 };
@@ -197,10 +184,10 @@ MapDocument document_of(const Map& map) {
   return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries, map.complete};
 }
 
-std::string map_text(const MapDocument& document) {
+void write_map(const MapDocument& document, const TextSink& sink) {
   const MapResult& r = document.result;
   const StabilityMap& first = r.maps.front();
-  const NodeCounts n = counts(r.worst);
+  const NodeCounts n = counts(r.worst());
   Members json;
   json.add("title", document.scene.title);
   json.add("status", document.complete ? "reached" : "tolerance not reached");
@@ -209,10 +196,10 @@ std::string map_text(const MapDocument& document) {
   json.add("y", axis_json(r.y_axis, r.y()));
   json.add("modes", document.num_modes);
   if (document.boundaries) json.add("boundary_tolerance", document.tolerance);
-  add_grids(json, first, r.worst);
-  json.add_grid("interpolated", first, r.worst,
+  add_grids(json, first, r.worst());
+  json.add_grid("interpolated", first, r.worst(),
                 [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
-  json.add_grid("growth_per_turn", first, r.worst, growth_per_turn);
+  json.add_grid("growth_per_turn", first, r.worst(), growth_per_turn);
   if (document.boundaries) json.add("boundaries", curves_json(r, r.boundaries));
   Members rods;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
@@ -256,19 +243,25 @@ std::string map_text(const MapDocument& document) {
     none.push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
   json.add("missing", std::move(none));
   json.add("units", units_json(document.scene.units));
+  TextPieces pieces(sink);
+  json.write(pieces);
+  pieces.text() += '\n';
+  pieces.hand_on();
+}
+
+std::string map_text(const MapDocument& document) {
   std::string text;
-  // Two numbers of 18 digits and three short words a point, each rod's beside the worst.
-  text.reserve(r.worst.size() * 80 * (r.rods.size() + 1));
-  json.write(text);
-  text += '\n';
+  write_map(document, [&](std::string_view piece) { text += piece; });
   return text;
 }
 
 Json map_json(const MapDocument& document) { return Json::parse(map_text(document)); }
 
-CsvFile map_grid_csv(const MapDocument& document) {
+namespace {
+
+// Without its rows.
+CsvFile map_grid_file(const MapDocument& document) {
   const MapResult& r = document.result;
-  const std::size_t nx = r.x().size();
   const std::string time = document.scene.units.time;
   CsvFile file;
   file.name = "map_grid.csv";
@@ -278,23 +271,47 @@ CsvFile map_grid_csv(const MapDocument& document) {
       r.x_axis.path, r.y_axis.path, "growth [1/" + time + "]", "growth per turn", "tenfold time [" + time + "]",
       "verdict",     "interpolated"};
   for (const std::string& rod : r.rods) file.columns.push_back("growth " + rod + " [1/" + time + "]");
-  file.rows.resize(static_cast<Eigen::Index>(r.worst.size()), static_cast<Eigen::Index>(file.columns.size()));
-  for (std::size_t p = 0; p < r.worst.size(); ++p) {
-    const MapPoint& point = r.worst[p];
-    const auto row = static_cast<Eigen::Index>(p);
-    const bool none = missing(point);
-    file.rows(row, 0) = r.x()[p % nx];
-    file.rows(row, 1) = r.y()[p / nx];
-    file.rows(row, 2) = none ? nan : point.growth_rate;
-    file.rows(row, 3) = none ? nan : growth_per_turn(point);
-    file.rows(row, 4) = none ? nan : tenfold_time(point);
-    file.rows(row, 5) = none ? nan : verdict_number(point.verdict);
-    file.rows(row, 6) = none ? nan : double(point.source == MapSource::interpolated);
-    for (std::size_t k = 0; k < r.rods.size(); ++k) {
-      file.rows(row, static_cast<Eigen::Index>(7 + k)) = none ? nan : r.maps[k].points[p].growth_rate;
-    }
-  }
   return file;
+}
+
+// Of the points from `first` on, as many as there are rows.
+void fill_map_rows(const MapResult& r, std::size_t first, Eigen::MatrixXd& rows) {
+  const std::size_t nx = r.x().size();
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    const std::size_t p = first + static_cast<std::size_t>(row);
+    const MapPoint& point = r.worst()[p];
+    const bool none = missing(point);
+    rows(row, 0) = r.x()[p % nx];
+    rows(row, 1) = r.y()[p / nx];
+    rows(row, 2) = none ? nan : point.growth_rate;
+    rows(row, 3) = none ? nan : growth_per_turn(point);
+    rows(row, 4) = none ? nan : tenfold_time(point);
+    rows(row, 5) = none ? nan : verdict_number(point.verdict);
+    rows(row, 6) = none ? nan : double(point.source == MapSource::interpolated);
+    for (std::size_t k = 0; k < r.rods.size(); ++k)
+      rows(row, static_cast<Eigen::Index>(7 + k)) = none ? nan : r.maps[k].points[p].growth_rate;
+  }
+}
+
+}  // namespace
+
+CsvFile map_grid_csv(const MapDocument& document) {
+  CsvFile file = map_grid_file(document);
+  file.rows.resize(static_cast<Eigen::Index>(document.result.worst().size()),
+                   static_cast<Eigen::Index>(file.columns.size()));
+  fill_map_rows(document.result, 0, file.rows);
+  return file;
+}
+
+void write_map_grid(const MapDocument& document, const TextSink& sink) {
+  const MapResult& r = document.result;
+  CsvFile file = map_grid_file(document);
+  sink(csv_text(file));
+  file.rows.resize(static_cast<Eigen::Index>(r.x().size()), static_cast<Eigen::Index>(file.columns.size()));
+  for (std::size_t first = 0; first < r.worst().size(); first += r.x().size()) {
+    fill_map_rows(r, first, file.rows);
+    sink(csv_rows(file.rows));
+  }
 }
 
 CsvFile map_boundary_csv(const MapDocument& document, const std::vector<RodCurve>& curves, const std::string& name,
@@ -344,8 +361,8 @@ CsvFile map_resonance_csv(const MapDocument& document) {
 
 std::string map_verdict(const MapDocument& document) {
   const MapResult& r = document.result;
-  const NodeCounts n = counts(r.worst);
-  const double all = static_cast<double>(r.worst.size() - n.missing);
+  const NodeCounts n = counts(r.worst());
+  const double all = static_cast<double>(r.worst().size() - n.missing);
   if (all == 0) return document.complete ? "no system at any point" : "no answer yet at any point";
   std::vector<std::string> because;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
@@ -381,9 +398,9 @@ std::string unit_behind(const PlaneAxis& axis, const Units& units) {
 
 std::string map_summary(const MapDocument& document) {
   const MapResult& r = document.result;
-  const NodeCounts n = counts(r.worst);
+  const NodeCounts n = counts(r.worst());
   const Units& units = document.scene.units;
-  const double all = static_cast<double>(r.worst.size());
+  const double all = static_cast<double>(r.worst().size());
   const bool linkage = std::holds_alternative<Linkage>(document.scene.model);
   std::string text = fmt::format("{}: {}\n", scene_name(document.scene), map_verdict(document));
   const auto axis = [&](const PlaneAxis& of, const std::vector<double>& values) {
@@ -403,15 +420,15 @@ std::string map_summary(const MapDocument& document) {
   if (n.missing > 0)
     text += fmt::format(", {} {:.4g} %", document.complete ? "no system" : "not computed",
                         100 * static_cast<double>(n.missing) / all);
-  text += fmt::format(" of {} points", r.worst.size());
+  text += fmt::format(" of {} points", r.worst().size());
   if (n.interpolated > 0) text += fmt::format(" ({} of them interpolated)", n.interpolated);
   text += "\n";
   const MapPoint* fastest = nullptr;
-  for (const MapPoint& p : r.worst) {
+  for (const MapPoint& p : r.worst()) {
     if (!missing(p) && (fastest == nullptr || p.growth_rate > fastest->growth_rate)) fastest = &p;
   }
   if (fastest != nullptr) {
-    const auto place = static_cast<std::size_t>(fastest - r.worst.data());
+    const auto place = static_cast<std::size_t>(fastest - r.worst().data());
     text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {}\n", fastest->growth_rate,
                         document.scene.units.time, growth_per_turn(*fastest), linkage ? "turn" : "period",
                         place_text(r.x()[place % r.x().size()], r.y()[place / r.x().size()]));

@@ -7,6 +7,7 @@
 
 #include "hb/analysis/map_task.hpp"
 #include "tools/output/csv_output.hpp"
+#include "tools/output/long_text.hpp"
 
 namespace hb::tools {
 
@@ -23,13 +24,15 @@ struct MapDocument {
 
 // "UNSTABLE at 19 % of the points because of AB", "stable at all points".
 [[nodiscard]] std::string map_verdict(const MapDocument& document);
-// The document as text, and as values.
+// The document in pieces, as text, and as values.
+void write_map(const MapDocument& document, const TextSink& sink);
 [[nodiscard]] std::string map_text(const MapDocument& document);
 [[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
 
 // x, y, growth (1/time, per turn, tenfold time), verdict (1 unstable, 0 undecided, -1 stable), interpolated (0, 1),
 // then growth of each rod; NaN where there is no system.
 [[nodiscard]] CsvFile map_grid_csv(const MapDocument& document);
+void write_map_grid(const MapDocument& document, const TextSink& sink);
 // Curve, rod (from 1), kind (1, -1, 0 complex), x, y, error; a row of NaN between curves.
 [[nodiscard]] CsvFile map_boundary_csv(const MapDocument& document, const std::vector<RodCurve>& curves,
                                        const std::string& name, const std::string& what);

@@ -12,7 +12,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "tools/output/printable.hpp"
 #include "tools/work/errors.hpp"
@@ -33,23 +35,39 @@ fs::path make_temporary(const fs::path& parent, const fs::path& wanted) {
   return name;
 }
 
-void write_file(const fs::path& path, const std::string& text, const fs::path& wanted) {
-  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) refuse_output(wanted, std::strerror(errno));
-  const char* next = text.data();
-  std::size_t left = text.size();
-  while (left > 0) {
-    const ssize_t written = ::write(file, next, left);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const int reason = errno;
-      close(file);
-      refuse_output(wanted, std::strerror(reason));
-    }
-    next += written;
-    left -= static_cast<std::size_t>(written);
+class WrittenFile {
+ public:
+  WrittenFile(const fs::path& path, fs::path wanted)
+      : wanted_(std::move(wanted)), file_(open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    if (file_ < 0) refuse_output(wanted_, std::strerror(errno));
   }
-  if (close(file) != 0) refuse_output(wanted, std::strerror(errno));
+  WrittenFile(const WrittenFile&) = delete;
+  WrittenFile& operator=(const WrittenFile&) = delete;
+  ~WrittenFile() {
+    if (file_ >= 0) close(file_);
+  }
+
+  void write(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t written = ::write(file_, text.data(), text.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) refuse_output(wanted_, std::strerror(errno));
+      text.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  void finish() {
+    if (close(std::exchange(file_, -1)) != 0) refuse_output(wanted_, std::strerror(errno));
+  }
+
+ private:
+  fs::path wanted_;
+  int file_;
+};
+
+void write_file(const fs::path& path, std::string_view text, const fs::path& wanted) {
+  WrittenFile file(path, wanted);
+  file.write(text);
+  file.finish();
 }
 
 bool is_plain(const fs::path& path) {
@@ -147,6 +165,17 @@ void OutputFolder::make_scratch() {
 void OutputFolder::write(const std::string& name, const std::string& text) {
   if (!scratch_) make_scratch();
   write_file(scratch_->path / name, with_provenance(name, text, origin_), folder_ / name);
+}
+
+void OutputFolder::write_long(const std::string& name, const LongText& text) {
+  if (!scratch_) make_scratch();
+  WrittenFile file(scratch_->path / name, folder_ / name);
+  bool begun = false;
+  text([&](std::string_view piece) {
+    begun ? file.write(piece) : file.write(with_provenance(name, std::string(piece), origin_));
+    begun = true;
+  });
+  file.finish();
 }
 
 void OutputFolder::drop(const std::string& name) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tools/output/folder_lock.hpp"
+#include "tools/output/long_text.hpp"
 #include "tools/output/provenance.hpp"
 #include "tools/work/interrupts.hpp"
 
@@ -33,6 +34,8 @@ class OutputFolder {
   const std::string& command() const { return command_; }
   // With its provenance. Throws OutputError when it does not reach the disk.
   void write(const std::string& name, const std::string& text);
+  // In pieces; the first one has the beginning that provenance is put into.
+  void write_long(const std::string& name, const LongText& text);
   // Moves what was written into its place: at once where there was no folder; else file by file, none of them half,
   // with a line on standard error that says what was replaced, removed or renamed. The first time, files of the earlier
   // run that are not written again go. May be repeated: what is written after it is the next stage.

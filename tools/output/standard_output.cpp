@@ -40,6 +40,12 @@ void print_out(const std::string& text) {
   if (!written && first_error == 0) first_error = errno != 0 ? errno : EIO;
 }
 
+void print_piece(std::string_view piece) {
+  errno = 0;
+  if (std::fwrite(piece.data(), 1, piece.size(), stdout) != piece.size() && first_error == 0)
+    first_error = errno != 0 ? errno : EIO;
+}
+
 int standard_output_error() {
   print_out("");
   return first_error;

@@ -58,7 +58,7 @@ Figure load_figure(const MapDocument& document, const MapFiles& files, const std
       fmt::format("'{}' using 1:2:(kind eq 'svg' ? NaN : {}) with image notitle", files.loads, value),
       fmt::format("'{}' using 1:2:({}) with image pixels notitle", files.loads, value)};
   const bool unstable = std::ranges::any_of(
-      r.worst, [](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == Verdict::unstable; });
+      r.worst(), [](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == Verdict::unstable; });
   if (unstable) {
     layers.push_back(
         fmt::format("'{}' using 1:2:(120):(120):(120):($6 == 1 ? 200 : 0) with rgbalpha pixels notitle", files.grid));

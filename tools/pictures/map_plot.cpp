@@ -46,7 +46,7 @@ struct ColourScale {
 // The range of the values where the verdict is the same everywhere.
 std::optional<std::array<double, 2>> one_sided_range(const MapDocument& document, bool per_turn) {
   double low = HUGE_VAL, high = -HUGE_VAL;
-  for (const MapPoint& p : document.result.worst) {
+  for (const MapPoint& p : document.result.worst()) {
     if (p.source == MapSource::missing) continue;
     if (p.verdict != Verdict::stable && p.verdict != Verdict::unstable) return std::nullopt;
     const double value = per_turn ? growth_per_turn(p) : p.growth_rate;
@@ -62,7 +62,7 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   const std::string time = document.scene.units.time;
   const bool per_turn = colour == MapColour::per_turn;
   std::vector<double> sizes;
-  for (const MapPoint& p : document.result.worst) {
+  for (const MapPoint& p : document.result.worst()) {
     if (p.source != MapSource::missing) sizes.push_back(std::abs(per_turn ? growth_per_turn(p) : p.growth_rate));
   }
   ColourScale result;
@@ -233,7 +233,7 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                                : "";
   const bool some_missing = !r.missing.empty();
   const auto some = [&](Verdict verdict) {
-    return std::any_of(r.worst.begin(), r.worst.end(),
+    return std::any_of(r.worst().begin(), r.worst().end(),
                        [&](const MapPoint& p) { return p.source != MapSource::missing && p.verdict == verdict; });
   };
   figure.commands = fmt::format(

@@ -193,9 +193,10 @@ void add_map(const TuneTask& task, const TuneResult& result, const Scene& scene,
     map.rods.push_back(tuned->rods[r].name);
     map.maps.push_back(grid_map(way, r, x, y, task.settings, work));
     const StabilityMap& own = map.maps.back();
-    if (map.worst.empty()) map.worst = own.points;
+    std::vector<MapPoint>& worst = map.worst_of_several;
+    if (worst.empty()) worst = own.points;
     for (std::size_t p = 0; p < own.points.size(); ++p)
-      if (own.points[p].growth_rate > map.worst[p].growth_rate) map.worst[p] = own.points[p];
+      if (own.points[p].growth_rate > worst[p].growth_rate) worst[p] = own.points[p];
   }
   constexpr double no_boundaries = 0;
   const MapDocument document{map, scene, tuned->rods.front().num_modes, no_boundaries};

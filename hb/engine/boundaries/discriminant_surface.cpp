@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 // Of the exponents that the discriminant is computed from.
 constexpr double exponent_tolerance = 1e-10;
-constexpr Index least_degree = 8, probed_degree = 48, spare_degrees = 3;
+constexpr Index least_degree = 8, probed_degree = 64, spare_degrees = 3;
 constexpr int most_halvings = 16, most_raises = 2, num_checks = 6;
 // What is left of the series, of value and limit: absolute, and relative to the largest value.
 constexpr double least_tail = 1e-11, relative_tail = 1e-13;

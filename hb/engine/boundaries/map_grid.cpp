@@ -1,14 +1,29 @@
 #include "hb/engine/boundaries/map_grid.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace hb {
 
+static_assert(sizeof(MapPoint) == 24, "a map of 1e7 points has 240 MB of them");
+
+float rounded_up(double error) {
+  const auto near = static_cast<float>(error);
+  return near < error ? std::nextafter(near, HUGE_VALF) : near;
+}
+
 MapPoint map_point(const StabilitySample& sample) {
   const Stability& s = sample.stability;
-  return {MapSource::evaluated,           sample.speed, s.growth_rate, s.growth_error, s.verdict,
-          boundary_kind(s, sample.speed), s.converged};
+  MapPoint point;
+  point.source = MapSource::evaluated;
+  point.verdict = s.verdict;
+  point.kind = boundary_kind(s, sample.speed);
+  point.converged = s.converged;
+  point.growth_error = rounded_up(s.growth_error);
+  point.speed = sample.speed;
+  point.growth_rate = s.growth_rate;
+  return point;
 }
 
 std::vector<MapPoint> map_grid(const MapMesh& mesh, const std::vector<std::optional<StabilitySample>>& samples) {
@@ -43,7 +58,7 @@ std::vector<MapPoint> map_grid(const MapMesh& mesh, const std::vector<std::optio
         if (corner[0].source == MapSource::missing) continue;
         point = corner[0];
         point.source = MapSource::interpolated;
-        point.growth_error = std::numeric_limits<double>::quiet_NaN();
+        point.growth_error = std::numeric_limits<float>::quiet_NaN();
         point.growth_rate = point.speed = 0;
         for (std::size_t k = 0; k < 4; ++k) {
           point.growth_rate += weight[k] * corner[k].growth_rate;

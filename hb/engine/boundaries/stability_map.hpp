@@ -1,6 +1,6 @@
 // Stability of one system over two of its parameters x, y: growth rate and verdict on a grid, and the curves where the
-// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (interval_search.hpp). With
-// one mode the discriminant, interpolated over the whole map, tells both (discriminant_surface.hpp).
+// verdict changes. Tongues that lie between grid lines are looked for along every cell's edges (interval_search.hpp).
+// With one mode the discriminant, interpolated over the whole map, tells both (discriminant_surface.hpp).
 #pragma once
 
 #include <array>
@@ -35,15 +35,20 @@ enum class MapSource {
   missing,  // no system here
 };
 
+// Maps have millions of these: 24 bytes.
 struct MapPoint {
-  MapSource source = MapSource::missing;
+  MapSource source : 8 = MapSource::missing;
+  Verdict verdict : 8 = Verdict::undecided;
+  BoundaryKind kind : 8 = BoundaryKind::complex;  // of the leading exponent
+  bool converged : 8 = false;
+  // 1/time, as that of exponents, rounded upwards; estimate where the discriminant tells, NaN where bilinear.
+  float growth_error = 0;
   double speed = 0;  // rad per unit time
   double growth_rate = 0;  // 1/time
-  double growth_error = 0;  // as that of exponents; estimate where the discriminant tells, NaN where bilinear
-  Verdict verdict = Verdict::undecided;
-  BoundaryKind kind = BoundaryKind::complex;  // of the leading exponent
-  bool converged = false;
 };
+
+// An error as a number of fewer digits that is not less.
+[[nodiscard]] float rounded_up(double error);
 
 struct StabilityMap {
   std::vector<double> x, y;

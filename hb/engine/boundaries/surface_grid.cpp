@@ -1,6 +1,7 @@
 #include "hb/engine/boundaries/surface_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lib/stop_wish.hpp"
 
@@ -12,17 +13,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MapPoint point_of(const DiscriminantSurface& surface, const DiscriminantValue& value) {
+MapPoint point_of(const DiscriminantSurface& surface, const DiscriminantValue& value, double tolerance) {
   MapPoint point;
   SettledGrowth growth;
   if (!settled(value, surface.undamped(), growth)) return point;
   point.source = MapSource::interpolated;
   point.speed = surface.speed_of(value);
   point.growth_rate = growth.growth_rate;
-  point.growth_error = growth.growth_error;
+  point.growth_error = rounded_up(growth.growth_error);
   point.verdict = growth.verdict;
   point.kind = growth.real ? surface.kind(value.value > 0) : BoundaryKind::complex;
-  point.converged = true;
+  point.converged = growth.growth_error <= tolerance * std::max(point.speed, std::abs(growth.growth_rate));
   return point;
 }
 
@@ -35,7 +36,7 @@ std::array<std::size_t, 2> inside(const std::vector<double>& values, double low,
 }  // namespace
 
 std::vector<MapPoint> surface_grid(const DiscriminantSurface& surface, const std::vector<double>& x,
-                                   const std::vector<double>& y, std::vector<std::size_t>& open) {
+                                   const std::vector<double>& y, double tolerance, std::vector<std::size_t>& open) {
   const std::size_t nx = x.size();
   std::vector<MapPoint> points(nx * y.size());
   constexpr std::size_t rows_at_once = 64;  // matrices that stay in the cache
@@ -55,8 +56,8 @@ std::vector<MapPoint> surface_grid(const DiscriminantSurface& surface, const std
       for (std::size_t j = first; j < last; ++j)
         for (std::size_t i = i0; i < i1; ++i) {
           const auto k = static_cast<Index>(i - i0), l = static_cast<Index>(j - first);
-          points[i + nx * j] =
-              point_of(surface, {value(k, l), 1, patch.error, damping(k, l), patch.damping_error, speed(k, l)});
+          points[i + nx * j] = point_of(
+              surface, {value(k, l), 1, patch.error, damping(k, l), patch.damping_error, speed(k, l)}, tolerance);
         }
     }
   }
@@ -65,8 +66,8 @@ std::vector<MapPoint> surface_grid(const DiscriminantSurface& surface, const std
   return points;
 }
 
-MapPoint surface_point(const DiscriminantSurface& surface, double x, double y) {
-  return point_of(surface, surface.at(x, y));
+MapPoint surface_point(const DiscriminantSurface& surface, double x, double y, double tolerance) {
+  return point_of(surface, surface.at(x, y), tolerance);
 }
 
 }  // namespace hb

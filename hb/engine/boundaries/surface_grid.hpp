@@ -10,11 +10,12 @@
 namespace hb {
 
 // At the places (x_i, y_j), x fastest. Those whose verdict or growth rate the surface does not settle are missing, and
-// their numbers are put into `open`.
+// their numbers are put into `open`. `tolerance`: of StabilityOptions, for what is called converged.
 [[nodiscard]] std::vector<MapPoint> surface_grid(const DiscriminantSurface& surface, const std::vector<double>& x,
-                                                 const std::vector<double>& y, std::vector<std::size_t>& open);
+                                                 const std::vector<double>& y, double tolerance,
+                                                 std::vector<std::size_t>& open);
 
 // At one place; missing where it is not settled.
-[[nodiscard]] MapPoint surface_point(const DiscriminantSurface& surface, double x, double y);
+[[nodiscard]] MapPoint surface_point(const DiscriminantSurface& surface, double x, double y, double tolerance);
 
 }  // namespace hb
