@@ -14,6 +14,8 @@ namespace {
 // The pair moves by this part of a turn at most from place to place: its half trace is sampled twice a period.
 constexpr double most_turns = 0.4;
 constexpr std::size_t fewest_nodes = 4;
+// From here on mean exponents do not tell how the others move, (B12).
+constexpr double strong_modulation = 0.1;
 // An interval is not divided more than three times for another exponent's sake.
 constexpr double most_too_far = 8;
 
@@ -61,6 +63,7 @@ Motion motion_between(const Place& p, const Place& q) {
     const MeanExponent &a = p.mean[n], &b = q.mean[n];
     pair = std::max(pair, std::abs((b.value - a.value).imag()));
     const auto [weak, strong] = std::minmax(a.modulation, b.modulation);
+    if (!(strong < strong_modulation)) return Motion::unknown;
     if (weak > 0) shift = std::max(shift, 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1));
     growth = std::min({growth, a.value.real(), b.value.real()});
   }
