@@ -3,17 +3,35 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <utility>
 
 #include "lib/constants.hpp"
 
 namespace hb {
+namespace {
+
+// N x n samples, until the thread's next transform of this size, at the angles 2 pi (j + shift)/N.
+Eigen::Map<const Eigen::MatrixXd> sampled(const FourierSeries& series, Eigen::Index N, double shift = 0) {
+  fourier::RealTransform& transform = fourier::thread_transform(N, series.num_components());
+  auto spectrum = transform.spectrum();
+  const Eigen::Index H = series.num_harmonics();
+  spectrum.bottomRows(spectrum.rows() - H - 1).setZero();
+  spectrum.topRows(H + 1) = series.c.transpose();
+  if (shift != 0)
+    for (Eigen::Index k = 1; k <= H; ++k)
+      spectrum.row(k) *= std::polar(1.0, two_pi * shift * static_cast<double>(k) / static_cast<double>(N));
+  transform.backward();
+  return {transform.samples().data(), N, series.num_components()};
+}
+
+}  // namespace
 
 Extremum largest_length(const FourierSeries& force) {
   if (force.num_harmonics() < 0) return {};
   if (force.num_components() == 1) return fourier::max_abs(force, 0);
   // Its square has twice the harmonics.
-  const Eigen::MatrixXd samples = fourier::synthesise(force, fourier::fast_length(4 * force.num_harmonics() + 4));
-  const Eigen::MatrixXd square = samples.colwise().squaredNorm();
+  const auto samples = sampled(force, fourier::fast_length(4 * force.num_harmonics() + 4));
+  const Eigen::MatrixXd square = samples.rowwise().squaredNorm().transpose();
   Extremum peak = fourier::range(fourier::analyse(square), 0).max;
   peak.value = std::sqrt(std::max(0.0, peak.value));
   return peak;
@@ -53,15 +71,20 @@ double mean_of_modulus(const FourierSeries& f) {
 // Mean length over the turn. Near a kink, where both components nearly vanish, it settles slowly with the samples.
 double mean_length(const FourierSeries& force) {
   if (force.num_components() == 1) return mean_of_modulus(force);
-  constexpr Eigen::Index most_per_harmonic = 64;
+  constexpr Eigen::Index fewest_per_harmonic = 8, most_per_harmonic = 64;
   constexpr double settled = 1e-12;
   const Eigen::Index H = std::max<Eigen::Index>(force.num_harmonics(), 16);
-  for (Eigen::Index per_harmonic = 8;; per_harmonic *= 2) {
-    const Eigen::Index N = fourier::fast_length(per_harmonic * H);
-    const Eigen::RowVectorXd length = fourier::synthesise(force, N).colwise().norm();
-    const double mean = length.mean(), of_half = length(Eigen::seqN(0, N / 2, 2)).mean();
-    if (std::abs(mean - of_half) <= settled * mean || per_harmonic >= most_per_harmonic) return mean;
+  const auto lengths = [&](Eigen::Index N, double shift) -> Eigen::ArrayXd {
+    return sampled(force, N, shift).rowwise().norm().array();
+  };
+  Eigen::Index N = fourier::fast_length(fewest_per_harmonic * H);
+  const Eigen::ArrayXd first = lengths(N, 0);
+  double of_half = first(Eigen::seqN(0, N / 2, 2)).mean(), mean = first.mean();
+  for (Eigen::Index per_harmonic = fewest_per_harmonic; per_harmonic < most_per_harmonic; per_harmonic *= 2, N *= 2) {
+    if (std::abs(mean - of_half) <= settled * mean) break;
+    of_half = std::exchange(mean, (mean + lengths(N, 0.5).mean()) / 2);
   }
+  return mean;
 }
 
 // Of the length, which is that of the components together: sum over all harmonics, both signs, of |c|^2.

@@ -22,6 +22,22 @@ std::mutex& planner_mutex() {
   return mutex;
 }
 
+// e^{i k tau}, k = 1, 2, ..., by multiplication, afresh every 16: 16 roundings at most.
+class Waves {
+ public:
+  explicit Waves(double tau) : tau_(tau), step_(std::polar(1.0, tau)) {}
+  std::complex<double> next() {
+    ++k_;
+    power_ = k_ % 16 == 0 ? std::polar(1.0, static_cast<double>(k_) * tau_) : power_ * step_;
+    return power_;
+  }
+
+ private:
+  double tau_;
+  std::complex<double> step_, power_ = 1;
+  Eigen::Index k_ = 0;
+};
+
 // e^{i k tau}-sums of one component: f, f', f'' at tau (real function from its half spectrum).
 struct Jet {
   double f, f1, f2;
@@ -29,13 +45,10 @@ struct Jet {
 
 Jet jet(const FourierSeries& series, Eigen::Index component, double tau) {
   Jet sum{series.c(component, 0).real(), 0, 0};
-  // e^{i k tau} by multiplication, afresh every 16 harmonics: 16 roundings at most.
-  const std::complex<double> step = std::polar(1.0, tau);
-  std::complex<double> power = 1;
+  Waves wave(tau);
   for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) {
     const double n = static_cast<double>(k);
-    power = k % 16 == 0 ? std::polar(1.0, n * tau) : power * step;
-    const std::complex<double> term = 2.0 * series.c(component, k) * power;
+    const std::complex<double> term = 2.0 * series.c(component, k) * wave.next();
     sum.f += term.real();
     sum.f1 -= n * term.imag();
     sum.f2 -= n * n * term.real();
@@ -108,6 +121,13 @@ Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eige
   return best;
 }
 
+// A power of two that brings the numbers to order one, where squares neither overflow nor vanish.
+template <class Numbers>
+double unit_of(const Numbers& numbers) {
+  const double part = std::max(numbers.real().cwiseAbs().maxCoeff(), numbers.imag().cwiseAbs().maxCoeff());
+  return part > 1e-290 && part < 1e290 ? std::ldexp(1, -std::ilogb(part)) : 1;
+}
+
 }  // namespace
 
 FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
@@ -144,8 +164,11 @@ FourierSeries derivative(const FourierSeries& series, int order) {
 
 Eigen::VectorXd evaluate(const FourierSeries& series, double tau) {
   Eigen::VectorXd sum = series.c.col(0).real();
-  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k)
-    sum += 2 * (series.c.col(k) * std::polar(1.0, static_cast<double>(k) * tau)).real();
+  Waves wave(tau);
+  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) {
+    const std::complex<double> factor = 2.0 * wave.next();
+    sum += factor.real() * series.c.col(k).real() - factor.imag() * series.c.col(k).imag();
+  }
   return sum;
 }
 
@@ -158,10 +181,7 @@ FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics) {
 
 Eigen::Index significant_harmonics(const FourierSeries& series, double relative) {
   if (series.c.size() == 0) return 0;
-  const double part = std::max(series.c.real().cwiseAbs().maxCoeff(), series.c.imag().cwiseAbs().maxCoeff());
-  // Squares of numbers of order one.
-  const double unit = part > 1e-290 ? 1 / part : 1;
-  const Eigen::VectorXd squares = (unit * series.c).cwiseAbs2().colwise().maxCoeff();
+  const Eigen::VectorXd squares = (unit_of(series.c) * series.c).cwiseAbs2().colwise().maxCoeff();
   const double floor = relative * relative * squares.maxCoeff();
   Eigen::Index H = series.num_harmonics();
   while (H > 0 && squares(H) <= floor) --H;
@@ -180,7 +200,10 @@ Extremum max_abs(const FourierSeries& series, Eigen::Index component) {
 }
 
 double wiener_norm(const FourierSeries& series, Eigen::Index component) {
-  return std::abs(series.c(component, 0)) + 2 * series.c.row(component).tail(series.num_harmonics()).cwiseAbs().sum();
+  const auto row = series.c.row(component);
+  const double unit = unit_of(row);
+  const double positive = (unit * row.tail(series.num_harmonics())).cwiseAbs2().cwiseSqrt().sum();
+  return (std::sqrt(std::norm(unit * row(0))) + 2 * positive) / unit;
 }
 
 class FftwPlans {

@@ -337,7 +337,8 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::Matri
   F.noalias() = (order == 0 ? table.deflection : table.curvature) * time;
   end_if_wished();
   const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
-  const double top = F.cwiseAbs().maxCoeff();
+  const Eigen::RowVectorXd highest = F.cwiseAbs().colwise().maxCoeff();
+  const double top = highest.maxCoeff();
   if (!(top > 0)) return {};
 
   struct Candidate {
@@ -346,6 +347,7 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::Matri
   };
   std::vector<Candidate> candidates;
   for (Eigen::Index j = 0; j < N; ++j) {
+    if (!(highest(j) >= 0.9 * top)) continue;
     const Eigen::Index before = j == 0 ? N - 1 : j - 1, after = j == N - 1 ? 0 : j + 1;
     for (Eigen::Index i = 1; i < num_x; ++i) {
       const double here = size(i, j);

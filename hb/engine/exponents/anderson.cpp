@@ -1,24 +1,63 @@
 #include "hb/engine/exponents/anderson.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
-#include "lib/dense.hpp"
+#include "lib/constants.hpp"
 
 namespace hb {
 
 using Eigen::Index;
 using Eigen::VectorXd;
 
+// min |f - dF gamma| by the normal equations of columns scaled to length 1, by Cholesky's method with the largest pivot
+// first; columns that depend on those before drop out.
+Anderson::Weights Anderson::weights(Index kept, const Weights& right) const {
+  std::array<Index, depth> order{};
+  Weights scale, solution = Weights::Zero(), y = Weights::Zero(), pivot = Weights::Ones();
+  Square L = Square::Zero();  // a row per column of dF; factors in the order of pivots
+  for (Index i = 0; i < kept; ++i) scale(i) = 1 / std::max(std::sqrt(gram_(i, i)), 1e-300);
+  std::array<bool, depth> taken{};
+  Index rank = 0;
+  for (; rank < kept; ++rank) {
+    Index next = -1;
+    for (Index i = 0; i < kept; ++i)
+      if (!taken[std::size_t(i)] && (next < 0 || pivot(i) > pivot(next))) next = i;
+    if (!(pivot(next) > double(depth) * eps)) break;
+    const double root = std::sqrt(pivot(next));
+    double sum = right(next) * scale(next);
+    for (Index p = 0; p < rank; ++p) sum -= L(next, p) * y(p);
+    y(rank) = sum / root;
+    L(next, rank) = root;
+    taken[std::size_t(next)] = true;
+    order[std::size_t(rank)] = next;
+    for (Index i = 0; i < kept; ++i) {
+      if (taken[std::size_t(i)]) continue;
+      double entry = gram_(i, next) * scale(i) * scale(next);
+      for (Index p = 0; p < rank; ++p) entry -= L(i, p) * L(next, p);
+      L(i, rank) = entry / root;
+      pivot(i) -= L(i, rank) * L(i, rank);
+    }
+  }
+  for (Index p = rank; p-- > 0;) {
+    double sum = y(p);
+    for (Index r = p + 1; r < rank; ++r) sum -= L(order[std::size_t(r)], p) * solution(order[std::size_t(r)]);
+    solution(order[std::size_t(p)]) = sum / L(order[std::size_t(p)], p);
+  }
+  return solution.cwiseProduct(scale);
+}
+
 VectorXd Anderson::step(const VectorXd& x, const VectorXd& f) {
   if (last_x_.size() > 0) {
     if (taken_ == 0) {
-      dx_.resize(x.size(), depth);
+      moved_.resize(x.size(), depth);
       df_.resize(x.size(), depth);
-      gram_.resize(depth, depth);
+      gram_.setZero();
     }
     const Index column = taken_++ % depth;
-    dx_.col(column) = x - last_x_;
     df_.col(column) = f - last_f_;
+    moved_.col(column) = (x - last_x_) + df_.col(column);
     const Index kept = std::min(taken_, depth);
     gram_.col(column).head(kept).noalias() = df_.leftCols(kept).transpose() * df_.col(column);
     gram_.row(column).head(kept) = gram_.col(column).head(kept).transpose();
@@ -28,13 +67,10 @@ VectorXd Anderson::step(const VectorXd& x, const VectorXd& f) {
   VectorXd next = x + f;
   const Index kept = std::min(taken_, depth);
   if (kept == 0) return next;
-  // min |f - dF gamma| by the normal equations of columns scaled to length 1; dependent ones drop out.
-  const auto dF = df_.leftCols(kept);
-  const VectorXd inverse = gram_.diagonal().head(kept).cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
-  const Eigen::MatrixXd gram = inverse.asDiagonal() * gram_.topLeftCorner(kept, kept) * inverse.asDiagonal();
-  const VectorXd right = inverse.asDiagonal() * (dF.transpose() * f);
-  const VectorXd gamma = inverse.cwiseProduct(dense::basic_least_squares(gram, right));
-  if (gamma.allFinite()) next.noalias() -= dx_.leftCols(kept) * gamma + dF * gamma;
+  Weights right = Weights::Zero();
+  right.head(kept).noalias() = df_.leftCols(kept).transpose() * f;
+  const Weights gamma = weights(kept, right);
+  if (gamma.allFinite()) next.noalias() -= moved_.leftCols(kept) * gamma.head(kept);
   return next;
 }
 

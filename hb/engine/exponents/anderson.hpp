@@ -13,8 +13,15 @@ class Anderson {
 
  private:
   static constexpr Eigen::Index depth = 8;
-  Eigen::MatrixXd dx_, df_;  // the last differences, a ring of columns; none before the second step
-  Eigen::MatrixXd gram_;  // df' df, of the columns taken so far
+  using Weights = Eigen::Matrix<double, depth, 1>;
+  using Square = Eigen::Matrix<double, depth, depth>;
+
+  // How much of each of the first `kept` columns is taken, from dF' f.
+  [[nodiscard]] Weights weights(Eigen::Index kept, const Weights& right) const;
+
+  // The last differences dx + df and df, a ring of columns; none before the second step.
+  Eigen::MatrixXd moved_, df_;
+  Square gram_;  // df' df, of the columns taken so far
   Eigen::VectorXd last_x_, last_f_;
   Eigen::Index taken_ = 0;
 };

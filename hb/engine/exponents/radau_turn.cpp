@@ -92,17 +92,27 @@ using Lane = Eigen::Array<double, lanes, 1>;
 // Above, the blocked kernels of one matrix at a time are faster.
 constexpr Index most_modes_in_lanes = 8;
 
-// e^{i k c_i h}, h = 2 pi/num_cells, at (i, k); kept per thread, since neighbouring points of a sweep use the same one.
-const Eigen::Array<cplx, stages, Eigen::Dynamic>& stage_shifts(Index num_cells, Index H) {
-  thread_local std::map<std::pair<Index, Index>, Eigen::Array<cplx, stages, Eigen::Dynamic>> kept;
+// e^{i k c_i h}, h = 2 pi/num_cells, at (k, i); kept per thread, since neighbouring points of a sweep use the same one.
+const Eigen::ArrayXXcd& stage_shifts(Index num_cells, Index H) {
+  thread_local std::map<std::pair<Index, Index>, Eigen::ArrayXXcd> kept;
   const auto key = std::pair(num_cells, H);
   if (const auto found = kept.find(key); found != kept.end()) return found->second;
   if (kept.size() > 64) kept.clear();
-  Eigen::Array<cplx, stages, Eigen::Dynamic> shifts(stages, H + 1);
-  for (Index k = 0; k <= H; ++k)
-    for (int i = 0; i < stages; ++i)
-      shifts(i, k) = std::polar(1.0, double(k) * two_pi * radau().c(i) / double(num_cells));
+  Eigen::ArrayXXcd shifts(H + 1, stages);
+  for (int i = 0; i < stages; ++i)
+    for (Index k = 0; k <= H; ++k)
+      shifts(k, i) = std::polar(1.0, double(k) * two_pi * radau().c(i) / double(num_cells));
   return kept.emplace(key, std::move(shifts)).first->second;
+}
+
+// Adds harmonic k, beyond those that N samples tell apart, to the one that it looks like at them.
+void fold(cplx c, Index k, Index N, cplx* spectrum) {
+  const Index r = k % N;
+  cplx& bin = spectrum[2 * r <= N ? r : N - r];
+  if (r == 0 || 2 * r == N)
+    bin += 2 * c.real();
+  else
+    bin += 2 * r < N ? c : std::conj(c);
 }
 
 // The series at the stage angles (n + c_i) h, row i num_cells + n, a column per component: per stage one Fourier
@@ -113,21 +123,16 @@ MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
   const auto& shifts = stage_shifts(N, H);
   fourier::RealTransform& transform = fourier::thread_transform(N, stages);
   MatrixXd values(stages * N, n);
+  const Index apart = std::min(H + 1, (N + 1) / 2);
+  Eigen::ArrayXcd own(H + 1), shifted(H + 1);
   for (Index q = 0; q < n; ++q) {
     auto spectrum = transform.spectrum();
-    spectrum.setZero();
-    for (Index k = 0; k <= H; ++k) {
-      const Index r = k % N;
-      const Eigen::Array<cplx, stages, 1> c = series.c(q, k) * shifts.col(k);
-      auto bin = spectrum.row(2 * r <= N ? r : N - r).transpose().array();
-      if (k == 0)
-        bin.real() += c.real();
-      else if (r == 0 || 2 * r == N)
-        bin.real() += 2 * c.real();
-      else if (2 * r < N)
-        bin += c;
-      else
-        bin += c.conjugate();
+    own = series.c.row(q).transpose();
+    for (Index i = 0; i < stages; ++i) {
+      shifted = own * shifts.col(i);
+      spectrum.col(i).head(apart) = shifted.head(apart);
+      spectrum.col(i).tail(spectrum.rows() - apart).setZero();
+      for (Index k = apart; k <= H; ++k) fold(shifted(k), k, N, &spectrum(0, i));
     }
     transform.backward();
     values.col(q) = transform.samples().reshaped();
@@ -338,6 +343,8 @@ TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index
     turn.in_lanes<1>();
   else if (num_modes == 2)
     turn.in_lanes<2>();
+  else if (num_modes == 4)
+    turn.in_lanes<4>();
   else if (num_modes <= most_modes_in_lanes)
     turn.in_lanes<Eigen::Dynamic>();
   else

@@ -93,7 +93,21 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
         const cplx factor = -1.0 / (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0));
         inverse_[slot(j, l, k)] << factor * A(1, 1), -factor * A(0, 1), -factor * A(1, 0), factor * A(0, 0);
       }
+  size_inverse();
   weigh_residuals();
+}
+
+void Iteration::size_inverse() {
+  const Eigen::Map<const Eigen::Matrix<cplx, 4, Eigen::Dynamic>> M(inverse_.data()->data(), 4, Index(inverse_.size()));
+  inverse_size_ = Eigen::Matrix2Xd(2, M.cols());
+  const Index each = n_ * (H_ + 1);
+  for (Index l = 0; l < m_; ++l) {
+    const auto of_l = M.middleCols(l * each, each);
+    const auto modulus = [&](Index row) { return of_l.row(row).cwiseAbs2().cwiseSqrt(); };
+    auto size = inverse_size_.middleCols(l * each, each);
+    size.row(0) = modulus(0) + weight_[std::size_t(l)] * modulus(1);
+    size.row(1) = modulus(2) + weight_[std::size_t(l)] * modulus(3);
+  }
 }
 
 // What a residual of the invariance equations does to alpha, hb/engine/README.md (E7): with the constant part's
@@ -108,14 +122,12 @@ void Iteration::weigh_residuals() {
       const Index q = j + n_ * l;
       gain.col(q).setZero();
       rate.col(q).setZero();
-      for (Index k = 0; k <= H_; ++k) {
-        const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
+      const auto size = inverse_sizes(j, l);
+      for (Index k = 0; k <= H_; ++k)
         for (Index c = 0; c < 2; ++c) {
-          const double size = modulus(M(0, c)) + weight_[std::size_t(l)] * modulus(M(1, c));
-          gain(c, q) = std::max(gain(c, q), size);
-          rate(c, q) = std::max(rate(c, q), size * (double(k) + weight_[std::size_t(l)]));
+          gain(c, q) = std::max(gain(c, q), size(c, k));
+          rate(c, q) = std::max(rate(c, q), size(c, k) * (double(k) + weight_[std::size_t(l)]));
         }
-      }
     }
   MatrixXd through = MatrixXd::Identity(n_, n_);  // 1 - g |K_FF| off the diagonal
   VectorXd direct = VectorXd::Zero(n_), damped = VectorXd::Zero(n_);
@@ -391,18 +403,19 @@ void Iteration::push_through(VectorXd& f) {
   for (Index l = 0; l < m_; ++l)
     for (Index j = 0; j < n_; ++j) {
       const Index q = j + n_ * l;
-      residual_.col(q).setZero();
+      double sum1 = 0, sum2 = 0;
       for (Index k = 0; k <= H_; ++k) {
         const double n = double(k);
         const cplx p = spectrum(k, q), r = spectrum(k, nm + q);
         const cplx r1 = spectrum(k, 2 * nm + q) + cplx(-n * p.imag(), n * p.real());
         const cplx r2 = spectrum(k, 3 * nm + q) + cplx(-n * r.imag(), n * r.real());
-        residual_(0, q) += (k > 0 ? 2 : 1) * modulus(r1);
-        residual_(1, q) += (k > 0 ? 2 : 1) * modulus(r2);
+        sum1 += (k > 0 ? 2 : 1) * modulus(r1);
+        sum2 += (k > 0 ? 2 : 1) * modulus(r2);
         const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
         data[q * 2 * (H_ + 1) + k] = M(0, 0) * r1 + M(0, 1) * r2;
         data[(q * 2 + 1) * (H_ + 1) + k] = weight_[std::size_t(l)] * (M(1, 0) * r1 + M(1, 1) * r2);
       }
+      residual_.col(q) << sum1, sum2;
     }
 }
 

@@ -15,13 +15,25 @@ namespace {
 // Nothing is taken to be carried by less than this part (a choice).
 constexpr double least_carried = 0.01;
 
-// exp(sum_m (z_m/m) y^m) = sum_d c_d y^d by c_d = sum_m z_m c_(d-m)/d; from each d on the largest, at most 1.
+// exp(sum_m (z_m/m) y^m) = sum_d c_d y^d by c_d = sum_m z_m c_(d-m)/d; from each d on the largest, at most 1. With
+// the last w of them at most l, all others at most L, and sum_m z_m l + sum_(m>w) z_m L <= d l, no later one is above
+// l.
 VectorXd carried_by(const VectorXd& z) {
   constexpr double most = 1e100;
   const Index H = z.size();
   VectorXd back = VectorXd::Zero(H + 1);  // c_H .. c_0
   back(H) = 1;
-  for (Index d = 1; d <= H; ++d) back(H - d) = std::min(z.head(d).dot(back.segment(H - d + 1, d)) / double(d), most);
+  const double sum = z.sum();
+  double largest = 1;  // of all c so far
+  Index small = 0;  // so many of the last c are
+  for (Index d = 1; d <= H; ++d) {
+    const double c = std::min(z.head(d).dot(back.segment(H - d + 1, d)) / double(d), most);
+    back(H - d) = c;
+    largest = std::max(largest, c);
+    small = c <= least_carried ? small + 1 : 0;
+    const double room = (double(d) - sum) * least_carried;
+    if (small > 0 && room >= 0 && z.tail(H - small).sum() * largest <= room) break;
+  }
   VectorXd c = back.reverse();
   for (Index d = H; d-- > 0;) c(d) = std::max(c(d), c(d + 1));
   return c.cwiseMin(1.0).cwiseMax(least_carried);
@@ -55,18 +67,18 @@ double Iteration::carried_change(const FourierSeries& alpha) {
       phase.head(own.size() - 1) = own.tail(own.size() - 1).cwiseAbs2().cwiseSqrt() / fast;
       for (Index s = 0; s < m_; ++s)
         phase += alpha.c.row(s + m_ * l).segment(1, H_).cwiseAbs2().cwiseSqrt().transpose() / weight_[std::size_t(l)];
+      const auto size = inverse_sizes(j, l);
       for (Index k = 0; k <= H_; ++k) {
         const cplx ik(0, double(k));
         r1(k) = modulus(spectrum(k, 2 * nm + q) + ik * spectrum(k, q));
         r2(k) = modulus(spectrum(k, 3 * nm + q) + ik * spectrum(k, nm + q));
-        const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
         const double rate = diagonal_damping_ ? 1 : double(k) + weight_[std::size_t(l)];
-        size1(k) = rate * (modulus(M(0, 0)) + weight_[std::size_t(l)] * modulus(M(1, 0)));
-        size2(k) = rate * (modulus(M(0, 1)) + weight_[std::size_t(l)] * modulus(M(1, 1)));
+        size1(k) = rate * size(0, k);
+        size2(k) = rate * size(1, k);
       }
       const VectorXd carried = carried_by(phase);
-      const auto add = [&](const VectorXd& r, const VectorXd& size, double effect) {
-        const VectorXd part = reached(size, carried) * (effect / size.maxCoeff());
+      const auto add = [&](const VectorXd& r, const VectorXd& gain, double effect) {
+        const VectorXd part = reached(gain, carried) * (effect / gain.maxCoeff());
         for (Index k = 0; k <= H_; ++k) {
           const double change = part(k) * r(k);
           sum += (k > 0 ? 2 : 1) * change;

@@ -37,14 +37,12 @@ double coupling(const Eigen::MatrixXd& A) {
 // Every matrix coefficient c_k becomes left * c_k * right.
 FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   const Eigen::Index I = left.rows();
-  FourierSeries result = matrices;
   if (is_diagonal(left) && is_diagonal(right)) {
-    for (Eigen::Index j = 0; j < I; ++j) {
-      end_if_wished();
-      for (Eigen::Index i = 0; i < I; ++i) result.c.row(i + I * j) *= left(i, i) * right(j, j);
-    }
-    return result;
+    const Eigen::MatrixXd factors = left.diagonal() * right.diagonal().transpose();
+    end_if_wished();
+    return FourierSeries(factors.reshaped().asDiagonal() * matrices.c);
   }
+  FourierSeries result = matrices;
   for (Eigen::Index k = 0; k < matrices.c.cols(); ++k) {
     end_if_wished();
     const Eigen::Map<const Eigen::MatrixXcd> coefficient(matrices.c.col(k).data(), I, I);
@@ -58,14 +56,14 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
 // mode whose own stiffness is small beside its couplings these count. Other modes' stiffnesses do not: they may be 1e20
 // times as large.
 FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
-  const Eigen::VectorXd each = K.c.cwiseAbs().rowwise().maxCoeff();
+  const Eigen::VectorXd each = K.c.cwiseAbs2().rowwise().maxCoeff().cwiseSqrt();
   const Eigen::Map<const Eigen::MatrixXd> largest(each.data(), I, I);
   const Eigen::VectorXd couplings = largest.rowwise().maxCoeff().cwiseMax(largest.colwise().maxCoeff().transpose());
   const Eigen::VectorXd scale = mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * 1e-8).cwiseSqrt();
   const auto negligible = [&](Eigen::Index k) {
     for (Eigen::Index j = 0; j < I; ++j)
       for (Eigen::Index i = 0; i < I; ++i)
-        if (!(std::abs(K.c(i + I * j, k)) <= 1e-17 * scale(i) * scale(j))) return false;
+        if (!(std::sqrt(std::norm(K.c(i + I * j, k))) <= 1e-17 * scale(i) * scale(j))) return false;
     return true;
   };
   Eigen::Index H = K.num_harmonics();
