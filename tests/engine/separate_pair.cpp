@@ -1,6 +1,7 @@
 // The leading pair of exponents and its interpolation against the trace of the turn's map, integrated here.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -118,6 +119,23 @@ TEST(SeparatePair, VerdictsBetweenPlacesAreThoseOfAFineGrid) {
       EXPECT_EQ(analyse_stability(system, speed).growth_rate > 0, unstable) << speed;
     }
   }
+}
+
+// A node 1e-9 of the interval beside the gap between two locks of opposite sign.
+TEST(SeparatePair, AGapBesideANodeIsLookedAt) {
+  constexpr double gap = 1e-9;
+  std::vector<PairNode> nodes;
+  for (const double x : {0.0, 1.0, 2.0, -1.0}) {
+    PairNode node;
+    node.x = x;
+    node.pair.mean = -1e-4;
+    node.pair.half_trace = 1e9 * (gap - x);
+    nodes.push_back(node);
+  }
+  const PairModel model(nodes);
+  const std::vector<double> places = model.telling();
+  EXPECT_TRUE(std::ranges::any_of(places, [&](double x) { return model.predicted(x) < 0; }));
+  EXPECT_TRUE(std::ranges::none_of(places, [](double x) { return x == 0 || x == 1; }));
 }
 
 }  // namespace

@@ -89,21 +89,21 @@ double PairModel::lowest(double x) const {
 }
 
 std::vector<double> PairModel::telling() const {
-  std::vector<double> places = probes(nodes_[0].x, nodes_[1].x), more;
+  std::vector<double> found = probes(nodes_[0].x, nodes_[1].x), places = found;
+  places.insert(places.end(), {nodes_[0].x, nodes_[1].x});
   std::ranges::sort(places);
   const auto c = [&](double x) { return at(x, half_trace_).value; };
   const auto size = [&](double x) { return std::abs(c(x)); };
   for (std::size_t k = 0; k + 1 < places.size(); ++k) {
     const double here = places[k], next = places[k + 1];
-    if ((c(here) > 0) != (c(next) > 0)) more.push_back(root(c, here, next));
+    if ((c(here) > 0) != (c(next) > 0)) found.push_back(root(c, here, next));
     if (k == 0) continue;
     const double before = places[k - 1];
-    if (size(here) >= size(before) && size(here) >= size(next)) more.push_back(largest(size, before, next));
+    if (size(here) >= size(before) && size(here) >= size(next)) found.push_back(largest(size, before, next));
     if (size(here) <= size(before) && size(here) <= size(next))
-      more.push_back(largest([&](double x) { return -size(x); }, before, next));
+      found.push_back(largest([&](double x) { return -size(x); }, before, next));
   }
-  places.insert(places.end(), more.begin(), more.end());
-  return places;
+  return found;
 }
 
 }  // namespace hb

@@ -14,10 +14,8 @@ namespace {
 // The pair moves by this part of a turn at most from place to place: its half trace is sampled twice a period.
 constexpr double most_turns = 0.4;
 constexpr std::size_t fewest_nodes = 4;
-// From here on mean exponents do not tell how the others move, (B12).
-constexpr double strong_modulation = 0.1;
-// An interval is not divided more than three times for another exponent's sake.
-constexpr double most_too_far = 8;
+// An interval is not divided more than once for another exponent's sake.
+constexpr double most_too_far = 2;
 
 // Without damping nothing is apart.
 bool is_apart(const std::optional<LeadingPair>& pair, Apart what, const StabilitySample& sample) {
@@ -50,29 +48,33 @@ std::array<std::size_t, 2> slowest(const std::vector<MeanExponent>& mean) {
   return {std::min(order[0], order[1]), std::max(order[0], order[1])};
 }
 
+// How far modulation may shift an exponent between two places, (B10) with |Im(s - mu)| <= 1/2.
+double grown_shift(const MeanExponent& a, const MeanExponent& b) {
+  const auto [weak, strong] = std::minmax(a.modulation, b.modulation);
+  if (weak == strong) return 0;
+  return 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1);
+}
+
 // Whether places are near enough to each other to show what happens between them: the pair moves by `most_turns` at
-// most, what its modulation may shift it included, and no other exponent moves against it by more than it decays
-// faster.
+// most, and no other exponent moves against it by more than it decays faster, both with what modulation may shift them.
 enum class Motion { unknown, too_far, followed };
 Motion motion_between(const Place& p, const Place& q) {
   if (p.mean.size() != q.mean.size() || p.mean.size() < 2) return Motion::unknown;
   const std::array<std::size_t, 2> slow = slowest(p.mean);
   if (slow[0] == slow[1] || slow != slowest(q.mean)) return Motion::unknown;
-  double pair = 0, shift = 0, growth = HUGE_VAL;
+  const auto moved = [&](std::size_t n) {
+    return std::abs((q.mean[n].value - p.mean[n].value).imag()) + grown_shift(p.mean[n], q.mean[n]);
+  };
+  double pair = 0, growth = HUGE_VAL;
   for (const std::size_t n : slow) {
-    const MeanExponent &a = p.mean[n], &b = q.mean[n];
-    pair = std::max(pair, std::abs((b.value - a.value).imag()));
-    const auto [weak, strong] = std::minmax(a.modulation, b.modulation);
-    if (!(strong < strong_modulation)) return Motion::unknown;
-    if (weak > 0) shift = std::max(shift, 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1));
-    growth = std::min({growth, a.value.real(), b.value.real()});
+    pair = std::max(pair, moved(n));
+    growth = std::min({growth, p.mean[n].value.real(), q.mean[n].value.real()});
   }
-  double far = (pair + shift) / most_turns;
+  double far = pair / most_turns;
   for (std::size_t n = 0; n < p.mean.size(); ++n) {
     if (n == slow[0] || n == slow[1]) continue;
-    const std::complex<double> a = p.mean[n].value, b = q.mean[n].value;
-    const double faster = growth - std::max(a.real(), b.real());
-    far = std::max(far, (std::abs((b - a).imag()) + pair) / std::max(faster, 1e-300));
+    const double faster = growth - std::max(p.mean[n].value.real(), q.mean[n].value.real());
+    far = std::max(far, (moved(n) + pair) / std::max(faster, 1e-300));
   }
   return far <= 1 ? Motion::followed : far <= most_too_far ? Motion::too_far : Motion::unknown;
 }
