@@ -1,5 +1,9 @@
-// Radix-4 butterfly, decimation in frequency, in split form; V: a number or numbers of several columns side by side.
+// Butterflies of radix 4 and 3, decimation in frequency, in split form; V: a number or numbers of several columns side
+// by side.
 #pragma once
+
+#include <cstddef>
+#include <numbers>
 
 namespace hb::fourier {
 
@@ -18,6 +22,23 @@ inline Butterfly<V> butterfly(V ar, V ai, V br, V bi, V cr, V ci, V dr, V di, do
   const V ur = qr + ti, ui = qi - tr, vr = pr - rr, vi = pi - ri, xr = qr - ti, xi = qi + tr;
   return {pr + rr,           pi + ri,           c1 * ur + s1 * ui, c1 * ui - s1 * ur,
           c2 * vr + s2 * vi, c2 * vi - s2 * vr, c3 * xr + s3 * xi, c3 * xi - s3 * xr};
+}
+
+// The last pass: no twiddles are left. From s numbers each at 0, s, 2 s of `re`, `im` to those of `y`, `z`.
+template <class In, class Out>
+inline void last_radix_3(std::size_t s, In re, In im, Out y, Out z) {
+  constexpr double half_root_3 = std::numbers::sqrt3 / 2;
+  for (std::size_t q = 0; q < s; ++q) {
+    const auto sr = re[q + s] + re[q + 2 * s], si = im[q + s] + im[q + 2 * s];
+    const auto dr = half_root_3 * (re[q + s] - re[q + 2 * s]), di = half_root_3 * (im[q + s] - im[q + 2 * s]);
+    const auto mr = re[q] - 0.5 * sr, mi = im[q] - 0.5 * si;
+    y[q] = re[q] + sr;
+    z[q] = im[q] + si;
+    y[q + s] = mr + di;
+    z[q + s] = mi - dr;
+    y[q + 2 * s] = mr - di;
+    z[q + 2 * s] = mi + dr;
+  }
 }
 
 }  // namespace hb::fourier

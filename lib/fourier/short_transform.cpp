@@ -120,22 +120,6 @@ void radix_2(size_t m, size_t s, In re, In im, In w, Out y, Out z) {
     radix_2_at(s, s * m, re + s * p, im + s * p, w[p], w[p + m], y + 2 * s * p, z + 2 * s * p);
 }
 
-// The last pass: no twiddles are left.
-void last_radix_3(size_t s, In re, In im, Out y, Out z) {
-  constexpr double half_root_3 = std::numbers::sqrt3 / 2;
-  for (size_t q = 0; q < s; ++q) {
-    const double sr = re[q + s] + re[q + 2 * s], si = im[q + s] + im[q + 2 * s];
-    const double dr = half_root_3 * (re[q + s] - re[q + 2 * s]), di = half_root_3 * (im[q + s] - im[q + 2 * s]);
-    const double mr = re[q] - 0.5 * sr, mi = im[q] - 0.5 * si;
-    y[q] = re[q] + sr;
-    z[q] = im[q] + si;
-    y[q + s] = mr + di;
-    z[q + s] = mi - dr;
-    y[q + 2 * s] = mr - di;
-    z[q + 2 * s] = mi + dr;
-  }
-}
-
 // Even and odd places apart, and back.
 void split(size_t M, In samples, Out re, Out im) {
   for (size_t j = 0; j < M; ++j) {

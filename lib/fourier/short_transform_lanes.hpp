@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 #include <new>
-#include <numbers>
 #include <utility>
 
 #include "lib/fourier/butterfly.hpp"
@@ -99,21 +98,6 @@ inline void radix_2(size_t m, size_t s, const Vector* re, const Vector* im, cons
     }
 }
 
-inline void last_radix_3(size_t s, const Vector* re, const Vector* im, Vector* y, Vector* z) {
-  constexpr double half_root_3 = std::numbers::sqrt3 / 2;
-  for (size_t q = 0; q < s; ++q) {
-    const Vector sr = re[q + s] + re[q + 2 * s], si = im[q + s] + im[q + 2 * s];
-    const Vector dr = half_root_3 * (re[q + s] - re[q + 2 * s]), di = half_root_3 * (im[q + s] - im[q + 2 * s]);
-    const Vector mr = re[q] - 0.5 * sr, mi = im[q] - 0.5 * si;
-    y[q] = re[q] + sr;
-    z[q] = im[q] + si;
-    y[q + s] = mr + di;
-    z[q + s] = mi - dr;
-    y[q + 2 * s] = mr - di;
-    z[q + 2 * s] = mi + dr;
-  }
-}
-
 // Calls all(first column, how many) as often as is worth it, at most `width` at once; returned is how many are done.
 template <class All>
 std::size_t in_lanes(std::size_t N, std::size_t columns, const All& all) {
@@ -150,7 +134,7 @@ struct ShortTransform::Lanes {
       else if (pass.radix == 2)
         lanes::radix_2(m, s, re, im, w, y, z);
       else
-        lanes::last_radix_3(s, re, im, y, z);
+        last_radix_3(s, re, im, y, z);
       std::swap(from, to);
     }
     return from;

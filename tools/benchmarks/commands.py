@@ -3,12 +3,10 @@ results/benchmarks/commands.csv (with --only: prints those that contain WORD). H
 `release`. In the same run: a dense Hill solution, shooting with SUNDIALS CVODE, Eigen's product of matrices, and AUTO-07p
 where it is installed."""
 
-import argparse
-import pathlib
 import subprocess
 
 from auto_07p import MESHES, Mathieu, installed
-from whole_commands import claims, commit, flags_of, in_turn, number, processor, root, say
+from whole_commands import asked_of_a_table, claims, in_turn, number, root, say, write_table
 
 SIX, MATHIEU = "results/six_link/scene.toml", "results/mathieu/scene.toml"
 PLANE = f"{MATHIEU} --x omega=0.5:3:1000 --y hill.stiffness.1.cos.0.0=0.05:1:1000"
@@ -77,19 +75,12 @@ def yardstick_rows(asked):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("hb", nargs="?", default=root / "build" / "release" / "bin" / "hb", type=pathlib.Path)
-    parser.add_argument("--runs", type=int, default=7)
-    parser.add_argument("--only", default="")
-    asked = parser.parse_args()
-    hb = asked.hb.resolve()
-    lines = [f"# {processor()}; {commit()}; {flags_of(hb.parent.parent)}; processor seconds of one thread, smallest of the runs; spread: largest over smallest - 1",
-             "command,answers,seconds,spread,runs,milliseconds an answer,peak MB,claimed error of q,of growth rates [1/time],of ends and boundaries,remark",
-             *yardstick_rows(asked), *command_rows(hb, asked), *auto_rows(hb, asked)]
-    if asked.only:
-        print("\n".join(lines))
-    else:
-        (root / "results" / "benchmarks" / "commands.csv").write_text("\n".join(lines) + "\n")
+    asked = asked_of_a_table(runs=7)
+    write_table("commands.csv", asked,
+                "processor seconds of one thread, smallest of the runs; spread: largest over smallest - 1",
+                "command,answers,seconds,spread,runs,milliseconds an answer,peak MB,claimed error of q,of growth rates [1/time],"
+                "of ends and boundaries,remark",
+                [*yardstick_rows(asked), *command_rows(asked.hb, asked), *auto_rows(asked.hb, asked)])
 
 
 if __name__ == "__main__":

@@ -4,13 +4,12 @@
 Processor seconds are the smallest of the runs. Threads and ranks are a matter of the clock: those rows ask the system for
 the cores before all other programs (`chrt --rr 1`, allowed to root), and are left out where it refuses."""
 
-import argparse
 import os
 import pathlib
 import shutil
 import subprocess
 
-from whole_commands import Run, claims, commit, flags_of, in_turn, number, processor, root, say
+from whole_commands import Run, asked_of_a_table, claims, in_turn, number, root, say, write_table
 
 SIX, MATHIEU = "results/six_link/scene.toml", "results/mathieu/scene.toml"
 SWEEP = f"sweep {SIX} --json --no-plots"
@@ -94,21 +93,13 @@ def together_rows(hb, asked):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("hb", nargs="?", default=root / "build" / "release" / "bin" / "hb", type=pathlib.Path)
-    parser.add_argument("--runs", type=int, default=5)
-    parser.add_argument("--only", default="")
-    asked = parser.parse_args()
-    hb = asked.hb.resolve()
-    lines = [f"# {processor()}; {commit()}; {flags_of(hb.parent.parent)}; processor seconds, smallest of the runs; of threads and ranks the clock's, "
-             "before all other programs; milliseconds: of what counts in that row",
-             "along,how many,answers,times as fast as one thread,processor seconds,spread,seconds by the clock,milliseconds an answer,peak MB,"
-             "claimed error of q,of growth rates [1/time],of ends and boundaries,command",
-             *one_thread_rows(hb, asked), *together_rows(hb, asked)]
-    if asked.only:
-        print("\n".join(lines))
-    else:
-        (root / "results" / "benchmarks" / "scale.csv").write_text("\n".join(lines) + "\n")
+    asked = asked_of_a_table(runs=5)
+    write_table("scale.csv", asked,
+                "processor seconds, smallest of the runs; of threads and ranks the clock's, before all other programs; "
+                "milliseconds: of what counts in that row",
+                "along,how many,answers,times as fast as one thread,processor seconds,spread,seconds by the clock,"
+                "milliseconds an answer,peak MB,claimed error of q,of growth rates [1/time],of ends and boundaries,command",
+                [*one_thread_rows(asked.hb, asked), *together_rows(asked.hb, asked)])
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ Programs that are compared run in turn, so that a busy machine slows both alike;
 program and of the kernel for it, never the clock's. The smallest of several runs stands for a command, and beside it the
 spread (largest over smallest - 1)."""
 
+import argparse
 import json
 import math
 import os
@@ -138,7 +139,27 @@ def flags_of(build):
     value = lambda name: next((v for k, v in cache.items() if k.startswith(name + ":")), "")
     compiler = subprocess.run([value("CMAKE_CXX_COMPILER"), "-dumpfullversion"], capture_output=True, text=True).stdout.strip()
     return (f"{pathlib.Path(value('CMAKE_CXX_COMPILER')).name} {compiler} {value('CMAKE_CXX_FLAGS_RELEASE')}"
-            f"{' -march=native' if value('HB_NATIVE') == 'ON' else ''}")
+            f"{'' if value('HB_NATIVE') != 'ON' else ' -march=x86-64-v3' if value('HB_AVX512') == 'OFF' else ' -march=native'}")
+
+
+def asked_of_a_table(runs):
+    """What the writer of a table is called with: the command, how often, which rows."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("hb", nargs="?", default=root / "build" / "release" / "bin" / "hb", type=pathlib.Path)
+    parser.add_argument("--runs", type=int, default=runs)
+    parser.add_argument("--only", default="")
+    asked = parser.parse_args()
+    asked.hb = asked.hb.resolve()
+    return asked
+
+
+def write_table(name, asked, about, columns, rows):
+    """Into results/benchmarks; a part of the rows to standard output."""
+    lines = [f"# {processor()}; {commit()}; {flags_of(asked.hb.parent.parent)}; {about}", columns, *rows]
+    if asked.only:
+        print("\n".join(lines))
+    else:
+        (root / "results" / "benchmarks" / name).write_text("\n".join(lines) + "\n")
 
 
 def say(text):

@@ -1,26 +1,28 @@
 // Values of long arrays as JSON, straight into a text.
 #pragma once
 
-#include <array>
+#include <fmt/format.h>
+
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <iterator>
 #include <string>
-#include <type_traits>
 
 namespace hb::tools {
 
-// As a document has it, as many digits as the type has; null where it is not finite.
-template <class Number>
-requires std::is_floating_point_v<Number>
+// The fewest digits that are this number of this type, with a point or an exponent, as in the rest of a document; null
+// where it is not finite.
+template <std::floating_point Number>
 void append(std::string& text, Number value) {
   if (!std::isfinite(value)) {
     text += "null";
     return;
   }
-  std::array<char, 64> digits;
-  text.append(digits.data(), nlohmann::detail::to_chars(digits.data(), digits.data() + digits.size(), value));
+  const std::size_t begin = text.size();
+  fmt::format_to(std::back_inserter(text), "{}", value);
+  if (text.find_first_of(".e", begin) == std::string::npos) text += ".0";
 }
 
 inline void append(std::string& text, const char* word) {
@@ -29,14 +31,15 @@ inline void append(std::string& text, const char* word) {
   text += '"';
 }
 
-inline void append(std::string& text, int value) { text += value == 0 ? '0' : '1'; }
+// 1 or 0.
+inline void append(std::string& text, std::same_as<bool> auto yes) { text += yes ? '1' : '0'; }
 
 // Neighbours often have the same number.
 class RepeatedDigits {
  public:
   template <class Number>
   void append_to(std::string& text, Number value) {
-    if constexpr (std::is_floating_point_v<Number>) {
+    if constexpr (std::floating_point<Number>) {
       if (digits_.empty() || std::bit_cast<std::uint64_t>(double(value)) != bits_) {
         digits_.clear();
         append(digits_, value);

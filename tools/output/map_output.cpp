@@ -198,7 +198,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   if (document.boundaries) json.add("boundary_tolerance", document.tolerance);
   add_grids(json, first, r.worst());
   json.add_grid("interpolated", first, r.worst(),
-                [](const MapPoint& p) { return int(p.source == MapSource::interpolated); });
+                [](const MapPoint& p) { return p.source == MapSource::interpolated; });
   json.add_grid("growth_per_turn", first, r.worst(), growth_per_turn);
   if (document.boundaries) json.add("boundaries", curves_json(r, r.boundaries));
   Members rods;
