@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 
+#include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "tests/support/long_double_floquet.hpp"
 
@@ -100,6 +101,16 @@ TEST(Slaving, AModeInResonanceWithTheKeptOneIsRefused) {
   Eigen::Index strongest = -1;
   EXPECT_GT(resonance_strength(scaled, std::array<Eigen::Index, 1>{0}).maxCoeff(&strongest), 1e-3);
   EXPECT_EQ(strongest, 1);
+}
+
+// Of n unknowns n secants say all: long before the window is full.
+TEST(Slaving, MixingSolvesLinearEquationsInAsManySteps) {
+  const Eigen::Matrix3d A = (Eigen::Matrix3d() << 3, 1, 0, -1, 2, 0.5, 0, 0.5, 4).finished();
+  const Eigen::Vector3d b(1, 2, 3);
+  Anderson anderson;
+  Eigen::VectorXd x = Eigen::Vector3d::Zero();
+  for (int step = 0; step < 4; ++step) x = anderson.step(x, b - A * x);
+  EXPECT_LT((A * x - b).norm(), 1e-12);
 }
 
 }  // namespace

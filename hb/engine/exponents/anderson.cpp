@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 // first; columns that depend on those before drop out.
 Anderson::Weights Anderson::weights(Index kept, const Weights& right) const {
   std::array<Index, depth> order{};
-  Weights scale, solution = Weights::Zero(), y = Weights::Zero(), pivot = Weights::Ones();
+  Weights scale = Weights::Zero(), solution = scale, y = scale, pivot = Weights::Ones();
   Square L = Square::Zero();  // a row per column of dF; factors in the order of pivots
   for (Index i = 0; i < kept; ++i) scale(i) = 1 / std::max(std::sqrt(gram_(i, i)), 1e-300);
   std::array<bool, depth> taken{};
