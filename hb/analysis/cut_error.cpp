@@ -1,6 +1,5 @@
 #include "hb/analysis/cut_error.hpp"
 
-#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -25,9 +24,7 @@ CutError cut_error(const Body& link, const RodCoefficients& rod, double speed, c
   // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic.
   const Eigen::Index num_x = std::max<Eigen::Index>(33, 4 * finer.num_components() + 1);
   const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
-  // A power of two, whose transform is planned at once.
-  const auto num_samples =
-      static_cast<Eigen::Index>(std::bit_ceil(static_cast<std::size_t>(4 * std::max<Eigen::Index>(16, harmonics))));
+  const Eigen::Index num_samples = fourier::fast_length(4 * std::max<Eigen::Index>(16, harmonics));
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
   const RodField coarse = rod_field(link, rod, speed, q, x, num_samples);
   end_if_wished();

@@ -74,7 +74,9 @@ Extremum refined(const FourierSeries& series, Eigen::Index component, double tau
     tau += move;
     here = jet(series, component, tau);
     if (sign * here.f >= sign * best.value) best = {here.f, wrapped(tau)};
-    if (std::abs(move) < 1e-12) break;
+    // The error is squared by each step, so that nothing is left to gain.
+    constexpr double small = 1e-8;
+    if (std::abs(move) < small) break;
   }
   return best;
 }
@@ -82,8 +84,8 @@ Extremum refined(const FourierSeries& series, Eigen::Index component, double tau
 // f and f'' of one component on a fine grid, a column each.
 Eigen::Map<const Eigen::MatrixXd> fine_samples(const FourierSeries& series, Eigen::Index component) {
   // 8 points per shortest wave: the parabola through a sample extremum then leads Newton to the right one.
-  Eigen::Index N = 64;
-  while (N < 8 * (series.num_harmonics() + 1)) N *= 2;
+  constexpr Eigen::Index fewest = 64;
+  const Eigen::Index N = fast_length(std::max(8 * (series.num_harmonics() + 1), fewest));
   RealTransform& transform = thread_transform(N, 2);
   auto spectrum = transform.spectrum();
   spectrum.setZero();
@@ -121,6 +123,21 @@ Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eige
   return best;
 }
 
+// to = from^T in tiles of a cache line: columns whose distance is a power of two would drive each other out of the
+// cache.
+template <class From, class To>
+void transpose(const From& from, To&& to) {
+  constexpr Eigen::Index tile = 8;
+  for (Eigen::Index first = 0; first < from.rows(); first += tile) {
+    const Eigen::Index count = std::min(tile, from.rows() - first);
+    if (from.cols() == 1)
+      to.row(0).segment(first, count) = from.col(0).segment(first, count).transpose();
+    else
+      for (Eigen::Index j = 0; j < from.cols(); ++j)
+        for (Eigen::Index i = first; i < first + count; ++i) to(j, i) = from(i, j);
+  }
+}
+
 // A power of two that brings the numbers to order one, where squares neither overflow nor vanish.
 template <class Numbers>
 double unit_of(const Numbers& numbers) {
@@ -134,10 +151,10 @@ FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
   const Eigen::Index n = samples.rows(), N = samples.cols();
   if (N < 1) throw std::invalid_argument("fourier::analyse: no samples");
   RealTransform& transform = thread_transform(N, n);
-  transform.samples() = samples.transpose();
+  transpose(samples, transform.samples());
   transform.forward();
   FourierSeries series(n, (N - 1) / 2);
-  series.c = transform.spectrum().topRows(series.num_harmonics() + 1).transpose();
+  transpose(transform.spectrum().topRows(series.num_harmonics() + 1), series.c);
   return series;
 }
 
@@ -146,18 +163,26 @@ Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples
   if (num_samples < 2 * H + 1) throw std::invalid_argument("fourier::synthesise: fewer samples than 2H+1");
   RealTransform& transform = thread_transform(num_samples, series.num_components());
   auto spectrum = transform.spectrum();
-  spectrum.setZero();
-  spectrum.topRows(H + 1) = series.c.transpose();
+  spectrum.bottomRows(spectrum.rows() - H - 1).setZero();
+  transpose(series.c, spectrum.topRows(H + 1));
   transform.backward();
-  return transform.samples().transpose();
+  Eigen::MatrixXd samples(series.num_components(), num_samples);
+  transpose(transform.samples(), samples);
+  return samples;
 }
 
 FourierSeries derivative(const FourierSeries& series, int order) {
-  FourierSeries result = series;
+  FourierSeries result(series.num_components(), series.num_harmonics());
+  const double sign = order % 4 < 2 ? 1 : -1;  // of i^order, or of i^(order - 1)
   for (Eigen::Index k = 0; k <= series.num_harmonics(); ++k) {
-    std::complex<double> factor = 1;
-    for (int j = 0; j < order; ++j) factor *= std::complex<double>(0, static_cast<double>(k));
-    result.c.col(k) *= factor;
+    double factor = sign;
+    for (int j = 0; j < order; ++j) factor *= static_cast<double>(k);
+    if (order % 2 == 0) {
+      result.c.col(k) = factor * series.c.col(k);
+    } else {
+      result.c.col(k).real() = -factor * series.c.col(k).imag();
+      result.c.col(k).imag() = factor * series.c.col(k).real();
+    }
   }
   return result;
 }

@@ -182,10 +182,10 @@ FourierSeries coefficients_at(const RodCoefficients& rod, double speed) {
   return sum;
 }
 
-Eigen::Index power_of_two_from(Eigen::Index N) {
-  Eigen::Index power = 64;
-  while (power < N) power *= 2;
-  return power;
+// Angles that transforms are fast for.
+Eigen::Index angles_from(Eigen::Index N) {
+  constexpr Eigen::Index fewest = 64;
+  return fourier::fast_length(std::max(N, fewest));
 }
 
 // The time functions beside the shapes of the deflection, in their order.
@@ -193,7 +193,7 @@ FourierSeries time_functions(const Body& link, const RodCoefficients& rod, doubl
   const Eigen::Index I = q.num_components();
   const FourierSeries f = coefficients_at(rod, speed);
   const Eigen::Index H = q.num_harmonics() + f.num_harmonics();
-  const Eigen::Index N = power_of_two_from(2 * H + 2);
+  const Eigen::Index N = angles_from(2 * H + 2);
   const Eigen::MatrixXd f_samples = fourier::synthesise(f, N), q_samples = fourier::synthesise(q, N);
   end_if_wished();
   Eigen::MatrixXd products(2 * I, N);
@@ -381,7 +381,7 @@ RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, c
   const double l = link.length;
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l);  // 8 a wave
   const auto sampled = [](const FourierSeries& T) {
-    return fourier::synthesise(T, power_of_two_from(8 * (T.num_harmonics() + 1)));
+    return fourier::synthesise(T, angles_from(8 * (T.num_harmonics() + 1)));
   };
   const FourierSeries T = time_functions(link, rod, speed, q);
   const Eigen::MatrixXd time = sampled(T);
@@ -407,7 +407,7 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
       (moment ? link.elastic->youngs_modulus * link.elastic->second_moment : 1.0) *
       RodShapes(link.length, I, moment ? 0 : shear_flexibility(link)).values(x, moment ? 2 : 0);
   const FourierSeries f = coefficients_at(rod, speed);
-  const Eigen::Index H = num_harmonics + f.num_harmonics(), N = power_of_two_from(2 * H + 2);
+  const Eigen::Index H = num_harmonics + f.num_harmonics(), N = angles_from(2 * H + 2);
   FourierSeries W(1, H), delta(1, num_harmonics);
   for (Eigen::Index n = 0; n <= H; ++n) {
     const Complex wave = std::polar(1.0, -static_cast<double>(n) * crank_angle);

@@ -93,21 +93,10 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
         const cplx factor = -1.0 / (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0));
         inverse_[slot(j, l, k)] << factor * A(1, 1), -factor * A(0, 1), -factor * A(1, 0), factor * A(0, 0);
       }
-  size_inverse();
+  const auto moduli = Eigen::Map<const Eigen::VectorXcd>(inverse_.data()->data(), 4 * Index(inverse_.size()));
+  inverse_moduli_.resize(4, Index(inverse_.size()));
+  inverse_moduli_.reshaped() = moduli.cwiseAbs2().cwiseSqrt();
   weigh_residuals();
-}
-
-void Iteration::size_inverse() {
-  const Eigen::Map<const Eigen::Matrix<cplx, 4, Eigen::Dynamic>> M(inverse_.data()->data(), 4, Index(inverse_.size()));
-  inverse_size_ = Eigen::Matrix2Xd(2, M.cols());
-  const Index each = n_ * (H_ + 1);
-  for (Index l = 0; l < m_; ++l) {
-    const auto of_l = M.middleCols(l * each, each);
-    const auto modulus = [&](Index row) { return of_l.row(row).cwiseAbs2().cwiseSqrt(); };
-    auto size = inverse_size_.middleCols(l * each, each);
-    size.row(0) = modulus(0) + weight_[std::size_t(l)] * modulus(1);
-    size.row(1) = modulus(2) + weight_[std::size_t(l)] * modulus(3);
-  }
 }
 
 // What a residual of the invariance equations does to alpha, hb/engine/README.md (E7): with the constant part's
@@ -122,11 +111,11 @@ void Iteration::weigh_residuals() {
       const Index q = j + n_ * l;
       gain.col(q).setZero();
       rate.col(q).setZero();
-      const auto size = inverse_sizes(j, l);
       for (Index k = 0; k <= H_; ++k)
         for (Index c = 0; c < 2; ++c) {
-          gain(c, q) = std::max(gain(c, q), size(c, k));
-          rate(c, q) = std::max(rate(c, q), size(c, k) * (double(k) + weight_[std::size_t(l)]));
+          const double size = inverse_size(c, j, l, k);
+          gain(c, q) = std::max(gain(c, q), size);
+          rate(c, q) = std::max(rate(c, q), size * (double(k) + weight_[std::size_t(l)]));
         }
     }
   MatrixXd through = MatrixXd::Identity(n_, n_);  // 1 - g |K_FF| off the diagonal

@@ -57,10 +57,10 @@ class Iteration {
   double largest_K(Eigen::Index i, Eigen::Index j) const { return samples_.largest(i + I_ * j); }
   double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
 
-  void size_inverse();
-  // |M_1c| + weight |M_2c| of the inverse M of the constant part, row c, column k.
-  auto inverse_sizes(Eigen::Index j, Eigen::Index l) const {
-    return inverse_size_.middleCols(Eigen::Index(slot(j, l, 0)), H_ + 1);
+  // |M_1c| + weight |M_2c| of the inverse M of the constant part, c = 0 and 1.
+  double inverse_size(Eigen::Index c, Eigen::Index j, Eigen::Index l, Eigen::Index k) const {
+    const auto place = Eigen::Index(slot(j, l, k));
+    return inverse_moduli_(2 * c, place) + weight_[std::size_t(l)] * inverse_moduli_(2 * c + 1, place);
   }
   void weigh_residuals();
   // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
@@ -111,7 +111,7 @@ class Iteration {
   Eigen::VectorXd x_;  // see A_of, C_of
   std::vector<double> weight_;
   std::vector<Eigen::Matrix2cd> inverse_;
-  Eigen::Matrix2Xd inverse_size_;
+  Eigen::Matrix4Xd inverse_moduli_;  // |M_1c|, |M_2c| of both c
   Eigen::MatrixXd residual_, effect_;  // 2 x n*m: sum_k |r_k| of both invariance equations, and what each does to alpha
   double kappa_ = 0, change_ = 0, amplification_ = 1;
 };

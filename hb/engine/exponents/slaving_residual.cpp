@@ -67,14 +67,13 @@ double Iteration::carried_change(const FourierSeries& alpha) {
       phase.head(own.size() - 1) = own.tail(own.size() - 1).cwiseAbs2().cwiseSqrt() / fast;
       for (Index s = 0; s < m_; ++s)
         phase += alpha.c.row(s + m_ * l).segment(1, H_).cwiseAbs2().cwiseSqrt().transpose() / weight_[std::size_t(l)];
-      const auto size = inverse_sizes(j, l);
       for (Index k = 0; k <= H_; ++k) {
         const cplx ik(0, double(k));
         r1(k) = modulus(spectrum(k, 2 * nm + q) + ik * spectrum(k, q));
         r2(k) = modulus(spectrum(k, 3 * nm + q) + ik * spectrum(k, nm + q));
         const double rate = diagonal_damping_ ? 1 : double(k) + weight_[std::size_t(l)];
-        size1(k) = rate * size(0, k);
-        size2(k) = rate * size(1, k);
+        size1(k) = rate * inverse_size(0, j, l, k);
+        size2(k) = rate * inverse_size(1, j, l, k);
       }
       const VectorXd carried = carried_by(phase);
       const auto add = [&](const VectorXd& r, const VectorXd& gain, double effect) {

@@ -116,7 +116,8 @@ Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& syste
   Eigen::Array<bool, Eigen::Dynamic, 1> result = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(I, true);
   for (Eigen::Index j = 0; j < I; ++j) {
     end_if_wished();
-    for (Eigen::Index i = 0; i <= j; ++i) {
+    for (Eigen::Index i = j; i >= 0; --i) {
+      if (!result(i) && !result(j)) continue;
       bool here = system.mass(i, j) == system.mass(j, i) && system.damping(i, j) == -system.damping(j, i);
       for (const FourierSeries& part : system.stiffness)
         here = here && (part.c.size() == 0 || part.c.row(i + I * j) == part.c.row(j + I * i));
