@@ -3,8 +3,9 @@
 #   tools/attack.sh exponents [SECONDS [SEED]]   exponents, errors and verdicts against a reference in 113 bits
 #   tools/attack.sh sweeps [SECONDS [SEED]]      bands and gaps of sweeps at random steps against single verdicts
 #   tools/attack.sh maps [SECONDS [SEED]]        points and boundary curves of maps against single verdicts
+#   tools/attack.sh one_mode [SECONDS [SEED]]    the same of maps of one mode, growth rates too
 #   tools/attack.sh linkages [SECONDS [SEED]]    random linkages against a Newton-Euler model, growth rates three ways
-#   tools/attack.sh all [SECONDS [SEED]]         these four, a quarter of the time each
+#   tools/attack.sh all [SECONDS [SEED]]         these five, a fifth of the time each
 #   tools/attack.sh faults [ARGUMENT...]         kills, full disks, limits, mutated inputs
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -27,10 +28,10 @@ part=${1:-exponents}
 shift || true
 failed=0
 case $part in
-  exponents | sweeps | maps | linkages | all)
+  exponents | sweeps | maps | one_mode | linkages | all)
     seconds=${1:-120} seed=${2:-1}
     parts=("$part")
-    [[ $part != all ]] || parts=(exponents sweeps maps linkages)
+    [[ $part != all ]] || parts=(exponents sweeps maps one_mode linkages)
     tools/build.sh release "${parts[@]/#/attack_}" >&2
     for part in "${parts[@]}"; do
       share=$((seconds / ${#parts[@]}))
@@ -42,7 +43,7 @@ case $part in
     exec tools/attack/faults.sh "$@"
     ;;
   *)
-    echo "tools/attack.sh: found $part, allowed: exponents, sweeps, maps, linkages, all, faults" >&2
+    echo "tools/attack.sh: found $part, allowed: exponents, sweeps, maps, one_mode, linkages, all, faults" >&2
     exit 2
     ;;
 esac

@@ -62,6 +62,17 @@ TEST_F(Bench, WritesTheTableAndAPicture) {
     EXPECT_NE(picture.find(method), std::string::npos) << method;
 }
 
+TEST_F(Bench, SaysTheLargestMemory) {
+  const std::string run = "bench " + scene("mathieu") + " --omega 1 --case-limit 0.02";
+  const double megabytes = Json::parse(hb(run + " --json").out)["memory_megabytes"];
+  EXPECT_GT(megabytes, 4);
+  EXPECT_LT(megabytes, 200);
+  const std::string text = hb(run).out, before = "largest memory of the whole run: ";
+  const std::size_t at = text.find(before);
+  ASSERT_NE(at, std::string::npos) << text;
+  EXPECT_NEAR(std::stod(text.substr(at + before.size())), megabytes, 0.3 * megabytes);
+}
+
 // What is not known to an accuracy is not said to be reached.
 TEST(RatioSentence, CountsTheErrorOfTheReference) {
   using namespace hb;

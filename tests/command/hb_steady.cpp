@@ -380,6 +380,19 @@ TEST_F(Steady, LooseToleranceLoosensTheExponents) {
   }
 }
 
+// Nearly at rest the response is that of the static deflection, thousands of harmonics from the natural frequencies.
+TEST_F(Steady, AnswersNearlyAtRest) {
+  const CommandResult result = hb("steady " + scene("eight_link") + " --omega 0.002 --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json json = Json::parse(result.out);
+  ASSERT_FALSE(json["rods"].empty());
+  for (const auto& [name, rod] : json["rods"].items()) {
+    ASSERT_TRUE(rod["error_bound"].is_number()) << name;
+    EXPECT_LE(rod["error_bound"].get<double>(), 1e-8) << name;
+    EXPECT_NE(rod["verdict"], "undecided") << name;
+  }
+}
+
 TEST_F(Steady, SaysBeforehandWhatALongSpeedWillTake) {
   ASSERT_EQ(hb("new slider-crank crank.toml").status, 0);
   const std::string near = " crank.toml --set 'crank.length=144.999 mm' --time-limit 0.5";

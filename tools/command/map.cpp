@@ -18,11 +18,18 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/map_key.hpp"
+#include "tools/work/progress.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
 namespace {
+
+// Of the values at the points, which are held until the end.
+double bytes_of(const MapTask& task) {
+  const std::size_t points = task.x().values.size() * task.y().values.size();
+  return static_cast<double>(sizeof(MapPoint) * points * task.plane().rods().size());
+}
 
 struct MapCommandFlags : CommonFlags {
   MapFlags map;
@@ -46,6 +53,7 @@ int run_map(const MapCommandFlags& flags) {
   const Provenance origin = provenance(flags.line, input);
   const SharedWork geometry(out.threads, nullptr, {}, early_end(out.folder.has_value()));
   const MapTask task(SceneFamily(input.source, overrides(flags)), asked_map(flags, flags.map, input), geometry);
+  say_memory("the map", bytes_of(task));
   std::optional<OutputFolder> folder;
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "map", origin);
 

@@ -1,8 +1,12 @@
 #include "tools/work/progress.hpp"
 
 #include <fmt/core.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
+#include <fstream>
 #include <iterator>
 
 namespace hb::tools {
@@ -56,6 +60,39 @@ void Progress::advance(std::size_t steps) {
   const double spent = std::chrono::duration<double>(now - start_).count();
   const double before = std::chrono::duration<double>(start_ - begun_).count();
   fmt::print(stderr, "\r\033[K{}", progress_line(what_, done_, total_, spent, before));
+}
+
+namespace {
+
+// Of a file of /proc the number behind a word; infinite where there is none.
+double number_behind(const char* file, const std::string& word) {
+  std::ifstream lines(file);
+  for (std::string name; lines >> name;) {
+    double value = 0;
+    if (name == word && lines >> value) return value;
+  }
+  return HUGE_VAL;
+}
+
+double bytes_left() {
+  constexpr double kilobyte = 1024;
+  double left = kilobyte * number_behind("/proc/meminfo", "MemAvailable:");
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    const double held = kilobyte * number_behind("/proc/self/status", "VmSize:");
+    left = std::min(left, static_cast<double>(limit.rlim_cur) - (std::isfinite(held) ? held : 0));
+  }
+  return std::max(left, 0.0);
+}
+
+}  // namespace
+
+void say_memory(const std::string& what, double bytes) {
+  constexpr double gigabyte = 1e9;
+  const double left = bytes_left();
+  if (!(bytes > left)) return;
+  fmt::print(stderr, "hb: {} needs about {:.2g} GB of memory, {:.2g} GB are left\n", what, bytes / gigabyte,
+             left / gigabyte);
 }
 
 void say_expected(const std::string& what, double seconds, const std::string& change, bool at_most) {

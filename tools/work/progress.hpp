@@ -57,4 +57,7 @@ class Forecast {
 // Says so where something will take more than ten seconds; `change`: the flags that change that.
 void say_expected(const std::string& what, double seconds, const std::string& change, bool at_most = false);
 
+// Says so where something will hold more bytes than the machine, or a limit on this process, has left.
+void say_memory(const std::string& what, double bytes);
+
 }  // namespace hb::tools

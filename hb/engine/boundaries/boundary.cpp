@@ -69,6 +69,7 @@ class Location {
     const StabilitySample &stable = is_unstable(b) ? a : b, &unstable = is_unstable(b) ? b : a;
     by_sign_ = stable.stability.verdict == Verdict::stable;
     lock_ = lock_of(unstable);
+    settled_ = stable.x;
     const double size = std::max(std::abs(low_), std::abs(high_));
     wanted_ = options.tolerance * size;
     promised_ = std::max(boundary_tolerance, options.tolerance) * size;
@@ -192,6 +193,7 @@ class Location {
     } else {
       largest_error_ = growth_error_;
     }
+    if (sample.stability.verdict == Verdict::bounded && above != found_.boundary.unstable_above) settled_ = sample.x;
   }
 
   void set_error() {
@@ -200,11 +202,14 @@ class Location {
     const bool known = slope() > 0;
     if (by_sign_ && known) found_.boundary.error += std::min(growth_error_ / slope(), certain_high_ - certain_low_);
     // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
-    // from the boundary to where it is g.
+    // from the boundary to where it is g. An error as large as g leaves open all between places with sure verdicts.
     if (const double g = found_.boundary.unstable_above ? g_high_ : g_low_; !by_sign_ && g > 0) {
       const double certain = found_.boundary.unstable_above ? certain_high_ : certain_low_;
-      const double part = std::min(5 * largest_error_ / g, 1.0);
-      found_.boundary.error += part * part * std::abs(certain - found_.boundary.x);
+      const double x = found_.boundary.x, part = std::pow(5 * largest_error_ / g, 2);
+      if (part < 0.5)
+        found_.boundary.error += part / (1 - part) * std::abs(certain - x);
+      else
+        found_.boundary.error += std::max(std::abs(certain - x), std::abs(settled_ - x));
     }
     found_.boundary.converged = found_.boundary.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
   }
@@ -219,6 +224,7 @@ class Location {
   double kappa1_ = 0;
   // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.
   double certain_low_ = 0, certain_high_ = 0, g_low_ = 0, g_high_ = 0;
+  double settled_ = 0;  // without damping: nearest place where it is bounded
   double growth_error_ = 0;  // of the last growth rate
   double largest_error_ = 0;  // of growth rates that are not certain
   BoundaryLocation found_;

@@ -69,30 +69,37 @@ struct Line {
   }
 };
 
-// Outward from the expected place to the side that has the other verdict.
+// Outward from the expected place to the side that has the other verdict, past places without a sure one.
 std::optional<CurvePoint> point_by_verdict(const Line& line, const SweepOptions& options) {
-  const auto sample = [&](double t) -> std::optional<StabilitySample> {
+  using Sample = std::optional<StabilitySample>;
+  const auto sample = [&](double t) -> Sample {
     const std::optional<ScaledSystem> system = line.at(t);
     if (!system) return std::nullopt;
     return StabilitySample{t, system->speed, with_certain_verdict(*system, options.stability)};
   };
-  double t = line.expected, step = line.step;
-  std::optional<StabilitySample> here = sample(t);
+  const auto sure = [](const StabilitySample& s) { return s.stability.verdict != Verdict::undecided; };
+  // The first place that is unstable, or not; `before`: the last one before it that surely has the other verdict.
+  const auto outward = [&](bool unstable, Sample& before) -> Sample {
+    const double direction = unstable == line.unstable_above ? 1 : -1;
+    double t = line.expected;
+    for (double step = line.step;; step *= 4) {
+      const double next = std::clamp(t + direction * step, line.low, line.top);
+      if (next == t) return std::nullopt;
+      Sample there = sample(next);
+      if (!there || (sure(*there) && is_unstable(*there) == unstable)) return there;
+      if (sure(*there)) before = std::move(there);
+      t = next;
+    }
+  };
+  Sample here = sample(line.expected), nothing;
   if (!here) return std::nullopt;
   const bool first_unstable = is_unstable(*here);
-  const double direction = first_unstable == line.unstable_above ? -1 : 1;
-  for (;; step *= 4) {
-    const double next = std::clamp(t + direction * step, line.low, line.top);
-    if (next == t) return std::nullopt;
-    std::optional<StabilitySample> there = sample(next);
-    if (!there) return std::nullopt;
-    if (is_unstable(*there) != first_unstable) {
-      const StabilitySample &a = next < t ? *there : *here, &b = next < t ? *here : *there;
-      return line.point(locate_boundary(line.at, a, b, options));
-    }
-    t = next;
-    here = std::move(there);
-  }
+  if (!sure(*here)) here = std::nullopt;
+  const Sample there = outward(!first_unstable, here);
+  if (there && !here) here = outward(first_unstable, nothing);
+  if (!there || !here) return std::nullopt;
+  const bool ascending = here->x < there->x;
+  return line.point(locate_boundary(line.at, ascending ? *here : *there, ascending ? *there : *here, options));
 }
 
 // By the search for bands and gaps that verdicts do not show, near the expected place.

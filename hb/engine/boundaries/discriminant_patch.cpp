@@ -18,6 +18,8 @@ ChebyshevProduct::ChebyshevProduct(const MatrixXd& values)
   const double least = 2 * eps * c_.cwiseAbs().maxCoeff();
   while (rows_ > 1 && c_.row(rows_ - 1).cwiseAbs().maxCoeff() <= least) --rows_;
   while (columns_ > 1 && c_.col(columns_ - 1).cwiseAbs().maxCoeff() <= least) --columns_;
+  dropped_ = c_.bottomRows(c_.rows() - rows_).cwiseAbs().sum() +
+             c_.topRightCorner(rows_, c_.cols() - columns_).cwiseAbs().sum();
 }
 
 double ChebyshevProduct::tail(std::size_t axis) const {
@@ -48,7 +50,7 @@ MatrixXd ChebyshevProduct::at_all(const VectorXd& u, const VectorXd& v) const {
 
 DiscriminantValue DiscriminantPatch::at(double x, double y) const {
   const double u = box.unit(0, x), v = box.unit(1, y);
-  return {value.at(u, v), limit.at(u, v), error, damping.at(u, v), damping_error, speed.at(u, v)};
+  return {value.at(u, v), limit.at(u, v), error, damping.at(u, v), damping_error, speed.at(u, v), speed_error};
 }
 
 bool settled(const DiscriminantValue& at, bool undamped, SettledGrowth& growth) {
@@ -66,7 +68,7 @@ bool settled(const DiscriminantValue& at, bool undamped, SettledGrowth& growth) 
     growth = {Verdict::bounded, 0, 0, false};
     return true;
   }
-  error += speed_roundings * std::abs(s);
+  error += (at.speed_error / at.speed + 4 * eps) * std::abs(s);
   if (!(error <= growth_tolerance * std::max(1.0, std::abs(s)))) return false;
   if (!(std::abs(s) > std::max(least_growth, safe * error))) return false;
   growth.verdict = s > 0 ? Verdict::unstable : Verdict::stable;

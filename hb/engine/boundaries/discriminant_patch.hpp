@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "hb/engine/boundaries/boundary.hpp"
@@ -34,6 +33,8 @@ class ChebyshevProduct {
 
   // Largest sum of coefficients of one degree along the axis, of the last three degrees.
   [[nodiscard]] double tail(std::size_t axis) const;
+  // Sum of the terms that are dropped: bound on what that changes.
+  [[nodiscard]] double dropped() const { return dropped_; }
   [[nodiscard]] double at(double u, double v) const;
   // Coefficients along one axis where the other one's place is given.
   [[nodiscard]] Eigen::VectorXd along(std::size_t axis, double other) const;
@@ -43,23 +44,21 @@ class ChebyshevProduct {
  private:
   Eigen::MatrixXd c_;  // of all degrees given
   Eigen::Index rows_ = 0, columns_ = 0;  // of those that count
+  double dropped_ = 0;
 };
 
 // What is known at one place.
 struct DiscriminantValue {
   double value = 0, limit = 1, error = HUGE_VAL;  // Delta, L, and the error of their difference
   double damping = 0, damping_error = 0;  // b
-  double speed = 0;  // of the shortest period
+  double speed = 0, speed_error = HUGE_VAL;  // of the shortest period
 };
-
-// Error of the interpolated speed, relative to it, at most.
-inline constexpr double speed_roundings = 64 * std::numeric_limits<double>::epsilon();
 
 struct DiscriminantPatch {
   ParameterBox box;
   ChebyshevProduct value, limit, damping, speed;
   double error = HUGE_VAL;  // of value and limit together, (D4)
-  double damping_error = HUGE_VAL;
+  double damping_error = HUGE_VAL, speed_error = HUGE_VAL;
 
   [[nodiscard]] DiscriminantValue at(double x, double y) const;
 };

@@ -311,7 +311,7 @@ class Builder {
     patch.damping = ChebyshevProduct(damping);
     patch.speed = ChebyshevProduct(speed);
     const double amplified = lebesgue(open.degree[0]) * lebesgue(open.degree[1]), most = enough(nodes, amplified);
-    double tails = 0, damping_tails = 0;
+    double tails = 0, damping_tails = 0, speed_tails = 0;
     bool done = true;
     for (const std::size_t axis : {0, 1}) {
       const double own = patch.value.tail(axis) + patch.limit.tail(axis);
@@ -319,9 +319,12 @@ class Builder {
              patch.damping.tail(axis) <= std::max(few_roundings * damping.maxCoeff(), 1e-13);
       tails += own;
       damping_tails += patch.damping.tail(axis);
+      speed_tails += patch.speed.tail(axis);
     }
-    patch.error = 4 * tails + node_error(nodes, amplified);
-    patch.damping_error = 4 * damping_tails + amplified * (damping_error + few_roundings * damping.maxCoeff());
+    patch.error = 4 * tails + node_error(nodes, amplified) + patch.value.dropped() + patch.limit.dropped();
+    patch.damping_error =
+        4 * damping_tails + amplified * (damping_error + few_roundings * damping.maxCoeff()) + patch.damping.dropped();
+    patch.speed_error = 4 * speed_tails + amplified * few_roundings * speed.maxCoeff() + patch.speed.dropped();
     return done;
   }
 
@@ -339,7 +342,7 @@ class Builder {
       off = std::max(off, std::abs(there.value - truth.value) + std::abs(there.limit - truth.limit()));
       given = std::max(given, truth.error);
       good = good && std::abs(there.damping - truth.damping) <= patch.damping_error &&
-             std::abs(there.speed - truth.speed) <= speed_roundings * truth.speed;
+             std::abs(there.speed - truth.speed) <= patch.speed_error;
     }
     if (!good || !(off <= patch.error + given)) return false;
     patch.error = std::max(patch.error, 4 * off);

@@ -183,7 +183,7 @@ class Search {
     for (double step = first; step < 0.5 * room; step *= 16) {
       const double x = boundary.x + side * step;
       if (places_.contains(x) || !evaluate(x)) break;
-      if (places_.at(x).unstable == unstable) {
+      if (places_.at(x).unstable == unstable && places_.at(x).sample.stability.verdict != Verdict::undecided) {
         beside = x;
         break;
       }
@@ -391,10 +391,30 @@ class Search {
     return std::clamp(x, p.x() + margin, q.x() - margin);
   }
 
+  // Between two places where growth is not told from none there is no gap, but there may be one.
+  void drop_open_gaps() {
+    for (std::size_t k = 0; k + 1 < boundaries_.size();) {
+      const auto from = places_.upper_bound(boundaries_[k].x), to = places_.lower_bound(boundaries_[k + 1].x);
+      const auto sure = [](const auto& place) {
+        return !place.second.unstable && place.second.sample.stability.verdict != Verdict::undecided;
+      };
+      const auto open = [](const auto& place) { return place.second.sample.stability.verdict == Verdict::undecided; };
+      if (!boundaries_[k].unstable_above && boundaries_[k + 1].unstable_above && std::any_of(from, to, open) &&
+          std::none_of(from, to, sure)) {
+        const auto first = boundaries_.begin() + static_cast<std::ptrdiff_t>(k);
+        not_excluded_.push_back({first->x, first[1].x});
+        boundaries_.erase(first, first + 2);
+      } else {
+        ++k;
+      }
+    }
+  }
+
   SearchedInterval result() {
     SearchedInterval found;
     found.evaluations = evaluations_;
     std::sort(boundaries_.begin(), boundaries_.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    drop_open_gaps();
     found.boundaries = boundaries_;
     for (std::size_t k = 0; k + 1 < boundaries_.size(); ++k) {
       const StabilitySample* chosen = nullptr;

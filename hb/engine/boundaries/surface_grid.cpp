@@ -57,7 +57,9 @@ std::vector<MapPoint> surface_grid(const DiscriminantSurface& surface, const std
         for (std::size_t i = i0; i < i1; ++i) {
           const auto k = static_cast<Index>(i - i0), l = static_cast<Index>(j - first);
           points[i + nx * j] = point_of(
-              surface, {value(k, l), 1, patch.error, damping(k, l), patch.damping_error, speed(k, l)}, tolerance);
+              surface,
+              {value(k, l), 1, patch.error, damping(k, l), patch.damping_error, speed(k, l), patch.speed_error},
+              tolerance);
         }
     }
   }

@@ -45,7 +45,7 @@ std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance
   return result;
 }
 
-// Of one mode with a single harmonic and constant damping by Hill's determinant; empty if that misses the tolerance.
+// Of one mode with a single harmonic and constant damping by Hill's determinant.
 std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tolerance) {
   if (reduced.num_modes != 1 || reduced.alpha.num_harmonics() != 1 || reduced.beta.num_harmonics() != 0)
     return std::nullopt;
@@ -54,10 +54,10 @@ std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tol
                                        .b = reduced.beta.c(0, 0).real(),
                                        .stiffness_error = reduced.alpha_error(0),
                                        .damping_error = reduced.beta_error(0)});
-  if (!pair || !(pair->error[0] <= allowed(tolerance, pair->s[0]))) return std::nullopt;
+  if (!pair) return std::nullopt;
   Exponents result;
   for (std::size_t i : {0, 1}) result.add(pair->s[i], pair->error[i]);
-  result.converged = true;
+  result.converged = pair->error[0] <= allowed(tolerance, pair->s[0]);
   return result;
 }
 
@@ -235,9 +235,11 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
 }
 
 // Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
-// propagation always settles.
+// propagation always settles. Where none is as accurate as asked, the best counts: near a double multiplier +-1 the
+// determinant's four factors tell growth far better than a propagated map does.
 Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
-  if (std::optional<Exponents> result = by_determinant(reduced, tolerance)) return *std::move(result);
+  std::optional<Exponents> determinant = by_determinant(reduced, tolerance);
+  if (determinant && determinant->converged) return *std::move(determinant);
   const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
   const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
   constexpr double fast = 25;
@@ -246,6 +248,8 @@ Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool
   Exponents result = propagated_exponents(reduced, tolerance, leading_only);
   if (phase_may_settle && !(frequency > fast) && !result.converged)
     if (std::optional<Exponents> better = by_phase(reduced, tolerance)) return *std::move(better);
+  if (determinant && !result.converged && (result.s.empty() || determinant->error[0] < result.error[0]))
+    return *std::move(determinant);
   return result;
 }
 
