@@ -61,15 +61,12 @@ std::optional<LeadingPair> leading_pair(const StabilitySample& sample) {
   if (all.size() < 2) return std::nullopt;
   const Known& first = all.front();
   const double sign = sign_of(first);
-  std::size_t partner = 0;
-  for (std::size_t k = 1; k < all.size(); ++k) {
-    const bool fits = sign != 0 ? sign_of(all[k]) == sign
-                                : std::abs(folded(all[k].s - std::conj(first.s))) <= first.error + all[k].error;
-    if (!fits) continue;
-    if (partner != 0) return std::nullopt;
-    partner = k;
-  }
-  if (partner == 0) return std::nullopt;
+  const auto fits = [&](const Known& k) {
+    return sign != 0 ? sign_of(k) == sign : std::abs(folded(k.s - std::conj(first.s))) <= first.error + k.error;
+  };
+  std::size_t partner = 1;
+  while (partner < all.size() && !fits(all[partner])) ++partner;
+  if (partner == all.size()) return std::nullopt;
   const Known& second = all[partner];
   LeadingPair pair;
   pair.others = sample.stability.others_below / sample.speed;

@@ -16,8 +16,8 @@ struct LeadingPair {
   double others = 0;  // upper bound on Re s of all other exponents
 };
 
-// Empty if the leading exponent is no part of a pair, if several may be its partner, or if it is not known which
-// exponents there are.
+// The leading exponent and the slowest of those that may be its partner. Empty if there is none, or if it is not known
+// which exponents there are.
 [[nodiscard]] std::optional<LeadingPair> leading_pair(const StabilitySample& sample);
 
 // The leading exponent alone, where its multiplier is real: both exponents of the pair are that one.

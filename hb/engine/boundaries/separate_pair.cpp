@@ -14,8 +14,9 @@ namespace {
 // The pair moves by this part of a turn at most from place to place: its half trace is sampled twice a period.
 constexpr double most_turns = 0.4;
 constexpr std::size_t fewest_nodes = 4;
-// An interval is not divided more than once for another exponent's sake.
-constexpr double most_too_far = 2;
+// For another exponent's sake an interval is divided once, or several times where that one decays so much faster that
+// the search with all exponents would divide it as often.
+constexpr double most_too_far = 2, much_faster = 0.25, most_too_far_of_those = 16;
 
 // Without damping nothing is apart.
 bool is_apart(const std::optional<LeadingPair>& pair, Apart what, const StabilitySample& sample) {
@@ -70,13 +71,15 @@ Motion motion_between(const Place& p, const Place& q) {
     pair = std::max(pair, moved(n));
     growth = std::min({growth, p.mean[n].value.real(), q.mean[n].value.real()});
   }
-  double far = pair / most_turns;
+  bool followed = pair <= most_turns;
   for (std::size_t n = 0; n < p.mean.size(); ++n) {
     if (n == slow[0] || n == slow[1]) continue;
-    const double faster = growth - std::max(p.mean[n].value.real(), q.mean[n].value.real());
-    far = std::max(far, (moved(n) + pair) / std::max(faster, 1e-300));
+    const double faster = growth - std::max(p.mean[n].value.real(), q.mean[n].value.real()), against = moved(n) + pair;
+    if (against <= faster) continue;
+    followed = false;
+    if (!(against <= (faster >= much_faster ? most_too_far_of_those : most_too_far) * faster)) return Motion::unknown;
   }
-  return far <= 1 ? Motion::followed : far <= most_too_far ? Motion::too_far : Motion::unknown;
+  return followed ? Motion::followed : pair <= most_too_far * most_turns ? Motion::too_far : Motion::unknown;
 }
 
 }  // namespace
