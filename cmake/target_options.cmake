@@ -38,8 +38,8 @@ function(hb_target_options target)
   endif()
 endfunction()
 
-# Analyses ask the engine and put together what it answers: they take under a hundredth of the time of a sweep, map or search,
-# words, files, pictures and tests as little. Optimised lightly they compile in seven tenths of the time.
+# Analyses ask the engine and put together what it answers: sweeps take as long whether these are optimised or not, and
+# words, files, pictures and tests cost as little. Optimised lightly they compile in seven tenths of the time.
 function(hb_lightly_optimised)
   foreach(target IN LISTS ARGN)
     if(TARGET ${target})

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 folder=${1:-build/demo}
-echo "Installs what is missing, then compiles for four to six minutes on two cores; the answer comes last." >&2
+echo "Installs what is missing, then compiles for about four minutes on two cores; the answer comes last." >&2
 tools/setup.sh command
 tools/build.sh release hb_command
 build/release/bin/hb steady results/six_link/scene.toml --rpm 300 --out "$folder" </dev/null

@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "lib/constants.hpp"
+#include "lib/fourier/moduli.hpp"
 #include "lib/fourier/short_transform.hpp"
 
 namespace hb::fourier {
@@ -136,13 +137,6 @@ void transpose(const From& from, To&& to) {
       for (Eigen::Index j = 0; j < from.cols(); ++j)
         for (Eigen::Index i = first; i < first + count; ++i) to(j, i) = from(i, j);
   }
-}
-
-// A power of two that brings the numbers to order one, where squares neither overflow nor vanish.
-template <class Numbers>
-double unit_of(const Numbers& numbers) {
-  const double part = std::max(numbers.real().cwiseAbs().maxCoeff(), numbers.imag().cwiseAbs().maxCoeff());
-  return part > 1e-290 && part < 1e290 ? std::ldexp(1, -std::ilogb(part)) : 1;
 }
 
 }  // namespace

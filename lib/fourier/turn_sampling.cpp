@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "lib/fourier/moduli.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -53,14 +54,6 @@ Decay decay_of(const Eigen::VectorXd& size, double scale, double tolerance) {
   return decay;
 }
 
-// Of forces of any unit.
-Eigen::MatrixXd moduli(const Eigen::MatrixXcd& c) {
-  const double part = std::max(c.real().cwiseAbs().maxCoeff(), c.imag().cwiseAbs().maxCoeff());
-  if (!(part > 1e-290 && part < 1e290)) return c.cwiseAbs();
-  const double unit = std::ldexp(1, -std::ilogb(part));
-  return (unit * c).cwiseAbs2().cwiseSqrt() / unit;
-}
-
 }  // namespace
 
 TurnSeries sample_turn(const std::vector<TurnComponent>& components, const FillSamples& fill,
@@ -81,7 +74,7 @@ TurnSeries sample_turn(const std::vector<TurnComponent>& components, const FillS
     turn.series = fourier::analyse(samples);
     turn.num_samples = N;
 
-    const Eigen::MatrixXd size = moduli(turn.series.c);
+    const Eigen::MatrixXd size = fourier::moduli(turn.series.c);
     std::map<int, double> group_scale;
     for (Eigen::Index i = 0; i < n; ++i) {
       const TurnComponent& component = components[static_cast<std::size_t>(i)];

@@ -25,10 +25,10 @@
 namespace hb::tools {
 namespace {
 
-// Of the values at the points, which are held until the end.
+// Of the values at the points, which are held until the end, and of the worst of several rods.
 double bytes_of(const MapTask& task) {
-  const std::size_t points = task.x().values.size() * task.y().values.size();
-  return static_cast<double>(sizeof(MapPoint) * points * task.plane().rods().size());
+  const std::size_t points = task.x().values.size() * task.y().values.size(), rods = task.plane().rods().size();
+  return static_cast<double>(sizeof(MapPoint) * points * (rods > 1 ? rods + 1 : rods));
 }
 
 struct MapCommandFlags : CommonFlags {
