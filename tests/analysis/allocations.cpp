@@ -4,7 +4,9 @@
 #include <malloc.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 
 #include "hb/hb.hpp"
@@ -76,16 +78,24 @@ Counted of_sweep(const Scene& scene, const Only& only, int speeds) {
   return {after.allocations - before.allocations, after.page_faults - before.page_faults};
 }
 
-// What each speed more costs once everything is warm, its results included. The heap keeps its pages, as in the
-// command.
+Counted lesser(const Counted& a, const Counted& b) {
+  return {std::min(a.allocations, b.allocations), std::min(a.page_faults, b.page_faults)};
+}
+
+// What each speed more costs once everything is warm, its results included: the least of several runs, since where the
+// system puts stack and heap decides over a few dozen pages. The heap keeps its pages, as in the command.
 Counted per_speed(const Only& only) {
   constexpr int kept = 256 << 20;
   mallopt(M_MMAP_THRESHOLD, kept);
   mallopt(M_TRIM_THRESHOLD, kept);
   const Scene scene = read_scene(HB_SOURCE_DIR "/tests/scenes/six_link.toml");
-  constexpr int few = 10, many = 40;
+  constexpr int few = 10, many = 40, runs = 4;
   (void)of_sweep(scene, only, many);
-  const Counted less = of_sweep(scene, only, few), more = of_sweep(scene, only, many);
+  Counted less{HUGE_VAL, HUGE_VAL}, more = less;
+  for (int run = 0; run < runs; ++run) {
+    less = lesser(less, of_sweep(scene, only, few));
+    more = lesser(more, of_sweep(scene, only, many));
+  }
   constexpr double further = many - few;
   return {(more.allocations - less.allocations) / further, (more.page_faults - less.page_faults) / further};
 }
@@ -98,16 +108,17 @@ void expect_at_most(const Only& only, double most_allocations, double most_page_
   EXPECT_LE(found.page_faults, most_page_faults);
 }
 
-// Upper limits, a tenth above what was reached (978, 7337 and 9322 allocations; 1.3, 0 and 0.8 page faults, of what the
-// results themselves take). None in the loop itself is what is aimed at.
+// Upper limits, a tenth above what was reached (978, 7336 and 9322 allocations, of what the results themselves take
+// too; no page faults, where 30 faults of 30 further speeds are let pass). No allocation in the loop itself is what is
+// aimed at.
 TEST(Allocations, PerSpeedOfTheGrowthRateAlone) {
-  expect_at_most({.steady = false, .stability = true, .reactions = false, .shape = false, .growth = true}, 1080, 2);
+  expect_at_most({.steady = false, .stability = true, .reactions = false, .shape = false, .growth = true}, 1080, 1);
 }
 
 TEST(Allocations, PerSpeedOfSteadyStateAndExponents) {
   expect_at_most({.steady = true, .stability = true, .reactions = false, .shape = false}, 8080, 1);
 }
 
-TEST(Allocations, PerSpeedOfEverything) { expect_at_most({}, 10260, 2); }
+TEST(Allocations, PerSpeedOfEverything) { expect_at_most({}, 10260, 1); }
 
 }  // namespace
