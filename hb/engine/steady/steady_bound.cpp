@@ -1,6 +1,8 @@
 #include "hb/engine/steady/steady_bound.hpp"
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <random>
 
 #include "lib/constants.hpp"
@@ -22,20 +24,44 @@ Eigen::VectorXd wiener(const Eigen::MatrixXd& moduli) {
   return 2 * moduli.colwise().sum().transpose() - moduli.row(0).transpose();
 }
 
+// Numbers between -1 and 1 at random, the same ones every time; the first few are kept.
+class RandomNumbers {
+ public:
+  double operator()() {
+    if (next_ < kept().size()) return kept()[next_++];
+    if (!further_) further_.emplace(seed).discard(kept().size());
+    return number(*further_);
+  }
+
+ private:
+  static constexpr unsigned seed = 12345;
+  static double number(std::mt19937& random) { return 2.0 / 4294967295.0 * static_cast<double>(random()) - 1; }
+  static const std::array<double, 1024>& kept() {
+    static const std::array<double, 1024> numbers = [] {
+      std::mt19937 random(seed);
+      std::array<double, 1024> first{};
+      for (double& value : first) value = number(random);
+      return first;
+    }();
+    return numbers;
+  }
+  std::size_t next_ = 0;
+  std::optional<std::mt19937> further_;
+};
+
 }  // namespace
 
 double size_in_q(const Spectrum& x, const Eigen::MatrixXd& T) { return weigh(wiener_norms(x), T); }
 
 double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
   const Index H = A.num_harmonics(), I = A.num_modes();
-  // Phases at random, the same ones every time; size falling with k as that of rounding errors does, u = D^-1 rhs.
-  std::mt19937 random(12345);
+  // Phases at random; size falling with k as that of rounding errors does, u = D^-1 rhs.
+  RandomNumbers random;
   Spectrum rhs(H + 1, I), z;
-  const double unit = 2.0 / 4294967295.0;
   for (Index k = 0; k <= H; ++k)
     for (Index i = 0; i < I; ++i) {
-      const double re = unit * static_cast<double>(random()) - 1;
-      const double im = k > 0 ? unit * static_cast<double>(random()) - 1 : 0;
+      const double re = random();
+      const double im = k > 0 ? random() : 0;
       const double n = static_cast<double>(k);
       rhs(k, i) = std::complex<double>(re, im) / (A.system().coupling(i) + 1 + n) * (1 + std::abs(A.system().mean(i)));
     }

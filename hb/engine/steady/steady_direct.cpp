@@ -11,24 +11,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Harmonics of K above this size, relative to the diagonal, enter the factors: one refinement gains as many digits.
-constexpr double factor_accuracy = 1e-10;
 constexpr Index smallest_block = 16;
-constexpr double smallest_pivot = 1e-300;
-
-Index factor_harmonics(const WeightedSystem& system) {
-  Index P = system.P;
-  const auto negligible = [&](Index m) {
-    for (Index j = 0; j < system.I; ++j)
-      for (Index i = 0; i < system.I; ++i) {
-        const double scale = std::sqrt((1 + std::abs(system.mean(i))) * (1 + std::abs(system.mean(j))));
-        if (!(std::abs(system.K(i + system.I * j, m)) <= factor_accuracy * scale)) return false;
-      }
-    return true;
-  };
-  while (P > 0 && negligible(P)) --P;
-  return P;
-}
 
 struct Partition {
   Index core, per_block, num_blocks;  // harmonics 0..core in the core
@@ -80,7 +63,7 @@ Eigen::MatrixXcd DirectInverse::block(Index row, Index column, Index rows, Index
   return result;
 }
 
-DirectInverse::DirectInverse(Operator& A) : A_(A) {
+DirectInverse::DirectInverse(Operator& A) : EliminatedInverse(A) {
   const WeightedSystem& s = A.system();
   const Index I = s.I, H = A.num_harmonics();
   P_ = factor_harmonics(s);
@@ -166,28 +149,6 @@ void DirectInverse::substitute(const Spectrum& rhs, Spectrum& z) const {
     piece(first, p_) -= up_[g] * inner;
   }
   z = y.transpose();
-}
-
-bool DirectInverse::solve(const Spectrum& rhs, double relative, Spectrum& z) {
-  const Index H = A_.num_harmonics();
-  const auto size = [&](const Spectrum& r) {
-    return r.topRows(H + 1).cwiseQuotient(A_.magnitude().cwiseMax(1e-300).cast<std::complex<double>>()).norm();
-  };
-  substitute(rhs, z);
-  const double aim = relative * size(rhs);
-  Spectrum product, correction;
-  double last = HUGE_VAL;
-  for (int refinement = 0; refinement < 6; ++refinement) {
-    A_.couple(z, H, product);
-    const Spectrum r = rhs.topRows(H + 1) - A_.D().cwiseProduct(z) - product;
-    const double now = size(r);
-    if (now <= aim && refinement > 0) return true;
-    if (!(now < 0.5 * last)) return now <= aim;
-    last = now;
-    substitute(r, correction);
-    z += correction;
-  }
-  return last <= aim;
 }
 
 }  // namespace hb::steady

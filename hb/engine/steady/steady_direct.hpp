@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "hb/engine/steady/steady_operator.hpp"
+#include "hb/engine/steady/steady_elimination.hpp"
 #include "lib/dense.hpp"
 
 namespace hb::steady {
@@ -18,26 +18,21 @@ struct DirectCost {
 // real core, where conjugates couple (c >= P):
 //     S_g = A_gg - A_{g,g+1} S_{g+1}^-1 A_{g+1,g},   pivoting inside S_g (at least 16 unknowns).
 // Harmonics of K that rounding-size refinement can make up for are left out of the factors; every solve refines.
-class DirectInverse : public Inverse {
+class DirectInverse : public EliminatedInverse {
  public:
   explicit DirectInverse(Operator& A);
-  bool solve(const Spectrum& rhs, double relative, Spectrum& z) override;
-  // False if a factor has a vanishing pivot.
-  bool regular() const { return regular_; }
   static DirectCost cost(const WeightedSystem& system, Eigen::Index num_harmonics);
 
  private:
-  void substitute(const Spectrum& rhs, Spectrum& z) const;
+  void substitute(const Spectrum& rhs, Spectrum& z) const override;
   Eigen::MatrixXcd block(Eigen::Index row, Eigen::Index column, Eigen::Index rows, Eigen::Index columns) const;
 
-  Operator& A_;
   Eigen::Index P_ = 0;  // harmonics of K in the factors
   Eigen::Index c_ = 0, p_ = 0;  // last harmonic of the core, harmonics per block
   std::vector<dense::Lu<std::complex<double>>> S_;  // outermost last
   std::vector<Eigen::MatrixXcd> up_;  // S_g^-1 A_{g,g-1}
   std::vector<Eigen::MatrixXcd> down_;  // A_{g-1,g}
   dense::Lu<double> core_;
-  bool regular_ = true;
 };
 
 }  // namespace hb::steady

@@ -92,7 +92,7 @@ class Solver {
 
     for (;;) {
       if (direct) {
-        auto elimination = std::make_unique<steady::DirectInverse>(A);
+        auto elimination = steady::eliminate(A);
         ++factorisations_;
         if (!elimination->regular()) return singular(state);
         inverse = std::move(elimination);
@@ -123,8 +123,8 @@ class Solver {
         if (std::isfinite(response)) return state;
         // Without an answer: is it the operator's fault?
         if (!direct && cost.bytes <= most_bytes) {
-          steady::DirectInverse elimination(A);
-          if (!elimination.regular() || !(1 / steady::response(A, elimination, T_) > singular_distance))
+          const auto elimination = steady::eliminate(A);
+          if (!elimination->regular() || !(1 / steady::response(A, *elimination, T_) > singular_distance))
             return singular(state);
         }
         fail(x, state);

@@ -1,0 +1,56 @@
+#include "hb/engine/steady/steady_elimination.hpp"
+
+#include <cmath>
+
+#include "hb/engine/steady/steady_band.hpp"
+#include "hb/engine/steady/steady_direct.hpp"
+
+namespace hb::steady {
+
+using Index = Eigen::Index;
+
+Index factor_harmonics(const WeightedSystem& system) {
+  constexpr double factor_accuracy = 1e-10;
+  Index P = system.P;
+  const auto negligible = [&](Index m) {
+    for (Index j = 0; j < system.I; ++j)
+      for (Index i = 0; i < system.I; ++i) {
+        const double scale = std::sqrt((1 + std::abs(system.mean(i))) * (1 + std::abs(system.mean(j))));
+        if (!(std::abs(system.K(i + system.I * j, m)) <= factor_accuracy * scale)) return false;
+      }
+    return true;
+  };
+  while (P > 0 && negligible(P)) --P;
+  return P;
+}
+
+std::unique_ptr<EliminatedInverse> eliminate(Operator& A) {
+  if (BandInverse::suits(A)) return std::make_unique<BandInverse>(A);
+  return std::make_unique<DirectInverse>(A);
+}
+
+bool EliminatedInverse::solve(const Spectrum& rhs, double relative, Spectrum& z) {
+  // The factors give more digits than this of any operator that is not singular to rounding.
+  constexpr double rough = 1e-4;
+  const Index H = A_.num_harmonics();
+  const auto size = [&](const Spectrum& r) {
+    return r.topRows(H + 1).cwiseQuotient(A_.magnitude().cwiseMax(1e-300).cast<std::complex<double>>()).norm();
+  };
+  substitute(rhs, z);
+  const double aim = relative * size(rhs);
+  Spectrum product, correction;
+  double last = HUGE_VAL;
+  for (int refinement = 0; refinement < 6; ++refinement) {
+    A_.couple(z, H, product);
+    const Spectrum r = rhs.topRows(H + 1) - A_.D().cwiseProduct(z) - product;
+    const double now = size(r);
+    if (now <= aim && (refinement > 0 || relative >= rough)) return true;
+    if (!(now < 0.5 * last)) return now <= aim;
+    last = now;
+    substitute(r, correction);
+    z += correction;
+  }
+  return last <= aim;
+}
+
+}  // namespace hb::steady
