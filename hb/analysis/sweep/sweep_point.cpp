@@ -124,7 +124,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   }
   if (only.stability) {  // of every rod: the mechanism is stable where all are
     const StabilityOptions options = exponent_options(settings);
-    if (only.all_exponents()) {
+    if (only.all_exponents() && settings.search) {
       point.stability = stability_sample(scale_system(rod.system, speed), x, options);
     } else {
       point.stability.emplace();

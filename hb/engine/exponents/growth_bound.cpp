@@ -1,6 +1,8 @@
 #include "hb/engine/exponents/growth_bound.hpp"
 
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "lib/dense.hpp"
 
@@ -32,60 +34,123 @@ VectorXd perron_vector(const MatrixXd& M) {
   return v;
 }
 
+// Each mode's amplitude over the turn. A coupling k from mode i to mode j changes it by |k| out_j in_i, one of y1' by
+// |nu| slope_j in_i.
+struct Amplitudes {
+  MatrixXd own, in, out, slope;  // N x n; own: its growth by itself
+
+  Amplitudes(Index N, Index n) : own(N, n), in(N, n), out(N, n), slope(N, n) {}
+};
+
+// Of a mode that vibrates throughout, from samples of W^2 and of L' and L'', L = ln W.
+template <class Square, class Slope>
+void vibrating(Amplitudes& of, Index j, double b, const Square& W2, const Slope& L1, const Slope& L2) {
+  auto in = of.in.col(j).array();
+  const ArrayXd W = W2.sqrt();
+  in = W.sqrt().inverse();
+  of.out.col(j) = of.in.col(j);
+  of.own.col(j).array() = -b / 2 + (0.5 * L2 - 0.25 * L1.square()).abs() / (2 * W);
+  of.slope.col(j).array() = in * (W + (b / 2 + L1 / 2).abs());
+}
+
+// Of an overdamped one, along its two mean roots.
+template <class Stiffness>
+void overdamped(Amplitudes& of, Index j, double b, const Stiffness& k) {
+  const double mean = k.mean(), root = std::sqrt(b * b / 4 - mean);
+  const double r2 = -b / 2 - root, r1 = b > 0 ? mean / r2 : -b / 2 + root;
+  const ArrayXd d = (k - mean) / (2 * root);
+  of.own.col(j) = (r1 - d).max(r2 + d);
+  of.in.col(j).setConstant(std::sqrt(2 / root));
+  of.out.col(j).setConstant(1 / std::sqrt(2 * root));
+  of.slope.col(j).setConstant(std::max(std::abs(r1), std::abs(r2)) / std::sqrt(2 * root));
+}
+
+// First and second derivative of the samples in the columns, those of L1 after one another, then those of L2.
+Eigen::Map<MatrixXd> derivatives(const MatrixXd& samples) {
+  const Index N = samples.rows(), n = samples.cols(), H = (N - 1) / 2;
+  fourier::RealTransform& one = fourier::thread_transform(N, n);
+  one.samples() = samples;
+  one.forward();
+  const auto given = one.spectrum();
+  fourier::RealTransform& both = fourier::thread_transform(N, 2 * n);
+  auto spectrum = both.spectrum();
+  for (Index j = 0; j < n; ++j) {
+    for (Index k = 0; k <= H; ++k) {
+      const double m = double(k);
+      spectrum(k, j) = {-m * given(k, j).imag(), m * given(k, j).real()};
+      spectrum(k, n + j) = -m * m * given(k, j);
+    }
+    spectrum.col(j).tail(N / 2 - H).setZero();
+    spectrum.col(n + j).tail(N / 2 - H).setZero();
+  }
+  both.backward();
+  return both.samples();
+}
+
+// Empty where W^2 comes near zero.
+std::optional<Amplitudes> amplitudes_of(const SampledSystem& system) {
+  const Index N = system.stiffness.rows(), n = system.damping.size();
+  Amplitudes found(N, n);
+  std::vector<Index> vibrate;
+  for (Index j = 0; j < n; ++j) {
+    const auto k = system.stiffness.col(j + n * j).array();
+    const double b = system.damping(j), mean = k.mean() - b * b / 4;
+    if (k.minCoeff() - b * b / 4 > 1e-3 * std::abs(mean))
+      vibrate.push_back(j);
+    else if (mean < 0)
+      overdamped(found, j, b, k);
+    else
+      return std::nullopt;
+  }
+  if (vibrate.empty()) return found;
+  const Index count = Index(vibrate.size());
+  MatrixXd W2(N, count), L(N, count);
+  for (Index c = 0; c < count; ++c) {
+    const Index j = vibrate[std::size_t(c)];
+    const double b = system.damping(j);
+    W2.col(c).array() = system.stiffness.col(j + n * j).array() - b * b / 4;
+  }
+  L.array() = 0.5 * W2.array().log();
+  const auto slopes = derivatives(L);
+  for (Index c = 0; c < count; ++c) {
+    const Index j = vibrate[std::size_t(c)];
+    vibrating(found, j, system.damping(j), W2.col(c).array(), slopes.col(c).array(), slopes.col(count + c).array());
+  }
+  return found;
+}
+
 }  // namespace
 
 double growth_bound(const SampledSystem& system) {
   const Index N = system.stiffness.rows(), n = system.damping.size();
-  const auto K = [&](Index j, Index i) { return system.stiffness.col(j + n * i).array(); };
-  // Growth of each mode's amplitude; a coupling k from mode i to mode j changes it by |k| out_j in_i, one of y1' by
-  // |nu| slope_j in_i.
-  MatrixXd own(N, n), in(N, n), out(N, n), slope(N, n);
-  for (Index j = 0; j < n; ++j) {
-    const double b = system.damping(j);
-    const ArrayXd k = K(j, j), W2 = k - b * b / 4;
-    if (W2.minCoeff() > 1e-3 * std::abs(W2.mean())) {
-      const FourierSeries L = fourier::analyse((0.5 * W2.log()).matrix().transpose());  // ln W
-      const ArrayXd W = W2.sqrt();
-      const ArrayXd L1 = fourier::synthesise(fourier::derivative(L), N).row(0).transpose();
-      const ArrayXd L2 = fourier::synthesise(fourier::derivative(L, 2), N).row(0).transpose();
-      own.col(j) = -b / 2 + (0.5 * L2 - 0.25 * L1.square()).abs() / (2 * W);
-      in.col(j) = W.rsqrt();
-      out.col(j) = W.rsqrt();
-      slope.col(j) = W.sqrt() + (b / 2 + L1 / 2).abs() * W.rsqrt();
-    } else if (W2.mean() < 0) {
-      const double mean = k.mean(), root = std::sqrt(b * b / 4 - mean);
-      const double r2 = -b / 2 - root, r1 = b > 0 ? mean / r2 : -b / 2 + root;
-      const ArrayXd d = (k - mean) / (2 * root);
-      own.col(j) = (r1 - d).max(r2 + d);
-      in.col(j).setConstant(std::sqrt(2 / root));
-      out.col(j).setConstant(1 / std::sqrt(2 * root));
-      slope.col(j).setConstant(std::max(std::abs(r1), std::abs(r2)) / std::sqrt(2 * root));
-    } else {
-      return HUGE_VAL;
-    }
-  }
-  const auto pull = [&](Index j, Index i) {
-    ArrayXd p = i == j ? ArrayXd(ArrayXd::Zero(N)) : ArrayXd(K(j, i).abs() * out.col(j).array());
-    if (system.cross.size() > 0) p += system.cross.col(j + n * i).array().abs() * slope.col(j).array();
-    return ArrayXd(p * in.col(i).array());
-  };
+  const std::optional<Amplitudes> amplitudes = amplitudes_of(system);
+  if (!amplitudes) return HUGE_VAL;
+  const auto& [own, in, out, slope] = *amplitudes;
   MatrixXd pulls(N, n * n);
   MatrixXd mean(n, n);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j) {
-      pulls.col(j + n * i) = pull(j, i);
-      mean(j, i) = pulls.col(j + n * i).mean() + (i == j ? own.col(j).mean() : 0);
+      auto pull = pulls.col(j + n * i).array();
+      if (i == j)
+        pull.setZero();
+      else
+        pull = system.stiffness.col(j + n * i).array().abs() * out.col(j).array() * in.col(i).array();
+      if (system.cross.size() > 0)
+        pull += system.cross.col(j + n * i).array().abs() * slope.col(j).array() * in.col(i).array();
+      mean(j, i) = pull.mean() + (i == j ? own.col(j).mean() : 0);
     }
   const VectorXd perron = perron_vector(mean);
   // The largest row varies over the turn; powers of the weights leave it more room.
   double best = HUGE_VAL;
+  ArrayXd largest(N), row(N);
   for (const double power : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     if (power > 0 && n == 1) break;  // weights of one mode cancel
     const VectorXd v = perron.array().pow(power);
-    ArrayXd largest = ArrayXd::Constant(N, -HUGE_VAL);
+    largest.setConstant(-HUGE_VAL);
     for (Index j = 0; j < n; ++j) {
-      ArrayXd row = own.col(j).array();
-      for (Index i = 0; i < n; ++i) row += pulls.col(j + n * i).array() * (v(i) / v(j));
+      row = own.col(j).array();
+      for (Index i = 0; i < n; ++i)
+        if (i != j || system.cross.size() > 0) row += pulls.col(j + n * i).array() * (v(i) / v(j));
       largest = largest.max(row);
     }
     double half = 0;
