@@ -130,7 +130,10 @@ bool Lu<Scalar>::all_finite() const {
 template class Lu<double>;
 template class Lu<std::complex<double>>;
 
-Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) { return A.inverse(); }
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) {
+  if (A.rows() == 1) return A.cwiseInverse();
+  return A.inverse();
+}
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) { return A.inverse(); }
 
 }  // namespace hb::dense

@@ -15,11 +15,16 @@ double largest(const FourierSeries& series) {
 
 }  // namespace
 
+SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, double speed, const SteadyOptions& options) {
+  return solve_rod(system, num_modes, scale_system(system, speed), options);
+}
+
 // q_i = a_i + b_i: |error of q_i| <= 2 bound max |unknowns|.
-SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, double speed, SteadyOptions options) {
-  if (system.num_modes() == num_modes) return solve_steady_state(system, speed, options);
+SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const ScaledSystem& scaled,
+                      SteadyOptions options) {
+  if (system.num_modes() == num_modes) return solve_steady_state(system, scaled, options);
   options.tolerance = std::max(options.tolerance / 4, std::min(options.tolerance, 1e-14));
-  SteadyState state = solve_steady_state(system, speed, options);
+  SteadyState state = solve_steady_state(system, scaled, options);
   if (state.q.c.size() == 0) return state;
   FourierSeries q = ritz_coordinates(state.q, num_modes);
   if (const double size = largest(q); size > 0) state.error_bound *= 2 * largest(state.q) / size;

@@ -8,6 +8,9 @@ namespace hb {
 // solve_steady_state of a rod's or a [hill] scene's system with num_modes or 2 num_modes unknowns: status and error
 // bound are those of q.
 [[nodiscard]] SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
+                                    const SteadyOptions& options);
+// The same where the scaled form of the system at a speed is there already.
+[[nodiscard]] SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const ScaledSystem& scaled,
                                     SteadyOptions options);
 
 }  // namespace hb

@@ -108,8 +108,9 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
 RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
                      const Only& only, Responses& responses) {
   RodPoint point;
+  const ScaledSystem scaled = scale_system(rod.system, speed);
   if (wants_steady(only)) {
-    SteadyState state = solve_rod(rod.system, rod.num_modes, speed, response_options(settings));
+    SteadyState state = solve_rod(rod.system, rod.num_modes, scaled, response_options(settings));
     point.steady = state.status;
     point.num_harmonics = state.num_harmonics;
     point.error_bound = state.error_bound;
@@ -125,12 +126,12 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   if (only.stability) {  // of every rod: the mechanism is stable where all are
     const StabilityOptions options = exponent_options(settings);
     if (only.all_exponents() && settings.search) {
-      point.stability = stability_sample(scale_system(rod.system, speed), x, options);
+      point.stability = stability_sample(scaled, x, options);
     } else {
       point.stability.emplace();
       point.stability->x = x;
       point.stability->speed = speed;
-      point.stability->stability = analyse_stability(rod.system, speed, options);
+      point.stability->stability = analyse_stability(scaled, options);
     }
   }
   return point;

@@ -34,7 +34,7 @@ bool EliminatedInverse::solve(const Spectrum& rhs, double relative, Spectrum& z)
   constexpr double rough = 1e-4;
   const Index H = A_.num_harmonics();
   const auto size = [&](const Spectrum& r) {
-    return r.topRows(H + 1).cwiseQuotient(A_.magnitude().cwiseMax(1e-300).cast<std::complex<double>>()).norm();
+    return (r.topRows(H + 1).array() / A_.magnitude().array().max(1e-300)).matrix().norm();
   };
   substitute(rhs, z);
   const double aim = relative * size(rhs);

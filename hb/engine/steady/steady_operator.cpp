@@ -55,7 +55,7 @@ Operator::Operator(const WeightedSystem& system, Eigen::Index num_harmonics)
       H_(num_harmonics),
       D_(num_harmonics + 1, system.I),
       magnitude_(num_harmonics + 1, system.I),
-      product_max_(system.I) {
+      noise_(Eigen::VectorXd::Zero(system.I)) {
   for (Eigen::Index i = 0; i < system.I; ++i)
     for (Eigen::Index k = 0; k <= H_; ++k) {
       D_(k, i) = system.D(i, k);
@@ -83,10 +83,47 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
 }
 
 void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {
+  constexpr Eigen::Index few_products = 8;  // for one number of a result, a guess from the transforms' overhead
   end_if_wished();
-  const Eigen::Index I = system_->I, P = system_->P;
   ++num_products_;
+  const bool full = num_rows > H_ && x.rows() - 1 == H_;  // sizes are wanted with the exact residual only
+  if (system_->I * (2 * system_->P + 1) <= few_products)
+    convolve(x, num_rows, full, result);
+  else
+    multiply(x, num_rows, full, result);
+  if (!system_->diagonal_damping) {
+    const Eigen::Index top = std::min(x.rows() - 1, num_rows);
+    for (Eigen::Index k = 1; k <= top; ++k)
+      result.row(k) += std::complex<double>(0, static_cast<double>(k)) *
+                       (x.row(k) * system_->G_off.transpose().cast<std::complex<double>>());
+  }
+}
+
+// (E x)_k = sum over m = -P..P of E_m x_{k-m}, E_-m and x_-m the conjugates; row 0 is real. Rounding of a sum of so
+// many products, at most that of the sum of their sizes.
+void Operator::convolve(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result) {
+  const Eigen::Index I = system_->I, P = system_->P, X = x.rows() - 1;
   result.setZero(num_rows + 1, I);
+  for (Eigen::Index j = 0; j < I; ++j)
+    for (Eigen::Index i = 0; i < I; ++i)
+      for (Eigen::Index m = -P; m <= P; ++m) {
+        if (m == 0 && i == j) continue;
+        const std::complex<double> E = system_->K(i + I * j, std::abs(m)), factor = m < 0 ? std::conj(E) : E;
+        const Eigen::Index first = std::max<Eigen::Index>(0, m - X), last = std::min(num_rows, X + m);
+        for (Eigen::Index k = first; k <= last; ++k) {
+          const std::complex<double> other = k >= m ? x(k - m, j) : std::conj(x(m - k, j));
+          result(k, i) += std::complex<double>(factor.real() * other.real() - factor.imag() * other.imag(),
+                                               factor.real() * other.imag() + factor.imag() * other.real());
+        }
+      }
+  result.row(0) = result.row(0).real().cast<std::complex<double>>();
+  if (full) noise_ = static_cast<double>(I * (2 * P + 1) + 2) * eps * moduli(x).maxCoeff() * system_->coupling;
+}
+
+// The same by products at the nodes. Errors of products and transforms are independent there, eps log2 N of their size,
+// so 1/sqrt(N) of that on every harmonic; twice that is taken.
+void Operator::multiply(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result) {
+  const Eigen::Index I = system_->I, P = system_->P;
   // Harmonics reach X+P; what is folded back lands above num_rows when N > X + P + num_rows. One length for all
   // products with rows beyond the window.
   const Eigen::Index X = x.rows() - 1, widest = num_rows > H_ ? std::max(X, last_row()) : X;
@@ -99,7 +136,6 @@ void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result
   fft.backward();
   const auto samples = fft.samples();
   product_.resize(N, I);
-  const bool full = num_rows > H_ && X == H_;  // sizes are wanted with the exact residual only
   for (Eigen::Index i = 0; i < I; ++i) {
     product_.col(i) = at.E.col(i).cwiseProduct(samples.col(0));
     for (Eigen::Index j = 1; j < I; ++j) product_.col(i) += at.E.col(i + I * j).cwiseProduct(samples.col(j));
@@ -108,18 +144,12 @@ void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result
     for (Eigen::Index i = 0; i < I; ++i) {
       Eigen::ArrayXd size = Eigen::ArrayXd::Zero(N);
       for (Eigen::Index j = 0; j < I; ++j) size += (at.E.col(i + I * j).array() * samples.col(j).array()).abs();
-      product_max_(i) = size.maxCoeff();
+      noise_(i) = 2 * eps * (2 + std::log2(N)) / std::sqrt(N) * size.maxCoeff();
     }
   fft.samples() = product_;
   fft.forward();
   result = fft.spectrum().topRows(num_rows + 1);
   result.row(0) = result.row(0).real().cast<std::complex<double>>();
-  if (!system_->diagonal_damping) {
-    const Eigen::Index top = std::min(X, num_rows);
-    for (Eigen::Index k = 1; k <= top; ++k)
-      result.row(k) += std::complex<double>(0, static_cast<double>(k)) *
-                       (x.row(k) * system_->G_off.transpose().cast<std::complex<double>>());
-  }
 }
 
 Spectrum Operator::residual(const Spectrum& x) {
@@ -142,20 +172,13 @@ double Operator::scaled_norm(const Spectrum& r) const {
   return std::sqrt(2 * size.squaredNorm() - size.row(0).squaredNorm());
 }
 
-Eigen::VectorXd Operator::noise() const {
-  const double N = static_cast<double>(std::max(outer_.N, inner_.N));
-  return 2 * eps * (2 + std::log2(N)) / std::sqrt(N) * product_max_;
-}
-
-// Errors of K: data(i) in all, at worst where |D| is least. Errors of products and transforms are independent at the
-// nodes, eps log2 N of their size there, so 1/sqrt(N) of that on every harmonic; twice that is taken.
+// Errors of K: data(i) in all, at worst where |D| is least.
 Eigen::VectorXd Operator::rounding(const Spectrum& x) const {
   const Eigen::Index I = system_->I;
   const Eigen::VectorXd data = system_->K_rounding * wiener_norms(x) + system_->f_rounding;
-  const Eigen::VectorXd flat = noise();
   Eigen::VectorXd result = 8 * eps * wiener_norms(x);
   for (Eigen::Index i = 0; i < I; ++i)
-    result(i) += data(i) / magnitude_.col(i).minCoeff() + 2 * flat(i) * magnitude_.col(i).cwiseInverse().sum();
+    result(i) += data(i) / magnitude_.col(i).minCoeff() + 2 * noise_(i) * magnitude_.col(i).cwiseInverse().sum();
   return result;
 }
 

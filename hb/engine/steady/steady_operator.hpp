@@ -1,7 +1,7 @@
 // The block Hill operator of x'' + G x' + K(tau) x = f(tau) on a window of harmonics 0..H,
 //     (A x)_k = D(k) x_k + (E x)_k,    D_i(k) = -k^2 + i k G_ii + mean K_ii,    E = everything else,
-// with E x by FFT: K is needed at the nodes only. Components are weighted by powers of two so that the size of x_i is
-// about the size of what it adds to q.
+// with E x by convolution or by FFT, which needs K at the nodes only. Components are weighted by powers of two so that
+// the size of x_i is about the size of what it adds to q.
 #pragma once
 
 #include <Eigen/Core>
@@ -66,7 +66,8 @@ class Operator {
   const Spectrum& D() const { return D_; }  // (H+1) x I
   const Eigen::MatrixXd& magnitude() const { return magnitude_; }  // (H+1) x I, |D| without cancellation
 
-  // E x, rows 0..num_rows (at most last_row()) of any x with rows up to last_row(); free of aliasing.
+  // E x, rows 0..num_rows (at most last_row()) of any x with rows up to last_row(); free of aliasing: by FFT or, of few
+  // components and harmonics of K, by convolution.
   void couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result);
   // f - A x, rows 0..max(last_row(), harmonics of f).
   [[nodiscard]] Spectrum residual(const Spectrum& x);
@@ -76,7 +77,7 @@ class Operator {
   // data, of the products and of the transforms.
   [[nodiscard]] Eigen::VectorXd rounding(const Spectrum& x) const;
   // The part of it that is alike on all harmonics, per component: rows below this say nothing.
-  [[nodiscard]] Eigen::VectorXd noise() const;
+  [[nodiscard]] const Eigen::VectorXd& noise() const { return noise_; }
   int num_products() const { return num_products_; }
 
  private:
@@ -85,6 +86,8 @@ class Operator {
     Eigen::MatrixXd E;  // N x I*I
   };
   const Nodes& nodes(Eigen::Index N);
+  void convolve(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
+  void multiply(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
 
   const WeightedSystem* system_;
   Eigen::Index H_;
@@ -92,7 +95,7 @@ class Operator {
   Eigen::MatrixXd magnitude_;
   Nodes inner_, outer_;
   Eigen::MatrixXd product_;
-  Eigen::VectorXd product_max_;  // max over the nodes of sum_k |E_ik| |x_k| in the last exact residual
+  Eigen::VectorXd noise_;  // of the last exact residual
   int num_products_ = 0;
 };
 

@@ -33,13 +33,15 @@ constexpr double most_bytes = 4e8;
 constexpr double singular_distance = 64 * eps;
 
 // The equations as given, for residuals in extended precision: u = scale * T x solves `system`, rows scaled by
-// `rows` and 1/scale are those of the scaled system.
+// T^-1 M^-1 and 1/scale are those of the scaled system.
 struct Given {
   const HillSystem* system;
   double speed;
   double scale;
-  Eigen::MatrixXd T, rows;
+  Eigen::MatrixXd T, T_inverse;
   bool is_q;  // u is q itself, else q = load_scale * (T of the scaled system) * u
+
+  Eigen::MatrixXd rows() const { return T_inverse * dense::inverse(system->mass); }
 };
 
 Spectrum padded(const Spectrum& x, Index H) {
@@ -215,7 +217,7 @@ class Solver {
   };
   Residual extended_residual(const Eigen::MatrixXcd& u) const {
     const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
-    const Eigen::MatrixXd rows = system_.weight.asDiagonal() * given_.rows;
+    const Eigen::MatrixXd rows = system_.weight.asDiagonal() * given_.rows();
     const steady::AccurateResidual accurate =
         steady::accurate_residual(*given_.system, given_.speed, FourierSeries(u), given_.scale);
     Residual residual;
@@ -330,10 +332,13 @@ void require(const SteadyOptions& options) {
 }  // namespace
 
 SteadyState solve_steady_state(const HillSystem& system, double speed, const SteadyOptions& options) {
+  return solve_steady_state(system, scale_system(system, speed), options);
+}
+
+SteadyState solve_steady_state(const HillSystem& system, const ScaledSystem& scaled, const SteadyOptions& options) {
   require(options);
-  const ScaledSystem scaled = scale_system(system, speed);
   if (scaled.load_scale == 0) return at_rest(system.num_modes());
-  const Given given{&system, speed, scaled.load_scale, scaled.T, scaled.T_inverse * dense::inverse(system.mass), true};
+  const Given given{&system, scaled.speed, scaled.load_scale, scaled.T, scaled.T_inverse, true};
   return Solver(scaled, given, options).run();
 }
 

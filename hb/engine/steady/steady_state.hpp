@@ -12,7 +12,7 @@ namespace hb {
 
 enum class SteadyMethod {
   automatic,  // iterative by measured contraction, direct behind it
-  direct,  // half-spectrum block elimination from the outer harmonics, one refinement at least
+  direct,  // half-spectrum block elimination from the outer harmonics, refined by the residual
   iterative,  // FFT products, per-harmonic diagonal preconditioner: fixed point, then GMRES with a small core
 };
 
@@ -51,6 +51,9 @@ struct SteadyState {
 };
 
 [[nodiscard]] SteadyState solve_steady_state(const HillSystem& system, double speed, const SteadyOptions& options = {});
+// The same where its scaled form at a speed is there already.
+[[nodiscard]] SteadyState solve_steady_state(const HillSystem& system, const ScaledSystem& scaled,
+                                             const SteadyOptions& options = {});
 [[nodiscard]] SteadyState solve_steady_state(const ScaledSystem& system, const SteadyOptions& options = {});
 
 }  // namespace hb
