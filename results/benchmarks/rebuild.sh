@@ -13,3 +13,4 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 gnuplot plot.gp
 python3 -B ../../tools/benchmarks/commands.py
 python3 -B ../../tools/benchmarks/scale.py
+./tables.py
