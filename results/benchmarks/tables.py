@@ -27,7 +27,7 @@ def named(command, flags=""):
 
 def seconds(text):
     s = float(text)
-    for unit, size in (("s", 1), ("ms", 1e-3), ("us", 1e-6)):
+    for unit, size in (("s", 1), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)):
         if s >= size:
             return f"{s / size:.3g} {unit}"
     return f"{s:.3g} s"
