@@ -131,9 +131,14 @@ std::vector<std::size_t> compare(const Cells& coarse, Cells& fine) {
   return nearest;
 }
 
+// What may be left of an exponent that still changes by so much.
+double unresolved(cplx s, double change) {
+  return std::max(2 * change, std::min(4 * change, 0.5 * std::abs(s.real())));
+}
+
 // hb/engine/README.md (E17), (E18).
 TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
-  constexpr double asymptotic = 1e-3, unresolved = 2;  // larger changes do not tell how errors fall
+  constexpr double asymptotic = 1e-3;  // larger changes do not tell how errors fall
   const std::size_t n = fine.turn.s.size();
   const std::vector<std::size_t> nearest = compare(coarse, fine);
   const double ratio = double(coarse.count) / double(fine.count);
@@ -155,7 +160,8 @@ TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
         least = std::max(least, 2 * of_order * fine.change[k]);
     const bool falls = change < asymptotic;
     errors.left.push_back(
-        std::max(falls ? std::min(change, (real ? slowest : slower) * largest) : unresolved * change, least) +
+        std::max(falls ? std::min(change, (real ? slowest : slower) * largest) : unresolved(fine.turn.s[i], change),
+                 least) +
         rounding);
     errors.imaginary.push_back(
         falls ? std::max({std::min(fine.turned[i], slower * largest), 2 * of_order * change, least}) + rounding
