@@ -26,6 +26,9 @@ function(hb_target_options target)
   endif()
   # One alignment whatever the instruction set, so that libraries and their users agree on Eigen's allocations.
   target_compile_definitions(${target} PUBLIC EIGEN_MAX_ALIGN_BYTES=64)
+  # fmt compares formats with what they format when it runs, as it does anyway; the preset `developer` does so when it
+  # compiles, which takes a sixth of the time of the files that put words together.
+  target_compile_definitions(${target} PRIVATE $<$<CONFIG:Release>:FMT_CONSTEVAL=>)
   if(HB_SANITIZE)
     # Not asked for apart, which costs two fifths of the compile time: null pointers, whose use AddressSanitizer reports
     # as well, and alignment, which Eigen asserts where it matters.

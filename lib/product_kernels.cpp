@@ -2,3 +2,4 @@
 
 HB_PRODUCTS(, double);
 HB_PRODUCTS(, std::complex<double>);
+HB_MIXED_PRODUCTS(, double, std::complex<double>);
