@@ -115,6 +115,7 @@ std::optional<FourierSeries> solve_linearised(const HillSystem& system, double s
 }
 
 // In reversed time, mu(tau) = lambda(-tau):  M^T mu'' + B^T mu' + C(-tau)^T mu = g(-tau).
+// hb/engine/README.md (A1).
 std::optional<FourierSeries> solve_adjoint(const HillSystem& system, double speed, FourierSeries g,
                                            Index num_harmonics) {
   const Index I = system.num_modes();
@@ -197,6 +198,7 @@ std::optional<FloquetVectors> floquet_vectors(const HillSystem& system, double s
   return std::nullopt;
 }
 
+// hb/engine/README.md (A3).
 Complex exponent_nearby(const FloquetVectors& vectors, const HillSystem& system) {
   const MatrixXcd product = hill_product(system, vectors.speed, vectors.s, vectors.x);
   return vectors.s - vectors.y.conjugate().cwiseProduct(product).sum() / vectors.slope;

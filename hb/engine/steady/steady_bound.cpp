@@ -88,6 +88,7 @@ double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::Mat
   return safety * response * weigh(sizes, T);
 }
 
+// hb/engine/README.md (S6).
 Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response, const Eigen::MatrixXd& T,
                       double enough) {
   // What a solve leaves, near resonance in the very direction that matters, grows by the response; the next residual

@@ -82,6 +82,7 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
   return store;
 }
 
+// hb/engine/README.md (S3).
 void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {
   constexpr Eigen::Index few_products = 8;  // for one number of a result, a guess from the transforms' overhead
   end_if_wished();

@@ -28,7 +28,7 @@ double largest_beyond(Index N, double peak, const Function& g) {
   return largest;
 }
 
-// B and the norm of 1 - B A, column by column.
+// B and the norm of 1 - B A, column by column: hb/engine/README.md (S8).
 class Contraction {
  public:
   Contraction(const WeightedSystem& system, const MatrixXd& T, Index N)

@@ -179,6 +179,7 @@ class Solver {
     return k > H ? std::max(k + 1, H + 2) : H;
   }
 
+  // The claim is hb/engine/README.md (S7).
   void assess(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, const Spectrum& r, double response,
               SteadyState& state, Index& wanted) {
     const Index H = A.num_harmonics();

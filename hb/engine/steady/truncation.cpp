@@ -11,6 +11,7 @@ namespace {
 using Index = Eigen::Index;
 }
 
+// hb/engine/README.md (S4):
 // a_k,i = (|f_k,i| + sum_m sum_j |K_m,ij| a_k-m,j) / |D_i(k)|, kept at or below the largest response to the load itself
 // where the recursion would grow (that is the core, not the tail).
 Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index most) {

@@ -142,6 +142,7 @@ Eigen::VectorXd ScaledSystem::squared_frequencies() const {
   return values;
 }
 
+// hb/engine/README.md (S2).
 ScaledSystem scale_system(const HillSystem& system, double speed) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
