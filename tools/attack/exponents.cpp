@@ -12,6 +12,7 @@
 
 #include "hb/engine/exponents/stability.hpp"
 #include "lib/stopwatch.hpp"
+#include "tools/attack/case_flags.hpp"
 #include "tools/attack/families.hpp"
 #include "tools/attack/kept_references.hpp"
 
@@ -184,17 +185,13 @@ int main(int argc, char** argv) {
   Options options;
   std::vector<std::string> known;
   for (const auto& [name, method] : methods) known.push_back(name);
-  app.add_option("--cases", options.cases, "of each family");
-  app.add_option("--first", options.first, "number of the first case");
-  app.add_option("--seconds", options.seconds, "stop after");
-  app.add_option("--seed", options.seed, "which cases");
+  add_case_flags(app, options, "of each family", "every exponent");
   app.add_option("--family", options.family, "this one only")
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
   app.add_option("--method", options.method)->check(CLI::IsMember(known));
   app.add_option("--tolerance", options.tolerance);
   app.add_option("--references", options.references, "file that keeps the references for the next time");
   app.add_flag("--leading", options.leading_only, "leading exponents only");
-  app.add_flag("--verbose", options.verbose, "every exponent");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }

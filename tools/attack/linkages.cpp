@@ -19,6 +19,7 @@
 #include "tests/support/newton_euler.hpp"
 #include "tests/support/random_hill_system.hpp"
 #include "tests/support/random_linkage.hpp"
+#include "tools/attack/case_flags.hpp"
 
 namespace hb::attack {
 namespace {
@@ -223,10 +224,7 @@ int main(int argc, char** argv) {
   using namespace hb::attack;
   CLI::App app{"Random linkages against the Newton-Euler model of the tests, growth rates three ways"};
   Options options;
-  app.add_option("--cases", options.cases, "linkages");
-  app.add_option("--seconds", options.seconds, "stop after");
-  app.add_option("--seed", options.seed, "which cases");
-  app.add_flag("--verbose", options.verbose, "every growth rate");
+  add_case_flags(app, options, "linkages", "every growth rate");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }

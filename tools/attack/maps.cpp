@@ -14,6 +14,7 @@
 #include "lib/stop_wish.hpp"
 #include "lib/stopwatch.hpp"
 #include "tests/support/band_systems.hpp"
+#include "tools/attack/case_flags.hpp"
 
 namespace hb::attack {
 namespace {
@@ -273,9 +274,7 @@ int main(int argc, char** argv) {
   using namespace hb::attack;
   CLI::App app{"Maps of random systems against single verdicts"};
   Options options;
-  app.add_option("--cases", options.cases, "of each family");
-  app.add_option("--seconds", options.seconds, "stop after");
-  app.add_option("--seed", options.seed, "which cases");
+  add_case_flags(app, options, "of each family");
   app.add_option("--family", options.family, "this one only")
       ->check(CLI::IsMember(std::vector<std::string>(names.begin(), names.end())));
   CLI11_PARSE(app, argc, argv);

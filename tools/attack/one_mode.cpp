@@ -12,6 +12,7 @@
 #include "hb/engine/boundaries/stability_map.hpp"
 #include "lib/stopwatch.hpp"
 #include "tests/support/random_hill_system.hpp"
+#include "tools/attack/case_flags.hpp"
 
 namespace hb::attack {
 namespace {
@@ -198,10 +199,7 @@ int main(int argc, char** argv) {
   using namespace hb::attack;
   CLI::App app{"Maps of one random mode against single answers"};
   Options options;
-  app.add_option("--cases", options.cases, "how many maps");
-  app.add_option("--first", options.first, "number of the first");
-  app.add_option("--seconds", options.seconds, "stop after");
-  app.add_option("--seed", options.seed, "which cases");
+  add_case_flags(app, options, "how many maps");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }

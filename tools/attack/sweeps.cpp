@@ -13,6 +13,7 @@
 #include "hb/hb.hpp"
 #include "lib/stopwatch.hpp"
 #include "tests/support/random_hill_system.hpp"
+#include "tools/attack/case_flags.hpp"
 #include "tools/attack/lines.hpp"
 #include "tools/attack/true_bands.hpp"
 
@@ -246,13 +247,9 @@ int main(int argc, char** argv) {
   Options options;
   std::vector<std::string> families;
   for (int f = 0; f < num_line_families; ++f) families.emplace_back(line_family(f));
-  app.add_option("--cases", options.cases, "of each family");
-  app.add_option("--first", options.first, "number of the first case");
-  app.add_option("--seconds", options.seconds, "stop after");
-  app.add_option("--seed", options.seed, "which cases");
+  add_case_flags(app, options, "of each family", "every band");
   app.add_option("--grid", options.grid, "single verdicts on each line, before the search between them");
   app.add_option("--family", options.family, "this one only")->check(CLI::IsMember(families));
-  app.add_flag("--verbose", options.verbose, "every band");
   CLI11_PARSE(app, argc, argv);
   return run(options);
 }
