@@ -8,8 +8,16 @@ set(HB_PACKAGE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/hb)
 install(TARGETS hb_lib hb_engine hb_analysis EXPORT hb_targets)
 install(EXPORT hb_targets NAMESPACE hb:: FILE hb-targets.cmake DESTINATION ${HB_PACKAGE_DIR})
 
+# All headers are for users but those that include what the libraries use inside.
+set(HB_PRIVATE_HEADERS
+  hb/engine/time/sundials_session.hpp
+  lib/scene/plausibility.hpp
+  lib/scene/scene_parts.hpp
+  lib/scene/scene_paths.hpp
+  lib/scene/scene_reader.hpp)
 file(GLOB_RECURSE headers RELATIVE ${PROJECT_SOURCE_DIR} CONFIGURE_DEPENDS
   ${PROJECT_SOURCE_DIR}/lib/*.hpp ${PROJECT_SOURCE_DIR}/hb/*.hpp)
+list(REMOVE_ITEM headers ${HB_PRIVATE_HEADERS})
 foreach(header IN LISTS headers)
   file(READ ${PROJECT_SOURCE_DIR}/${header} text)
   string(REPLACE "#include \"lib/" "#include \"hb/lib/" text "${text}")

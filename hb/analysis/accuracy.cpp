@@ -1,7 +1,5 @@
 #include "hb/analysis/accuracy.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <variant>
 
@@ -48,14 +46,16 @@ PeakAccuracy peak_accuracy(const Settings& settings) {
 
 double integration_tolerance(const Settings& settings) { return std::max(settings.tolerance, 1e-9); }
 
-std::string accuracy_text(const Settings& settings) {
-  const SweepOptions boundary = boundary_options(settings);
+std::vector<SolverTolerance> solver_tolerances(const Settings& settings) {
   const PeakAccuracy peak = peak_accuracy(settings);
-  return fmt::format(
-      "tolerance {:.1e}: response {:.1e}, exponents {:.1e}, boundaries {:.1e} by exponents {:.1e}, peaks {:.1e} by "
-      "responses {:.1e}, time integration {:.1e}",
-      settings.tolerance, response_options(settings).tolerance, exponent_options(settings).tolerance,
-      boundary.tolerance, boundary.stability.tolerance, peak.height, peak.fine, integration_tolerance(settings));
+  return {{"response", response_options(settings).tolerance},
+          {"exponents", exponent_options(settings).tolerance},
+          {"compared_modes", growth_comparison_options(settings).tolerance},
+          {"boundary_exponents", boundary_options(settings).stability.tolerance},
+          {"boundaries", settings.boundary_tolerance},
+          {"peak_responses", peak.fine},
+          {"peaks", peak.height},
+          {"time_integration", integration_tolerance(settings)}};
 }
 
 }  // namespace hb

@@ -9,10 +9,11 @@
 //   time integration               T, at least 1e-9
 //   joint forces                   the harmonics of q carry them: estimated, not asked for
 //
-// steady, sweep, map, check and tune use these and no others.
+// steady, sweep, map, check and tune use these and no others. solver_tolerances tells them.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hb/analysis/request.hpp"
 #include "hb/engine/boundaries/sweep.hpp"
@@ -34,7 +35,11 @@ struct PeakAccuracy {
 [[nodiscard]] PeakAccuracy peak_accuracy(const Settings& settings);
 [[nodiscard]] double integration_tolerance(const Settings& settings);
 
-// The table above with its numbers, one line each.
-[[nodiscard]] std::string accuracy_text(const Settings& settings);
+// The table above with its numbers.
+struct SolverTolerance {
+  std::string solver;  // as a key of JSON
+  double tolerance = 0;
+};
+[[nodiscard]] std::vector<SolverTolerance> solver_tolerances(const Settings& settings);
 
 }  // namespace hb

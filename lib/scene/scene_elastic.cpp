@@ -126,7 +126,7 @@ double internal_damping(const TableView& elastic, const Elastic& link, const Bod
   if (const toml::node* node = elastic.node("damping_ratio"); node->is_table()) {
     const TableView table = *elastic.table("damping_ratio");
     ratio = table.need_number("ratio", ratios);
-    mode = table.integer("mode", 1, 60).value_or(1);
+    mode = table.integer("mode", 1, max_modes).value_or(1);
   } else {
     ratio = elastic.number("damping_ratio", ratios).value_or(0);
   }

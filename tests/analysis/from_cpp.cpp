@@ -133,6 +133,46 @@ TEST(FromCpp, TheTwoPathsAgreeOnALinkageBuiltInCode) {
   EXPECT_TRUE(found.agrees());
 }
 
+// q'' + d q' + (1.2 + 0.4 cos tau) q = cos tau, whose tongue is known to the sweep of tests/scenes/mathieu.toml.
+TEST(FromCpp, AHillSystemBuiltInCodeIsAnsweredByEveryAnalysis) {
+  const SceneFamily family({{"d", 0.1}}, [](const std::vector<double>& values) {
+    HillSystem system;
+    system.mass = Eigen::MatrixXd::Identity(1, 1);
+    system.damping = Eigen::MatrixXd::Constant(1, 1, values[0]);
+    system.stiffness[0] = FourierSeries(1, 1);
+    system.stiffness[0].c << 1.2, 0.2;
+    system.load[0] = FourierSeries(1, 1);
+    system.load[0].c << 0, 0.5;
+    return system;
+  });
+  const Scene scene = family.scene();
+  Request one;
+  one.omega = 1;
+  const SteadyResult alone = steady(scene, one);
+  EXPECT_EQ(alone.rods[0].stability->verdict, Verdict::stable);
+  SweepRequest range;
+  range.x = along("omega", 1.5, 2.6, 12);
+  const Sweep found = sweep(family, range);
+  ASSERT_EQ(found.rods[0].bands.size(), 1u);
+  EXPECT_NEAR(found.rods[0].bands[0].from, 2.0325246720, 1e-9);
+  EXPECT_NEAR(found.rods[0].bands[0].to, 2.3373680000, 1e-9);
+  MapRequest plane;
+  plane.x = range.x;
+  plane.y = along("d", 0.1, 0.5, 2);
+  const Map over = map(family, plane);
+  EXPECT_EQ(over.worst()[6].verdict, Verdict::unstable);
+  EXPECT_EQ(over.worst()[12 + 6].verdict, Verdict::stable);
+  CheckRequest twice;
+  twice.omega = 1;
+  EXPECT_TRUE(check(scene, twice).agrees());
+  BenchRequest timed;
+  timed.omega = 1;
+  timed.case_limit = 0.1;
+  const Bench rows = bench(scene, timed);
+  ASSERT_EQ(rows.rods.size(), 1u);
+  EXPECT_TRUE(rows.complete());
+}
+
 TEST(FromCpp, ARefusalNamesFieldFoundAndAllowed) {
   Request request;
   request.rpm = 300;

@@ -1,4 +1,5 @@
 // `hb sweep` as its users meet it: the built command, its documents, files and exit codes.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,6 +47,30 @@ TEST_F(Sweep, NumbersOfARangeMayHaveUnits) {
   equal(" --rpm 5Hz:10Hz:x3", " --rpm 300:600:x3");
   equal(" --rpm 1500 --x '*.E=\"190 GPa\":\"210 GPa\":\"10 GPa\"'", " --rpm 1500 --x *.E=19e7:21e7:1e7");
   equal(" --rpm 1500 --x gravity=0:9.81m/s^2:x3", " --rpm 1500 --x gravity=0:9810:x3");
+}
+
+// What a tolerance means for each solver was shown nowhere.
+TEST_F(Sweep, StatsShowWhatTheToleranceMeansForEachSolverTheSameInEveryCommand) {
+  const std::string crank = scene("slider_crank") + " --modes 1 --tol 1e-7 --stats ";
+  const Json wanted = {
+      {"response", 1e-7},   {"exponents", 1e-6},      {"compared_modes", 1e-9}, {"boundary_exponents", 1e-9},
+      {"boundaries", 1e-8}, {"peak_responses", 1e-9}, {"peaks", 5e-8},          {"time_integration", 1e-7}};
+  const auto shown = [](const Json& document) {
+    Json rounded;
+    for (const auto& [solver, tolerance] : document["accuracy"].items())
+      rounded[solver] = std::stod(fmt::format("{:.3e}", tolerance.get<double>()));
+    return rounded;
+  };
+  EXPECT_EQ(shown(document(crank + "--rpm 300:400:100 --only stability")), wanted);
+  for (const std::string command : {"steady", "check"}) {
+    const CommandResult found = hb(command + " " + crank + "--rpm 300 --json");
+    EXPECT_EQ(shown(Json::parse(found.out, nullptr, false)), wanted) << command << found.err;
+    const CommandResult text = hb(command + " " + crank + "--rpm 300 --no-plots");
+    EXPECT_NE((text.out + text.err).find("boundary exponents 1.0e-09"), std::string::npos) << text.out << text.err;
+  }
+  const CommandResult map = hb("map " + crank + "--x rpm=300:400:2 --y rod.J=800:900:2 --boundary-tol 1e-5");
+  EXPECT_NE(map.err.find("tolerance 1.0e-07 means: response 1.0e-07"), std::string::npos) << map.err;
+  EXPECT_NE(map.err.find("boundaries 1.0e-05"), std::string::npos) << map.err;
 }
 
 TEST_F(Sweep, WhatWasNotAskedForIsNeitherComputedNorClaimed) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <regex>
+#include <set>
 
 #include "tests/support/run_command.hpp"
 #include "tools/work/progress.hpp"
@@ -86,6 +87,56 @@ TEST_F(Words, EveryFlagOfTheHelpIsInTheManual) {
       EXPECT_NE(table.find("`" + name), std::string::npos) << command << " " << name;
     }
     EXPECT_GT(flags, 0) << help;
+  }
+}
+
+// Keys of a document that are nowhere in the manual; names of links and joints are not keys.
+void add_unknown_keys(const Json& document, const std::string& manual, const std::string& parent,
+                      std::set<std::string>& unknown) {
+  const auto is_word = [&](const std::string& key) {
+    const auto part_of_word = [&](std::size_t at) {
+      return at < manual.size() && (std::isalnum(static_cast<unsigned char>(manual[at])) || manual[at] == '_');
+    };
+    for (std::size_t at = manual.find(key); at != std::string::npos; at = manual.find(key, at + 1))
+      if ((at == 0 || !part_of_word(at - 1)) && !part_of_word(at + key.size())) return true;
+    return false;
+  };
+  if (document.is_object()) {
+    const bool names = parent == "joints" || parent == "rods" || parent == "bearings" || parent == "sliders";
+    for (const auto& [key, value] : document.items()) {
+      if (!names && !is_word(key)) unknown.insert(key);
+      add_unknown_keys(value, manual, key, unknown);
+    }
+  } else if (document.is_array()) {
+    for (const Json& value : document) add_unknown_keys(value, manual, "", unknown);
+  }
+}
+
+// `joints_difference` of a check over a range was in no page of the manual.
+TEST_F(Words, EveryKeyOfADocumentIsInTheManual) {
+  const std::string manual = read(HB_SOURCE_DIR "/tools/README.md");
+  const std::string measured = "'" HB_SOURCE_DIR "/results/first_steps/scene.toml'";
+  const std::string crank = scene("slider_crank") + " --modes 1 ";
+  for (const std::string& command :
+       {"scene " + scene("six_link"), "scene " + scene("mathieu"), "steady " + scene("mathieu") + " --omega 1 --stats",
+        "steady " + measured + " --rpm 3000 --modes 2", "steady " + scene("six_link") + " --rpm 1000 --modes 2",
+        "steady " + crank + "--rpm 1000 --theory nonlinear",
+        "sweep " + measured + " --rpm 7000:8000:100 --modes 2 --stats",
+        "sweep " + crank + "--rpm 2000:2200:100 --theory nonlinear",
+        "map " + measured + " --x rpm=7000:8000:4 --y rod.section.width=15:17:3 --modes 1 --stress",
+        "map " + scene("mathieu") + " --x omega=1.9:2.5:4 --y hill.stiffness.1.cos.0.0=0.1:0.5:3 --damping-range 0.5:2",
+        "check " + crank + "--rpm 1500 --march --stats", "check " + crank + "--rpm 1500:1600:100",
+        "check " + crank + "--rpm 1500 --theory nonlinear", "bench " + scene("mathieu") + " --omega 1 --case-limit 0.1",
+        "compare " + scene("slider_crank") + " " + crank + "--rpm 1500",
+        "tune " + crank +
+            "--minimise mass --vary rod.J=800:1000 --keep 'deflection<=5' --over rpm=2000:2200 --analyses 8",
+        "fit " + measured + " --rod rod --decay '" HB_SOURCE_DIR "/results/first_steps/decay.csv'"}) {
+    const CommandResult found = hb(command + " --json --no-plots");
+    std::set<std::string> unknown;
+    const Json document = Json::parse(found.out, nullptr, false);
+    ASSERT_TRUE(document.is_object()) << command << found.err;
+    add_unknown_keys(document, manual, "", unknown);
+    EXPECT_EQ(unknown, std::set<std::string>()) << command;
   }
 }
 

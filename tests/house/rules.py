@@ -104,6 +104,55 @@ def formulas():
         yield "no citation found in any source"
 
 
+def function_lengths(path, indent):
+    """Name and lines of the functions that begin at this indentation, as clang-format lays them out."""
+    text = path.read_text().splitlines()
+    begin = None
+    for number, line in enumerate(text):
+        if begin is None:
+            own = line.startswith(indent) and line[len(indent):len(indent) + 1].strip()
+            if own and line.endswith("{") and "(" in line + "".join(text[max(0, number - 6):number]) and not re.match(
+                    r"\s*(namespace|struct|class|enum|union|extern|if|for|while|switch|else|do)\b", line):
+                begin = number
+                while begin and text[begin - 1].startswith(indent) and not re.search(r"([;{}:]|^\s*|//.*|#.*)$", text[begin - 1]):
+                    begin -= 1
+        elif re.fullmatch(indent + r"\}(\)?;)?", line):
+            yield begin + 1, number - begin + 1
+            begin = None
+
+
+def lengths():
+    """No function has more than 80 lines; the file of a subcommand at most 150."""
+    for path in sources("lib", "hb", "tools"):
+        here = path.relative_to(root).as_posix()
+        for indent in ("", "  "):
+            for number, length in function_lengths(path, indent):
+                if length > 80:
+                    yield f"{here}:{number}: a function of {length} lines"
+        text = path.read_text()
+        if here.startswith("tools/command/") and re.search(r"^void add_\w+_command\(", text, re.M) and text.count("\n") > 150:
+            yield f"{here}: {text.count(chr(10))} lines"
+
+
+def installed():
+    """An installed header includes the standard library, Eigen and other installed headers alone."""
+    listed = re.search(r"set\(HB_PRIVATE_HEADERS([^)]*)\)", (root / "cmake/install.cmake").read_text())
+    private = set(listed[1].split())
+    for header in private:
+        if not (root / header).exists():
+            yield f"cmake/install.cmake: {header} does not exist"
+    for path in sources("lib", "hb"):
+        here = path.relative_to(root).as_posix()
+        if path.suffix != ".hpp" or here in private:
+            continue
+        for number, line in lines(path):
+            if found := re.match(r'\s*#include "([^"]+)"', line):
+                if found[1] in private:
+                    yield f"{here}:{number}: includes {found[1]}, which is not installed"
+            elif (found := re.match(r"\s*#include <([^>]+)>", line)) and not re.fullmatch(r"Eigen/\w+|[a-z_]+", found[1]):
+                yield f"{here}:{number}: includes {found[1]}, which its users may not have"
+
+
 def format():
     """Sources are as clang-format writes them (.clang-format)."""
     files = list(sources("lib", "hb", "tools", "tests"))
@@ -113,6 +162,7 @@ def format():
         yield from sorted({line.split(": error")[0] for line in run.stderr.splitlines() if ": error" in line})
 
 
-breaches = list({"direction": direction, "silence": silence, "formulas": formulas, "format": format}[sys.argv[1]]())
+breaches = list({"direction": direction, "silence": silence, "formulas": formulas, "lengths": lengths,
+                 "installed": installed, "format": format}[sys.argv[1]]())
 print("\n".join(breaches))
 sys.exit(bool(breaches))

@@ -16,6 +16,7 @@
 #include "tools/command/speed_flags.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/command/tune_heights.hpp"
+#include "tools/command/tune_search.hpp"
 #include "tools/command/tune_start.hpp"
 
 namespace hb::tools {
@@ -72,39 +73,6 @@ Keep keep_flag(const std::string& text, const Scene& scene) {
   return keep;
 }
 
-DesignOptions design_options(const TuneFlags& flags, std::size_t num_variables) {
-  DesignOptions options;
-  options.max_evaluations = 400 + 100 * static_cast<int>(std::min<std::size_t>(num_variables, 100));
-  if (!flags.analyses.empty())
-    options.max_evaluations = integer_flag("--analyses", flags.analyses, 2, 1000000, "an integer 2 to 1000000");
-  if (!flags.seed.empty())
-    options.seed = static_cast<std::uint64_t>(
-        integer_flag("--seed", flags.seed, 0, std::numeric_limits<int>::max(), "an integer >= 0"));
-  if (!flags.algorithm.empty()) {
-    std::string names;
-    bool known = false;
-    for (const DesignAlgorithm algorithm :
-         {DesignAlgorithm::automatic, DesignAlgorithm::direct, DesignAlgorithm::mlsl, DesignAlgorithm::cobyla,
-          DesignAlgorithm::bobyqa, DesignAlgorithm::slsqp, DesignAlgorithm::mma}) {
-      names += (names.empty() ? "" : ", ") + std::string(to_string(algorithm));
-      if (flags.algorithm != to_string(algorithm)) continue;
-      options.algorithm = algorithm;
-      known = true;
-    }
-    if (!known) throw UsageError(fmt::format("--algorithm: found \"{}\", allowed: {}", flags.algorithm, names));
-  }
-  return options;
-}
-
-void require_algorithm(const TuneTask& task) {
-  if (task.options.algorithm != DesignAlgorithm::bobyqa) return;
-  constexpr const char* allowed = "allowed: automatic, direct, mlsl, cobyla, slsqp, mma";
-  if (!task.keeps.empty())
-    throw UsageError(fmt::format("--algorithm: found bobyqa, which takes no conditions, with --keep; {}", allowed));
-  if (task.variables.size() < 2)
-    throw UsageError(fmt::format("--algorithm: found bobyqa, which needs two variables, with one --vary; {}", allowed));
-}
-
 }  // namespace
 
 AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
@@ -127,7 +95,9 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
     given = as_written.with(set);
   } catch (const ObstructedLinkage&) {  // an infeasible start
   }
-  TuneTask task{.source = set.empty() ? as_written : SceneSource(as_written.text_with(set), input.name, input.folder),
+  const SceneSource source =
+      set.empty() ? as_written : SceneSource(as_written.text_with(set), input.name, input.folder);
+  TuneTask task{.family = source,
                 .variables = {},
                 .goal = flags.maximise.empty() ? parse_goal(flags.minimise) : parse_largest_goal(flags.maximise),
                 .keeps = {},
@@ -135,11 +105,11 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
                 .in_rpm = true,
                 .heights = {},
                 .settings = {},
-                .options = design_options(flags, flags.vary.size())};
+                .options = design_options(flags)};
   Remarks remarks;
-  task.variables = tune_variables(flags, task.source, remarks);
+  task.variables = tune_variables(flags, source, remarks);
   close_start(task, remarks);
-  const Scene scene = given ? *given : task.source.with(overrides_at(task, start_of(task)));
+  const Scene scene = given ? *given : task.family.scene(numbers_at(task, start_of(task)));
   for (const std::string& text : flags.keep) task.keeps.push_back(keep_flag(text, scene));
   require_algorithm(task);
   task.settings = settings(flags, scene);
@@ -148,7 +118,7 @@ AskedTune asked_tune(const TuneFlags& flags, const SceneInput& input) {
   std::tie(task.span, task.in_rpm) = span_of(flags, scene);
   task.speed_unit = task.in_rpm ? speed_from_rpm(1, scene.units) : 1;
   start_speeds(task, remarks);
-  return {std::move(task), scene, std::move(remarks)};
+  return {source, std::move(task), scene, std::move(remarks)};
 }
 
 }  // namespace hb::tools

@@ -11,6 +11,7 @@
 namespace hb::tools {
 
 struct AskedTune {
+  SceneSource source;  // of the task's scenes
   TuneTask task;
   Scene scene;  // before; where that does not close, the start
   std::vector<std::string> remarks;  // where the search starts, where that is not the scene's own design

@@ -115,7 +115,8 @@ int run_check(const CheckFlags& flags) {
     found = check(scene, request, SharedWork(out.threads, nullptr, {}, early_end(out.folder.has_value())));
   }
   if (found.speeds.empty()) return stopped_status();
-  const nlohmann::ordered_json document = check_json(*found.model, found.speeds, found.settings);
+  nlohmann::ordered_json document = check_json(*found.model, found.speeds, found.settings);
+  if (out.stats) document["accuracy"] = accuracy_json(found.settings);
   Delivery delivery;
   delivery.printed =
       out.json ? json_text(document) : check_report(*found.model, found.speeds, found.settings, out.stats);

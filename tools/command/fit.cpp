@@ -114,7 +114,7 @@ int run_fit(const FitFlags& flags) {
   FittedDamping fitted;
   const Body& link = fitted_link(scene, flags.rod);
   fitted.rod = link.name;
-  fitted.mode = integer_flag("--mode", flags.mode, 1, 60, "1 to 60");
+  fitted.mode = integer_flag("--mode", flags.mode, 1, max_modes, fmt::format("1 to {}", max_modes));
   const Measured measured = measured_of(flags, scene);
   fitted.scene_frequency = scene_frequency(link, fitted.mode, scene.units);
   std::optional<OutputFolder> folder;

@@ -16,6 +16,7 @@
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
+#include "tools/output/table_output.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/map_key.hpp"
 #include "tools/work/progress.hpp"
@@ -84,8 +85,8 @@ int run_map(const MapCommandFlags& flags) {
   const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              ended_status(document.complete && reached ? exit_ok : exit_not_reached), delivery);
   if (out.stats && !out.json)
-    fmt::print(stderr, "\n  {}{}\n", map->evidence,
-               flags.map.no_boundaries ? "; boundaries skipped: not asked for" : "");
+    fmt::print(stderr, "\n  {}{}\n{}", map->evidence,
+               flags.map.no_boundaries ? "; boundaries skipped: not asked for" : "", accuracy_table(task.settings()));
   return status;
 }
 

@@ -77,7 +77,9 @@ int run_steady(const SteadyFlags& flags) {
     };
   const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              result.shortfalls.empty() ? exit_ok : exit_not_reached, delivery);
-  if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(model.stages), stages_table(result.stages));
+  if (out.stats && !out.json)
+    fmt::print(stderr, "\n{}{}{}", stages_table(model.stages), stages_table(result.stages),
+               accuracy_table(result.settings));
   return status;
 }
 

@@ -130,8 +130,9 @@ int run_sweep_command(const SweepFlags& flags) {
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   const int status =
       deliver(folder ? &*folder : nullptr, out.pictures, ended_status(reached ? exit_ok : exit_not_reached), delivery);
-  if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
-  if (out.stats && !out.json && branches) fmt::print(stderr, "{}", stages_table(branches->stages));
+  if (out.stats && !out.json)
+    fmt::print(stderr, "\n{}{}{}", stages_table(result.stages), branches ? stages_table(branches->stages) : "",
+               accuracy_table(swept.settings()));
   return status;
 }
 

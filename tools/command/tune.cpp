@@ -82,7 +82,7 @@ int run_tune(const TuneFlags& flags) {
   if (!out.json && folder)
     delivery.printed += fmt::format("written: {}\n", (*out.folder / scene_file(result)).string());
   delivery.write_data = [&](OutputFolder& place) -> std::vector<Figure> {
-    place.write(scene_file(result), tuned_scene(task, result, scene.units, file, *out.folder));
+    place.write(scene_file(result), tuned_scene(asked.source, task, result, scene.units, file, *out.folder));
     place.write("tune.json", json_file_text(document));
     const CsvFile history = history_csv(task, result);
     place.write(history.name, csv_text(history));
@@ -97,7 +97,7 @@ int run_tune(const TuneFlags& flags) {
     };
   const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              ended_status(shortfall(result).empty() ? exit_ok : exit_not_reached), delivery);
-  if (out.stats && !out.json) fmt::print(stderr, "\n{}", stages_table(result.stages));
+  if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(result.stages), accuracy_table(task.settings));
   return status;
 }
 

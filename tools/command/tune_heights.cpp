@@ -27,7 +27,7 @@ std::map<std::string, double> heights_flag(const std::vector<std::string>& texts
 void require_heights(const TuneTask& task, const Scene& scene) {
   const std::map<std::string, double>& heights = task.heights;
   if (heights.empty()) return;
-  const std::vector<std::string> paths = task.source.numeric_paths();
+  const std::vector<std::string> paths = task.family.paths();
   std::vector<std::string> without, with;  // a section
   if (const auto* linkage = std::get_if<Linkage>(&scene.model)) {
     for (const int link : elastic_links(*linkage)) {

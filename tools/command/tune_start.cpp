@@ -16,7 +16,7 @@ void close_start(TuneTask& task, Remarks& remarks) {
     try {
       Settings settings;
       settings.modes = 1;
-      (void)make_model(task.source.with(overrides_at(task, x)), settings);
+      (void)make_model(task.family.scene(numbers_at(task, x)), settings);
       return true;
     } catch (const ObstructedLinkage& problem) {
       if (obstruction.empty()) obstruction = problem.what();

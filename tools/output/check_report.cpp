@@ -8,6 +8,7 @@
 
 #include "hb/analysis/accuracy.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/table_output.hpp"
 #include "tools/output/text.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -220,6 +221,7 @@ std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>&
     add_single(text, model, checks.front(), settings, stats);
   add_times(text, checks);
   add_verdict(text, model, checks);
+  if (stats) add(text, "\n{}", accuracy_table(settings));
   return fmt::to_string(text);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/machine_output.hpp"
@@ -74,8 +75,14 @@ Json units_json(const Units& units) {
           {"torque_in_newton_metre", units.torque_in_newton_metre()}};
 }
 
-Json stages_json(const std::vector<Stage>& stages) {
-  Json json = Json::array();
+Json accuracy_json(const Settings& settings) {
+  Json json = Json::object();
+  for (const SolverTolerance& of : solver_tolerances(settings)) json[of.solver] = of.tolerance;
+  return json;
+}
+
+void add_stats(Json& document, const std::vector<Stage>& stages, const Settings& settings) {
+  Json& json = document["stats"] = Json::array();
   for (const Stage& stage : stages) {
     Json entry = {{"stage", stage.name}};
     if (stage.skipped) {
@@ -86,7 +93,7 @@ Json stages_json(const std::vector<Stage>& stages) {
     }
     json.push_back(std::move(entry));
   }
-  return json;
+  document["accuracy"] = accuracy_json(settings);
 }
 
 Json steady_json(const SceneModel& model, const SpeedResult& result, const Settings& settings, bool stats) {
@@ -155,7 +162,7 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   if (stats) {
     std::vector<Stage> stages = model.stages;
     stages.insert(stages.end(), result.stages.begin(), result.stages.end());
-    json["stats"] = stages_json(stages);
+    add_stats(json, stages, settings);
   }
   return json;
 }

@@ -12,7 +12,9 @@ namespace hb::tools {
 [[nodiscard]] nlohmann::ordered_json steady_json(const SceneModel& model, const SpeedResult& result,
                                                  const Settings& settings, bool stats);
 [[nodiscard]] nlohmann::ordered_json units_json(const Units& units);
-[[nodiscard]] nlohmann::ordered_json stages_json(const std::vector<Stage>& stages);
+// Keys of --stats: what was computed, and what the tolerance means for each solver.
+void add_stats(nlohmann::ordered_json& json, const std::vector<Stage>& stages, const Settings& settings);
+[[nodiscard]] nlohmann::ordered_json accuracy_json(const Settings& settings);
 // The document with a newline at its end, on one line for standard output, on many for files that are read.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& document);
 [[nodiscard]] std::string json_file_text(const nlohmann::ordered_json& document);

@@ -191,7 +191,7 @@ Json nonlinear_json(const SceneModel& model, const NonlinearResult& result, cons
   if (stats) {
     std::vector<Stage> stages = model.stages;
     stages.insert(stages.end(), result.stages.begin(), result.stages.end());
-    json["stats"] = stages_json(stages);
+    add_stats(json, stages, settings);
   }
   return json;
 }

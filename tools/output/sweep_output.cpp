@@ -254,7 +254,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
     for (std::size_t r = 0; r < result.rods.size(); ++r)
       if (result.rods[r].reported) refined["rods"][result.rods[r].name] = rod_json(scene, result, r, result.refined);
   }
-  if (stats) json["stats"] = stages_json(result.stages);
+  if (stats) add_stats(json, result.stages, scene.settings());
   return json;
 }
 

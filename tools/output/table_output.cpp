@@ -8,6 +8,7 @@
 #include <iterator>
 #include <optional>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/nearest_resonance.hpp"
 #include "tools/output/machine_output.hpp"
 #include "tools/output/output_units.hpp"
@@ -211,6 +212,19 @@ std::string stages_table(const std::vector<Stage>& stages) {
       add(text, "  {:<28} {:>9.1f} us  {}\n", stage.name, stage.seconds * 1e6, stage.note);
     }
   }
+  return fmt::to_string(text);
+}
+
+std::string accuracy_table(const Settings& settings) {
+  Text text;
+  add(text, "  tolerance {:.1e} means:", settings.tolerance);
+  const char* before = "";
+  for (SolverTolerance of : solver_tolerances(settings)) {
+    std::replace(of.solver.begin(), of.solver.end(), '_', ' ');
+    add(text, "{} {} {:.1e}", before, of.solver, of.tolerance);
+    before = ",";
+  }
+  add(text, "\n");
   return fmt::to_string(text);
 }
 

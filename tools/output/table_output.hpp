@@ -11,5 +11,7 @@ namespace hb::tools {
 [[nodiscard]] std::string steady_table(const SceneModel& model, const SpeedResult& result, const Settings& settings,
                                        bool multipliers = false);
 [[nodiscard]] std::string stages_table(const std::vector<Stage>& stages);
+// What the tolerance means for each solver.
+[[nodiscard]] std::string accuracy_table(const Settings& settings);
 
 }  // namespace hb::tools

@@ -447,26 +447,28 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   json["without_response"] = result.without_response;
   json["evidence"] = result.design.evidence;
   json["units"] = units_json(units);
-  if (stats) json["stats"] = stages_json(result.stages);
+  if (stats) add_stats(json, result.stages, task.settings);
   return json;
 }
 
-std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
+std::string tuned_scene(const SceneSource& source, const TuneTask& task, const TuneResult& result, const Units& units,
                         const std::filesystem::path& scene_file, const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
-  std::vector<Override> overrides = overrides_at(task, result.tuned);
+  std::vector<Override> overrides;
+  for (const Number& number : numbers_at(task, result.tuned))
+    overrides.push_back(number_override(number.path, number.value));
   // A range given as omega has no place in a scene: there it is said above alone.
   if (speeds_vary(task) && task.in_rpm) {
-    const std::vector<std::string> paths = task.source.numeric_paths();
+    const std::vector<std::string> paths = source.numeric_paths();
     const auto has = [&](const char* path) { return std::ranges::find(paths, path) != paths.end(); };
     const double from = rpm_of(result.span_after.from, units), to = rpm_of(result.span_after.to, units);
     constexpr int usual_steps = 50;
-    const double step = has("analysis.rpm.2") ? task.source.value("analysis.rpm.2") : (to - from) / usual_steps;
+    const double step = has("analysis.rpm.2") ? source.value("analysis.rpm.2") : (to - from) / usual_steps;
     if (!has("analysis.omega"))
       overrides.push_back(
           {"analysis.rpm", from < to ? fmt::format("[{}, {}, {}]", from, to, step) : fmt::format("{}", from)});
   }
-  const std::string text = task.source.text_with(overrides);
+  const std::string text = source.text_with(overrides);
   const fs::path from = fs::absolute(scene_file).parent_path(), to = fs::absolute(folder);
   std::string changed;
   if (const std::string problem = shortfall(result); !problem.empty()) changed = "# NOT REACHED: " + problem + "\n";

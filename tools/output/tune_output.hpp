@@ -20,10 +20,11 @@ namespace hb::tools {
 // Names of its files: the design found, or the nearest where none meets all conditions.
 inline constexpr const char *tuned_file = "tuned.toml", *nearest_file = "nearest.toml";
 [[nodiscard]] const char* scene_file(const TuneResult& result);
-// The scene with the tuned numbers, which begins with a comment where something was not reached; relative paths of
-// further files lead from `folder`.
-[[nodiscard]] std::string tuned_scene(const TuneTask& task, const TuneResult& result, const Units& units,
-                                      const std::filesystem::path& scene_file, const std::filesystem::path& folder);
+// `source`, the text that the task's scenes come from, with the tuned numbers, which begins with a comment where
+// something was not reached; relative paths of further files lead from `folder`.
+[[nodiscard]] std::string tuned_scene(const SceneSource& source, const TuneTask& task, const TuneResult& result,
+                                      const Units& units, const std::filesystem::path& scene_file,
+                                      const std::filesystem::path& folder);
 
 // Of each elastic link over all speeds.
 [[nodiscard]] NamedVerdicts tune_verdicts(const std::vector<RodMargin>& margins);

@@ -103,7 +103,7 @@ void add_campbell(const TuneTask& task, const TuneResult& result, bool after, Sh
   axis.kind = task.in_rpm ? Axis::Kind::rpm : Axis::Kind::omega;
   axis.path = task.in_rpm ? "rpm" : "omega";
   axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, campbell_points);
-  const SweepScene scene(task.source, overrides_at(task, after ? result.tuned : result.start), settings, axis,
+  const SweepScene scene(task.family.with(numbers_at(task, after ? result.tuned : result.start)), settings, axis,
                          span.from, axis.values.front());
   const std::optional<SweepResult> sweep = run_sweep(scene, work);
   if (!sweep) return;
@@ -144,7 +144,7 @@ class Way {
       x.push_back(result_.start[i] + t * (result_.tuned[i] - result_.start[i]));
     std::shared_ptr<const SceneModel> model;
     try {
-      model = std::make_shared<const SceneModel>(make_model(task_.source.with(overrides_at(task_, x)), settings_));
+      model = std::make_shared<const SceneModel>(make_model(task_.family.scene(numbers_at(task_, x)), settings_));
     } catch (const SceneError&) {  // no such design
     }
     return models_.emplace(t, std::move(model)).first->second;

@@ -21,6 +21,7 @@ struct SweepCore {
 };
 
 struct TuneCore {
+  SceneSource source;
   TuneTask task;
   Scene before;
   TuneResult result;

@@ -100,8 +100,8 @@ std::shared_ptr<TuneCore> tuned(const SceneCore& core, const py::dict& arguments
   PythonWork work(arguments, py::none());
   return work.run([&] {
     tools::AskedTune asked = tools::asked_tune(flags, {core.name, core.text, core.folder, core.source});
-    auto result =
-        std::make_shared<TuneCore>(TuneCore{std::move(asked.task), std::move(asked.scene), {}, asked.remarks});
+    auto result = std::make_shared<TuneCore>(
+        TuneCore{std::move(asked.source), std::move(asked.task), std::move(asked.scene), {}, asked.remarks});
     const int most = result->task.options.max_evaluations;
     const double sign = flags.maximise.empty() ? 1 : -1;
     result->task.options.progress = [&](int evaluations, bool feasible, double goal) {
@@ -125,8 +125,8 @@ std::shared_ptr<TuneCore> tuned(const SceneCore& core, const py::dict& arguments
 
 std::string scene_text(const TuneCore& core, const std::string& name, const std::string& folder) {
   const std::filesystem::path place = folder.empty() ? "." : folder;
-  return tools::tuned_scene(core.task, core.result, core.before.units, place / std::filesystem::path(name).filename(),
-                            place);
+  return tools::tuned_scene(core.source, core.task, core.result, core.before.units,
+                            place / std::filesystem::path(name).filename(), place);
 }
 
 }  // namespace

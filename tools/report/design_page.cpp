@@ -17,8 +17,8 @@ std::string design_page(const TuneTask& task, const TuneResult& result, const Sc
                         const nlohmann::ordered_json& document, Work& work, PageText text) {
   constexpr int points = 49;
   const SpeedSpan& span = result.span_after;
-  const std::vector<Override> tuned = overrides_at(task, result.tuned);
-  const Scene after = task.source.with(tuned);
+  const SceneFamily tuned = task.family.with(numbers_at(task, result.tuned));
+  const Scene after = tuned.scene();
   ReportData data(after);
   if (span.from < span.to) {
     Axis axis;
@@ -27,7 +27,7 @@ std::string design_page(const TuneTask& task, const TuneResult& result, const Sc
     axis.values = evenly(span.from / task.speed_unit, span.to / task.speed_unit, points);
     // Speeds as one would ask for them, without the last digits of the conversion.
     for (double& value : axis.values) value = std::stod(fmt::format("{:.12g}", value));
-    const SweepScene along(task.source, tuned, task.settings, axis, span.from, axis.values.front());
+    const SweepScene along(tuned, task.settings, axis, span.from, axis.values.front());
     data.add_sweep(along, run_sweep(along, work), places_along(along, work));
   } else {
     const auto model = std::make_shared<const SceneModel>(make_model(after, task.settings));

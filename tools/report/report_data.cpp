@@ -50,7 +50,7 @@ Json own_numbers(Json steady, const std::vector<std::string>& known_warnings) {
     steady.erase("warnings");
     if (!fresh.empty()) steady["warnings"] = std::move(fresh);
   }
-  for (const char* key : {"title", "units", "tolerance", "stats"}) steady.erase(key);
+  for (const char* key : {"title", "units", "tolerance", "stats", "accuracy"}) steady.erase(key);
   for (auto& [name, rod] : steady["rods"].items()) {
     if (rod.contains("q")) rod["q"].erase("fourier");
     // The exponents in other words.
@@ -286,7 +286,7 @@ void ReportData::add_map(Json map, const SceneSource& source) {
 void ReportData::add_design(Json tune, const std::string& words, const Scene& before,
                             const std::vector<DesignCurve>& curves) {
   Json& design = data_["design"];
-  for (const char* key : {"title", "units", "stats"}) tune.erase(key);
+  for (const char* key : {"title", "units", "stats", "accuracy"}) tune.erase(key);
   for (Json& variable : tune["variables"]) variable["unit"] = path_unit(variable["path"], scene_.units);
   design["tune"] = std::move(tune);
   design["text"] = words;

@@ -61,7 +61,7 @@ class Tuner {
     TuneResult result;
     result.start = start_;
     for (const ConditionPart& part : aims_->parts()) result.condition_of.push_back(part.of);
-    DesignSpace space = space_of([this](const std::vector<double>& x) { return overrides_at(task_, x); },
+    DesignSpace space = space_of([this](const std::vector<double>& x) { return numbers_at(task_, x); },
                                  [this](const std::vector<double>& x) { return span_at(task_, x); });
     // What is wrong with the question shows at the start.
     aims_->scale_by(numbers_of(space.values(start_)));
@@ -79,7 +79,7 @@ class Tuner {
 
  private:
   bool auto_modes() const { return is_auto(task_.settings.modes); }
-  Scene scene_at(const std::vector<double>& x) const { return task_.source.with(overrides_at(task_, x)); }
+  Scene scene_at(const std::vector<double>& x) const { return task_.family.scene(numbers_at(task_, x)); }
 
   // As many as the ends of the range and `speeds` need.
   int modes_needed(const std::vector<double>& x, std::vector<double> speeds) const {
@@ -96,8 +96,8 @@ class Tuner {
     return modes;
   }
 
-  DesignSpace space_of(DesignSpace::At overrides, DesignSpace::SpanAt span) {
-    return {task_.source,      settings_, task_.heights, std::move(overrides), std::move(span), aims_->metrics(),
+  DesignSpace space_of(DesignSpace::At numbers, DesignSpace::SpanAt span) {
+    return {task_.family,      settings_, task_.heights, std::move(numbers), std::move(span), aims_->metrics(),
             aims_->required(), counts_,   work_};
   }
 
@@ -346,19 +346,19 @@ class Tuner {
   // One variable, a factor on the internal damping of all links, at the tuned design. Of the best goal,
   //     df*/dp = sum_k mu_k df_k/dp + sum_j lambda_j dg_j/dp.
   void damping_sensitivity(TuneResult& result) {
-    const std::vector<Override> tuned = overrides_at(task_, result.tuned);
-    const Scene scene = task_.source.with(tuned);
+    const Numbers tuned = numbers_at(task_, result.tuned);
+    const SceneFamily as_tuned = task_.family.with(tuned);
+    const std::vector<std::string> damping = as_tuned.damping_paths();
+    const Scene scene = as_tuned.scene();
     const auto* linkage = std::get_if<Linkage>(&scene.model);
-    if (!linkage || !(std::abs(result.goal_after) > 0)) return;
-    const SceneSource as_tuned(task_.source.text_with(tuned), "tuned scene", ".");
+    if (!linkage || damping.empty() || !(std::abs(result.goal_after) > 0)) return;
     DesignSpace space = space_of(
         [&](const std::vector<double>& factor) {
-          std::vector<Override> overrides = tuned;
-          for (const std::string& path : as_tuned.damping_paths()) {
-            if (const double value = as_tuned.value(path); value > 0)
-              overrides.push_back(number_override(path, factor[0] * value));
+          Numbers numbers = tuned;
+          for (const std::string& path : damping) {
+            if (const double value = as_tuned.value(path); value > 0) numbers.push_back({path, factor[0] * value});
           }
-          return overrides;
+          return numbers;
         },
         [&](const std::vector<double>&) { return span_at(task_, result.tuned); });
     const DesignProblem problem = problem_over(space, {1}, {0.5}, {1.5}, true);
@@ -415,15 +415,14 @@ class Tuner {
 
 }  // namespace
 
-std::vector<Override> overrides_at(const TuneTask& task, const std::vector<double>& x) {
-  std::vector<Override> overrides;
+Numbers numbers_at(const TuneTask& task, const std::vector<double>& x) {
+  Numbers numbers;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (is_speed(task.variables[i])) continue;
-    overrides.push_back(number_override(task.variables[i].path, x[i]));
-    for (const TiedNumber& tied : task.variables[i].tied)
-      overrides.push_back(number_override(tied.path, tied.factor * x[i]));
+    numbers.push_back({task.variables[i].path, x[i]});
+    for (const TiedNumber& tied : task.variables[i].tied) numbers.push_back({tied.path, tied.factor * x[i]});
   }
-  return overrides;
+  return numbers;
 }
 
 std::vector<StartChange> start_changes(const TuneTask& task) {
@@ -432,7 +431,7 @@ std::vector<StartChange> start_changes(const TuneTask& task) {
     if (variable.moved_from && *variable.moved_from != variable.start)
       changes.push_back({variable.path, variable.start, *variable.moved_from, false});
     for (const TiedNumber& tied : variable.tied) {
-      const double value = tied.factor * variable.start, scene = task.source.value(tied.path);
+      const double value = tied.factor * variable.start, scene = task.family.value(tied.path);
       if (value != scene) changes.push_back({tied.path, value, scene, true});
     }
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/tune/tune_design.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
 #include "hb/analysis/tune/tune_space.hpp"
@@ -24,14 +25,14 @@ inline constexpr const char* range_from = "over.from";
 inline constexpr const char* range_to = "over.to";
 
 struct TuneVariable {
-  std::string path;  // a scene number, range_from or range_to
+  std::string path;  // a number of the family, range_from or range_to
   double lower = 0, upper = 0, start = 0;
   std::optional<double> moved_from;  // the scene's value if that lies outside the bounds
   std::vector<TiedNumber> tied;
 };
 
 struct TuneTask {
-  SceneSource source;
+  SceneFamily family;
   std::vector<TuneVariable> variables;
   Goal goal;
   std::vector<Keep> keeps;
@@ -101,8 +102,8 @@ struct TuneResult {
   std::vector<Stage> stages;
 };
 
-// Of the scene's numbers.
-[[nodiscard]] std::vector<Override> overrides_at(const TuneTask& task, const std::vector<double>& x);
+// Of the family's numbers.
+[[nodiscard]] Numbers numbers_at(const TuneTask& task, const std::vector<double>& x);
 
 // What the design before has otherwise than the scene: a number moved into its bounds, or tied.
 struct StartChange {

@@ -49,13 +49,13 @@ std::vector<std::string> names_of(const SceneModel& model, const Metric& metric)
 
 }  // namespace
 
-DesignSpace::DesignSpace(const SceneSource& source, const Settings& settings, SectionHeights given_heights,
-                         At overrides, SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required,
+DesignSpace::DesignSpace(const SceneFamily& family, const Settings& settings, SectionHeights given_heights, At numbers,
+                         SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required,
                          TuneCounts& counts, const Work& work)
-    : source_(source),
+    : family_(family),
       settings_(settings),
       given_heights_(std::move(given_heights)),
-      overrides_(std::move(overrides)),
+      numbers_(std::move(numbers)),
       span_(std::move(span)),
       metrics_(std::move(metrics)),
       required_(std::move(required)),
@@ -63,7 +63,7 @@ DesignSpace::DesignSpace(const SceneSource& source, const Settings& settings, Se
       work_(work) {}
 
 SceneModel DesignSpace::model(const std::vector<double>& x) const {
-  return make_model(source_.with(overrides_(x)), settings_);
+  return make_model(family_.scene(numbers_(x)), settings_);
 }
 
 // A section known by its shape has a height, whatever is given for all rods.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hb/analysis/scene_family.hpp"
 #include "hb/analysis/tune/tune_design.hpp"
 #include "hb/analysis/tune/tune_gradient.hpp"
 #include "hb/analysis/tune/tune_metric.hpp"
@@ -24,11 +25,11 @@ struct TuneCounts {
 
 class DesignSpace {
  public:
-  using At = std::function<std::vector<Override>(const std::vector<double>& x)>;
+  using At = std::function<Numbers(const std::vector<double>& x)>;
   using SpanAt = std::function<SpeedSpan(const std::vector<double>& x)>;
 
-  // Keeps references to source, settings, counts and work. `required` as in DesignAnalysis.
-  DesignSpace(const SceneSource& source, const Settings& settings, SectionHeights given_heights, At overrides,
+  // Keeps references to family, settings, counts and work. `required` as in DesignAnalysis.
+  DesignSpace(const SceneFamily& family, const Settings& settings, SectionHeights given_heights, At numbers,
               SpanAt span, std::vector<Metric> metrics, std::vector<RequiredDecay> required, TuneCounts& counts,
               const Work& work);
 
@@ -63,10 +64,10 @@ class DesignSpace {
  private:
   SpeedSpan span(const std::vector<double>& x, int times) const;
 
-  const SceneSource& source_;
+  const SceneFamily& family_;
   const Settings& settings_;
   SectionHeights given_heights_;
-  At overrides_;
+  At numbers_;
   SpanAt span_;
   std::vector<Metric> metrics_;
   std::vector<RequiredDecay> required_;
