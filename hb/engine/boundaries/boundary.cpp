@@ -69,7 +69,8 @@ class Location {
     const StabilitySample &stable = is_unstable(b) ? a : b, &unstable = is_unstable(b) ? b : a;
     by_sign_ = stable.stability.verdict == Verdict::stable;
     lock_ = lock_of(unstable);
-    settled_ = stable.x;
+    settled_ = stable.stability.verdict == Verdict::undecided ? nan : stable.x;
+    whole_ = b.x - a.x;
     const double size = std::max(std::abs(low_), std::abs(high_));
     wanted_ = options.tolerance * size;
     promised_ = std::max(boundary_tolerance, options.tolerance) * size;
@@ -209,7 +210,8 @@ class Location {
       if (part < 0.5)
         found_.boundary.error += part / (1 - part) * std::abs(certain - x);
       else
-        found_.boundary.error += std::max(std::abs(certain - x), std::abs(settled_ - x));
+        found_.boundary.error +=
+            std::isnan(settled_) ? whole_ : std::max(std::abs(certain - x), std::abs(settled_ - x));
     }
     found_.boundary.converged = found_.boundary.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
   }
@@ -224,7 +226,8 @@ class Location {
   double kappa1_ = 0;
   // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.
   double certain_low_ = 0, certain_high_ = 0, g_low_ = 0, g_high_ = 0;
-  double settled_ = 0;  // without damping: nearest place where it is bounded
+  double settled_ = 0;  // without damping: nearest place where it is bounded; NaN: none
+  double whole_ = 0;  // distance of the places given
   double growth_error_ = 0;  // of the last growth rate
   double largest_error_ = 0;  // of growth rates that are not certain
   BoundaryLocation found_;

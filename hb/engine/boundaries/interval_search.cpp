@@ -139,7 +139,20 @@ class Search {
 
   // --- A change of verdict in the cell ---
 
-  void split_at_boundary(const Cell& cell) {
+  static bool is_open(const Place& place) { return place.sample.stability.verdict == Verdict::undecided; }
+
+  // As far as the next place that is surely not unstable, where the cell's end on that side is not sure.
+  Cell to_sure_end(Cell cell) const {
+    auto low = places_.find(cell.from), high = places_.find(cell.to);
+    while (is_open(low->second) && low->first > first_ && !std::prev(low)->second.unstable) --low;
+    while (is_open(high->second) && high->first < last_ && !std::next(high)->second.unstable) ++high;
+    if (!is_open(low->second)) cell.from = low->first;
+    if (!is_open(high->second)) cell.to = high->first;
+    return cell;
+  }
+
+  void split_at_boundary(const Cell& found_in) {
+    const Cell cell = to_sure_end(found_in);
     const Place &p = places_.at(cell.from), &q = places_.at(cell.to);
     const std::vector<const Place*> places = apart_beside(places_, p, q, Apart::pair);
     const BoundaryLocation found = locate(at_, p.sample, q.sample, located_, expected_change(places));
@@ -206,7 +219,7 @@ class Search {
     if (std::isnan(x)) return;
     const int affordable = most_evaluations + most_evaluations_per_boundary * static_cast<int>(boundaries_.size());
     if (cell.divisions >= most_divisions || evaluations_ >= affordable || !(x > cell.from && x < cell.to) ||
-        !evaluate(x)) {
+        !(places_.contains(x) || evaluate(x))) {
       give_up(cell);
       return;
     }
@@ -221,11 +234,20 @@ class Search {
       if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())
         if (const std::optional<double> x = doubtful_while_apart(places, what, options_.least_growth)) {
           leading_suffices_ = true;
-          return *x;
+          return std::isnan(*x) ? unforetold(p, q, places, what) : *x;
         }
     leading_suffices_ = false;
     complete_near(p, q);
     return p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
+  }
+
+  // A lock may end and begin again with the multiplier of another exponent: unless the others are too far off, what is
+  // foretold has to hold half way. NaN: it does.
+  double unforetold(const Place& p, const Place& q, const std::vector<const Place*>& places, Apart what) {
+    if (stays_leading(p, q, what)) return nan;
+    const double middle = 0.5 * (p.x() + q.x());
+    if (!evaluate(middle)) return middle;
+    return foretold(places, what, places_.at(middle)) ? nan : middle;
   }
 
   double doubtful_while_stable(Place& p, Place& q) {
@@ -398,7 +420,7 @@ class Search {
       const auto sure = [](const auto& place) {
         return !place.second.unstable && place.second.sample.stability.verdict != Verdict::undecided;
       };
-      const auto open = [](const auto& place) { return place.second.sample.stability.verdict == Verdict::undecided; };
+      const auto open = [](const auto& place) { return is_open(place.second); };
       if (!boundaries_[k].unstable_above && boundaries_[k + 1].unstable_above && std::any_of(from, to, open) &&
           std::none_of(from, to, sure)) {
         const auto first = boundaries_.begin() + static_cast<std::ptrdiff_t>(k);

@@ -22,6 +22,7 @@ using cplx = std::complex<double>;
 constexpr double margin = 3;
 // A way through a resonance counts much, not infinitely.
 constexpr double least_detuning = 0.25;
+constexpr std::size_t most_modes_frozen = 8;
 
 // Exponents mu of the mean with moduli of their right vectors (positions, columns of X) and left ones (what a force
 // does to them, rows of Y), scaled alike: E_k = Y |K_k| X.
@@ -117,6 +118,24 @@ MatrixXd harmonic(const ScaledSystem& system, const MeanModes& modes, Index k) {
   return modes.Y * K.cwiseAbs() * modes.X;
 }
 
+// Frequencies over the turn with the stiffness held at each angle, ascending, for each mode's own damping b; empty
+// where one is not positive everywhere.
+VectorXd frozen_frequencies(const ScaledSystem& system, const VectorXd& b) {
+  constexpr Index most_harmonics = 31, angles = 64;  // more than the names of exponents need
+  const Index I = system.num_modes();
+  const MatrixXd samples =
+      fourier::synthesise(fourier::resized(system.K, std::min(system.K.num_harmonics(), most_harmonics)), angles);
+  VectorXd sum = VectorXd::Zero(I);
+  for (Index j = 0; j < angles; ++j) {
+    const Eigen::Map<const MatrixXd> K(samples.col(j).data(), I, I);
+    VectorXd w2 = dense::symmetric_eigenpairs(K).values;
+    w2 -= 0.25 * b.cwiseAbs2();
+    if (!(w2.minCoeff() > 0)) return {};
+    sum += w2.cwiseSqrt();
+  }
+  return sum / static_cast<double>(angles);
+}
+
 bool symmetric_everywhere(const ScaledSystem& system) {
   const Index I = system.num_modes();
   const double scale = system.K.c.cwiseAbs().maxCoeff();
@@ -128,7 +147,33 @@ bool symmetric_everywhere(const ScaledSystem& system) {
   return is_symmetric(system.G) && dense::symmetric_eigenpairs(system.G).values.minCoeff() >= 0;
 }
 
+void add_frozen(std::vector<MeanExponent>& mean, const ScaledSystem& system) {
+  const auto I = static_cast<std::size_t>(system.num_modes());
+  // Mean exponents name those that modulation shifts less.
+  constexpr double named_by_means = 0.5;
+  if (I < 2 || I > most_modes_frozen ||
+      std::ranges::none_of(mean, [](const MeanExponent& m) { return shift_by_modulation(m) > named_by_means; }) ||
+      !symmetric_everywhere(system))
+    return;
+  VectorXd b(system.num_modes());
+  for (std::size_t i = 0; i < I; ++i) {
+    const cplx mu = mean[I + i].value;
+    if (!(mu.imag() > 0)) return;
+    b(static_cast<Index>(i)) = -2 * mu.real();
+  }
+  const VectorXd w = frozen_frequencies(system, b);
+  for (std::size_t i = 0; i < I && w.size() > 0; ++i) {
+    mean[I + i].frozen = w(static_cast<Index>(i));
+    mean[I - 1 - i].frozen = -w(static_cast<Index>(i));
+  }
+}
+
 }  // namespace
+
+double shift_by_modulation(const MeanExponent& mean) {
+  constexpr double detuning = 0.25;  // (coupling/margin)^2/detuning
+  return mean.coupling * mean.coupling / (margin * margin * detuning);
+}
 
 std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
   const MeanModes modes = mean_modes(system);
@@ -150,6 +195,7 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
     for (Index j = 0; j < n; ++j)
       if (j != i) coupling = std::max(coupling, margin * std::sqrt(all(i, j) * all(j, i)));
   }
+  add_frozen(result, system);
   return result;
 }
 

@@ -15,7 +15,13 @@ struct MeanExponent {
   // Upper estimate of the growth that any resonance with another one can reach, whatever its order; per radian.
   double coupling = 0;
   double modulation = 0;  // the largest sum_k E_k,nr, of all r
+  // Im mu with the stiffness of each angle in turn, averaged over the turn: nearer to what slow modulation makes of the
+  // exponent, however strong it is. Computed where modulation may shift one by half a turn; 0: not known.
+  double frozen = 0;
 };
+
+// What modulation may shift an exponent by, of second order: hb/engine/README.md (B4).
+[[nodiscard]] double shift_by_modulation(const MeanExponent& mean);
 
 // 2I of them, imaginary part ascending, then real part: each is continuous along a parameter.
 [[nodiscard]] std::vector<MeanExponent> mean_exponents(const ScaledSystem& system);

@@ -116,6 +116,20 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   return std::clamp(where, p.x() + margin, q.x() - margin);
 }
 
+bool stays_leading(const Place& p, const Place& q, Apart what) {
+  const LeadingPair &a = *pair_of(p, what), &b = *pair_of(q, what);
+  if (std::min(a.half_trace, b.half_trace) < -1 && std::max(a.half_trace, b.half_trace) > 1) return false;
+  return std::min(a.lower, b.lower) - std::abs(a.lower - b.lower) > others_between(a, b);
+}
+
+bool foretold(const std::vector<const Place*>& places, Apart what, const Place& between) {
+  if (!is_apart(between, what) || between.unstable != places[0]->unstable) return false;
+  if (what == Apart::alone && between.alone->half_trace != places[0]->alone->half_trace) return false;
+  const GrowthBounds growth = model_of(places, what).leading(between.x());
+  return growth.low <= between.growth() + between.growth_error() &&
+         between.growth() - between.growth_error() <= growth.high;
+}
+
 std::optional<std::array<double, 2>> expected_change(const std::vector<const Place*>& places) {
   if (places.size() < fewest_nodes) return std::nullopt;
   const PairModel model = model_of(places, Apart::pair);

@@ -12,8 +12,6 @@ using cplx = std::complex<double>;
 
 // A mean exponent this much farther than the nearest one is still a candidate: modulation shifts exponents.
 constexpr double doubt = 0.15;
-// Detuning of a resonance that shifts an exponent, (coupling)^2/detuning.
-constexpr double detuning = 0.25;
 // ... but not one that decays so many times faster or slower. What the solver names an exponent does not count: in a
 // group of coupled modes it is a guess.
 constexpr double unlike_decay = 3;
@@ -62,6 +60,38 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
   return found;
 }
 
+// Names by frozen frequencies, the nearest first. They are taken where all strands but one pair have frozen ones of
+// their own that near: then the others' are no chance. Empty lists: as before.
+std::vector<std::vector<std::size_t>> frozen_names(const std::vector<Strand>& all,
+                                                   const std::vector<MeanExponent>& mean) {
+  constexpr double near = 0.02;
+  constexpr std::size_t most_left_out = 2;
+  std::vector<std::vector<std::size_t>> names(all.size());
+  if (all.size() != mean.size() || std::ranges::any_of(mean, [](const auto& m) { return m.frozen == 0; })) return names;
+  struct Match {
+    double distance;
+    std::size_t strand, mean;
+    auto operator<=>(const Match&) const = default;
+  };
+  std::vector<Match> matches;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    for (std::size_t n = 0; n < mean.size(); ++n)
+      matches.push_back({std::abs(folded({0, all[k].s.imag() - mean[n].frozen}).imag()), k, n});
+  std::ranges::sort(matches);
+  std::vector<bool> named(all.size(), false), taken(mean.size(), false);
+  std::size_t found = 0;
+  for (const Match& m : matches) {
+    if (m.distance > near) break;
+    if (named[m.strand] || taken[m.mean]) continue;
+    named[m.strand] = taken[m.mean] = true;
+    ++found;
+  }
+  if (found + most_left_out < all.size()) return names;
+  for (const Match& m : matches)
+    if (named[m.strand] && m.distance <= 2 * near) names[m.strand].push_back(m.mean);
+  return names;
+}
+
 // Of several that are locked at one place the fastest goes with the one that decays likewise.
 void find_partners(std::vector<Strand>& all) {
   constexpr double same_place = 1e-7;
@@ -83,8 +113,6 @@ void find_partners(std::vector<Strand>& all) {
 }
 
 }  // namespace
-
-double shift_by_modulation(const MeanExponent& mean) { return mean.coupling * mean.coupling / (9 * detuning); }
 
 double growth_by_itself(const Strands& strands, std::size_t k) {
   const Strand& strand = strands.all[k];
@@ -113,8 +141,11 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
                    [](const Strand& a, const Strand& b) { return a.s.real() > b.s.real(); });
   find_partners(strands.all);
   const std::vector<double> lines = parting_lines(strands, mean);
+  const std::vector<std::vector<std::size_t>> frozen = frozen_names(strands.all, mean);
   for (std::size_t k = 0; k < strands.all.size(); ++k)
-    strands.all[k].mean = candidates({growth_by_itself(strands, k), strands.all[k].s.imag()}, mean, lines);
+    strands.all[k].mean = !frozen[k].empty()
+                              ? frozen[k]
+                              : candidates({growth_by_itself(strands, k), strands.all[k].s.imag()}, mean, lines);
   return strands;
 }
 

@@ -32,9 +32,6 @@ struct Strands {
 // Growth of a strand, or of a locked one without what locks it: the mean of the two.
 [[nodiscard]] double growth_by_itself(const Strands& strands, std::size_t k);
 
-// What modulation may shift an exponent by, of second order.
-[[nodiscard]] double shift_by_modulation(const MeanExponent& mean);
-
 // Imaginary part to (-1/2, 1/2].
 [[nodiscard]] std::complex<double> folded(std::complex<double> s);
 
