@@ -33,7 +33,7 @@ Count search(const std::string& scene, double from, double to, std::size_t point
   return count;
 }
 
-// Most evaluations are of leading exponents alone, a tenth of the work of a point with all its exponents.
+// Most evaluations are of leading exponents alone.
 TEST(SearchCost, IsAFewEvaluationsPerPointAndBoundaryOnOrdinaryScenes) {
   for (const Count& c :
        {search("results/four_bar/scene.toml", 300, 3000, 136), search("results/six_link/scene.toml", 300, 3000, 55),
