@@ -11,6 +11,7 @@ namespace hb {
 
 namespace {
 
+using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -18,11 +19,15 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-// Ways that turn back are not in the sums (chosen by experiment), beside those of an exponent's own phase modulation.
+// Ways that turn round more than once are not in the sums (chosen by experiment).
 constexpr double margin = 3;
 // A way through a resonance counts much, not infinitely.
 constexpr double least_detuning = 0.25;
 constexpr std::size_t most_modes_frozen = 8;
+// Per radian; growth below 1e-9 is not looked for.
+constexpr double negligible_harmonic = 1e-12;
+// Ways past an order and back are followed this far beyond it and beyond all harmonics.
+constexpr int farthest_past = 16;
 
 // Exponents mu of the mean with moduli of their right vectors (positions, columns of X) and left ones (what a force
 // does to them, rows of Y), scaled alike: E_k = Y |K_k| X.
@@ -204,6 +209,7 @@ ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order
   const MeanModes modes = mean_modes(system);
   mu_ = modes.mu;
   for (Index k = 1; k <= system.K.num_harmonics(); ++k) E_.push_back(harmonic(system, modes, k));
+  while (!E_.empty() && E_.back().maxCoeff() < negligible_harmonic) E_.pop_back();
   for (Index n = 0; n < mu_.size(); ++n) {
     std::size_t nearest = 0;
     for (Index r = 0; r < mu_.size(); ++r)
@@ -212,28 +218,30 @@ ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order
     conjugate_.push_back(nearest);
   }
   from_.resize(static_cast<std::size_t>(mu_.size()));
+  back_.resize(from_.size());
   // exp(sum_m z_m y^m) = sum_j c_j y^j by c_j = sum_m m z_m c_(j-m)/j, down to where c_j is negligible.
   constexpr double negligible = 1e-10, most = 1e100;
   std::vector<double> slope;  // m z_m, z_m = 2 E_m,nn/m
   for (const MatrixXd& E : E_) slope.push_back(2 * E.diagonal().maxCoeff());
-  past_ = {1};
+  std::vector<double> past = {1};
   turning_ = 1;
   for (std::size_t j = 1; j < static_cast<std::size_t>(max_order_); ++j) {
     double sum = 0;
-    for (std::size_t m = 1; m <= std::min(j, slope.size()); ++m) sum += slope[m - 1] * past_[j - m];
-    past_.push_back(std::min(sum / static_cast<double>(j), most));
-    turning_ += past_.back();
+    for (std::size_t m = 1; m <= std::min(j, slope.size()); ++m) sum += slope[m - 1] * past[j - m];
+    past.push_back(std::min(sum / static_cast<double>(j), most));
+    turning_ += past.back();
   }
-  while (past_.back() < negligible && past_.size() > 1) past_.pop_back();
+  while (past.back() < negligible && past.size() > 1) past.pop_back();
+  past_ = Eigen::Map<const VectorXd>(past.data(), static_cast<Index>(past.size()));
 }
 
 const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
   MatrixXd& a = from_[n];
   const auto H = static_cast<Index>(E_.size());
-  const Index known = a.cols();
+  const Index known = a.rows();
   if (k <= known) return a;
   const Index wanted = std::min<Index>(std::max<Index>(k, 2 * known), max_order_);
-  a.conservativeResize(mu_.size(), wanted);
+  a.conservativeResize(wanted, mu_.size());
   MatrixXd relative(mu_.size(), wanted);  // a_m(l)/|mu_n + im - mu_l|
   const cplx start = mu_(static_cast<Index>(n));
   for (Index m = 1; m <= wanted; ++m) {
@@ -242,13 +250,41 @@ const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
                             : VectorXd(VectorXd::Zero(mu_.size()));
       for (Index r = std::max<Index>(1, m - H); r < m; ++r)
         sum.noalias() += E_[static_cast<std::size_t>(m - r - 1)] * relative.col(r - 1);
-      a.col(m - 1) = sum;
+      a.row(m - 1) = sum.transpose();
     }
     for (Index l = 0; l < mu_.size(); ++l)
       relative(l, m - 1) =
-          a(l, m - 1) / std::max(least_detuning, std::abs(start + cplx(0, static_cast<double>(m)) - mu_(l)));
+          a(m - 1, l) / std::max(least_detuning, std::abs(start + cplx(0, static_cast<double>(m)) - mu_(l)));
   }
   return a;
+}
+
+const MatrixXd& ParametricCoupling::back_to(std::size_t r) const {
+  MatrixXd& b = back_[r];
+  if (b.size() > 0) return b;
+  const int farthest = std::min(max_order_, static_cast<int>(E_.size()) + farthest_past);
+  b = MatrixXd::Zero(farthest, mu_.size());
+  const ArrayXd order = ArrayXd::LinSpaced(farthest, 1, farthest);
+  for (std::size_t l = 0; l < back_.size(); ++l) {
+    if (l == r) continue;
+    const cplx apart = mu_(static_cast<Index>(r)) - mu_(static_cast<Index>(l));
+    const ArrayXd detuning = (apart.real() * apart.real() + (order + apart.imag()).square()).sqrt().max(least_detuning);
+    const auto way = from(conjugate_[l], farthest).col(static_cast<Index>(conjugate_[r])).head(farthest);
+    b.col(static_cast<Index>(l)) = way.array() / detuning;
+  }
+  return b;
+}
+
+// sum_j [c_j a_(k+j)(r) + sum_l (a_(k+j)(l) b_j(l, r) + b_j(n, l) a_(k+j)(l, r))], b_j(l, l) = 0.
+double ParametricCoupling::ways(std::size_t n, std::size_t r, int k) const {
+  const int H = static_cast<int>(E_.size()), farthest = std::min(max_order_, std::max(k, H) + farthest_past);
+  const Index past = std::min<Index>(max_order_ - k + 1, past_.size()), most = farthest - k;
+  const auto to_n = static_cast<Index>(n), to_r = static_cast<Index>(r);
+  double sum = from(n, k + static_cast<int>(past) - 1).col(to_r).segment(k - 1, past).dot(past_.head(past));
+  sum += from(n, farthest).middleRows(k, most).cwiseProduct(back_to(r).topRows(most)).sum();
+  for (std::size_t l = 0; l < from_.size(); ++l)
+    sum += from(l, farthest).col(to_r).segment(k, most).dot(back_to(l).col(to_n).head(most));
+  return sum;
 }
 
 double ParametricCoupling::operator()(std::size_t n, std::size_t r, int k) const {
@@ -258,13 +294,10 @@ double ParametricCoupling::operator()(std::size_t n, std::size_t r, int k) const
 
 double ParametricCoupling::either_way(std::size_t n, std::size_t r, int k) const {
   if (E_.empty() || k > max_order_) return 0;
-  double forth = 0, back = 0;
-  for (int j = 0; j < static_cast<int>(past_.size()) && k + j <= max_order_; ++j) {
-    const double weight = past_[static_cast<std::size_t>(j)];
-    forth += weight * from(n, k + j)(static_cast<Index>(r), k + j - 1);
-    back += weight * from(conjugate_[r], k + j)(static_cast<Index>(conjugate_[n]), k + j - 1);
-  }
-  return margin * turning_ * std::sqrt(forth) * std::sqrt(back);
+  const auto [known, is_new] = strength_.try_emplace({n, r, k}, 0);
+  if (is_new)
+    known->second = margin * turning_ * std::sqrt(ways(n, r, k)) * std::sqrt(ways(conjugate_[r], conjugate_[n], k));
+  return known->second;
 }
 
 }  // namespace hb

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <map>
+#include <tuple>
 #include <vector>
 
 #include "hb/engine/system/scaled_system.hpp"
@@ -30,9 +32,10 @@ struct MeanExponent {
 // two apart, per radian: the growth that it would reach without damping. An estimate from above: with moduli
 // throughout,
 //     a_k(r) = E_k,rn + sum_{0<m<k} sum_l E_k-m,rl a_m(l)/|mu_n + im - mu_l|
-// sums all ways of harmonics that add up to k; forth and back give the root of the product, with a margin for ways that
-// turn back. Where stiffness and damping are symmetric two exponents on the same side of the real axis do not excite
-// each other: zero. They share their damping all the same, as `either_way` tells: one that grows may be quenched.
+// sums all ways of harmonics that add up to k; those that turn round once are added, hb/engine/README.md (B4). Forth
+// and back give the root of the product, with a margin for ways that turn round more often. Where stiffness and damping
+// are symmetric two exponents on the same side of the real axis do not excite each other: zero. They share their
+// damping all the same, as `either_way` tells: one that grows may be quenched.
 class ParametricCoupling {
  public:
   ParametricCoupling(const ScaledSystem& system, int max_order);
@@ -43,17 +46,21 @@ class ParametricCoupling {
 
  private:
   const Eigen::MatrixXd& from(std::size_t n, int k) const;
+  const Eigen::MatrixXd& back_to(std::size_t r) const;
+  double ways(std::size_t n, std::size_t r, int k) const;
 
   Eigen::VectorXcd mu_;
   std::vector<std::size_t> conjugate_;
   std::vector<Eigen::MatrixXd> E_;  // k = 1, 2, ...
   // What an exponent's own phase modulation does, y a harmonic: exp(sum_k (2 E_k,nn/k) y^k) = sum_j past_[j] y^j takes
   // a way past the order by j and back; turning_, the sum of all.
-  std::vector<double> past_;
+  Eigen::VectorXd past_;
   double turning_ = 1;
   bool symmetric_ = false;
   int max_order_;
-  mutable std::vector<Eigen::MatrixXd> from_;  // a_k(r) in (r, k - 1), as far as it was asked for
+  mutable std::vector<Eigen::MatrixXd> from_;  // a_k(r) in (k - 1, r), as far as it was asked for
+  mutable std::vector<Eigen::MatrixXd> back_;  // b_j(l, r) in (j - 1, l)
+  mutable std::map<std::tuple<std::size_t, std::size_t, int>, double> strength_;
 };
 
 }  // namespace hb
