@@ -40,7 +40,7 @@ TEST(FrozenFrequencies, NameEveryExponentOfStrongSlowModulation) {
     for (const Strand& strand : strands.all) {
       ASSERT_FALSE(strand.mean.empty());
       const MeanExponent& name = sample->mean[strand.mean.front()];
-      EXPECT_LT(std::abs(folded({0, strand.s.imag() - name.frozen}).imag()), 0.02) << speed;
+      EXPECT_LT(std::abs(folded({0, strand.s.imag() - name.frozen}).imag()), 1e-3) << speed;
       EXPECT_FALSE(taken[strand.mean.front()]) << speed;
       taken[strand.mean.front()] = true;
     }
@@ -50,6 +50,13 @@ TEST(FrozenFrequencies, NameEveryExponentOfStrongSlowModulation) {
 TEST(FrozenFrequencies, AreUnknownWhereAnAngleHasNone) {
   HillSystem system = slowly_modulated(0.4, 0.7);
   system.stiffness[0].c.col(1) *= 10;
+  for (const MeanExponent& mean : mean_exponents(scale_system(system, 1))) EXPECT_EQ(mean.frozen, 0);
+}
+
+// Frequencies of 12, 14 and 85: the first two turn into each other within a turn.
+TEST(FrozenFrequencies, AreUnknownWhereModesPassEachOther) {
+  HillSystem system = slowly_modulated(0.4, 0.7);
+  system.stiffness[0].c(4, 0) = 196;
   for (const MeanExponent& mean : mean_exponents(scale_system(system, 1))) EXPECT_EQ(mean.frozen, 0);
 }
 

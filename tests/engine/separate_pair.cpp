@@ -9,6 +9,7 @@
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/boundaries/leading_pair.hpp"
 #include "hb/engine/boundaries/pair_model.hpp"
+#include "tests/support/random_hill_system.hpp"
 
 namespace {
 
@@ -136,6 +137,33 @@ TEST(SeparatePair, AGapBesideANodeIsLookedAt) {
   const std::vector<double> places = model.telling();
   EXPECT_TRUE(std::ranges::any_of(places, [&](double x) { return model.predicted(x) < 0; }));
   EXPECT_TRUE(std::ranges::none_of(places, [](double x) { return x == 0 || x == 1; }));
+}
+
+// A narrow lock, c = 1.0001 cos 2 pi phi, phi = const - 1/x: places far apart do not show where it is.
+TEST(SeparatePair, ItsErrorLeavesRoomForALockBetweenPlacesFarApart) {
+  stress::Random random(7);
+  int settled = 0;
+  for (int number = 0; number < 5000; ++number) {
+    const double from = random(2, 6), spacing = random.power(-1.5, -0.15), last = spacing * random(0.3, 1);
+    std::vector<double> turns = {0, last, last + spacing * random(0.3, 1), -spacing * random(0.3, 1)};
+    if (random.chance(0.5)) turns.push_back(turns[2] + spacing * random(0.3, 1));
+    const double lock = last * std::array{1e-3, 0.01, 0.2, 0.5, 0.8, 0.99}[std::size_t(number % 6)];
+    constexpr double deepest = 1.0001;
+    std::vector<PairNode> nodes;
+    for (const double t : turns) {
+      PairNode node;
+      node.x = 1 / (from - t);
+      node.turned = t;
+      node.pair.half_trace = deepest * std::cos(2 * pi * (t - lock));
+      nodes.push_back(node);
+    }
+    const GrowthBounds growth = PairModel(nodes).leading(1 / (from - lock));
+    const double truth = std::acosh(deepest) / (2 * pi);
+    EXPECT_GE(growth.high, truth) << number;
+    EXPECT_LE(growth.low, truth) << number;
+    settled += growth.high < 2 * truth;
+  }
+  EXPECT_GT(settled, 100);
 }
 
 }  // namespace

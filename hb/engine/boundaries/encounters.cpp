@@ -101,6 +101,36 @@ double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Str
   return std::min(0.5, grown);
 }
 
+// The frequency that a mean exponent stands for, and how far from it modulation may shift the exponent.
+double frequency(const MeanExponent& mean) { return mean.frozen != 0 ? mean.frozen : mean.value.imag(); }
+double most_shift(const MeanExponent& mean) {
+  return mean.frozen != 0 ? 0 : std::min(shift_by_modulation(mean), mean.modulation);
+}
+double order(const MeanExponent& n, const MeanExponent& r) { return frequency(r) - frequency(n); }
+
+// What an exponent that is known modulo 1 may be, having come from a mean one: the nearest to that, and all as near as
+// modulation may shift it.
+struct Unfolded {
+  double first;
+  int count;
+};
+Unfolded unfolded(const Strand& strand, const MeanExponent& mean) {
+  const double s = strand.s.imag(), f = frequency(mean), nearest = s + std::round(f - s), shift = most_shift(mean);
+  const double below = std::max(0.0, std::floor(nearest - f + shift)),
+               above = std::max(0.0, std::floor(f - nearest + shift));
+  return {nearest - below, static_cast<int>(below + above) + 1};
+}
+
+// Whether at(k) holds for an order k of the resonance between two strands that have come from the mean exponents n, r.
+template <class At>
+bool any_order(const Strand& s, const MeanExponent& n, const Strand& t, const MeanExponent& r, const At& at) {
+  const Unfolded from = unfolded(s, n), to = unfolded(t, r);
+  const int first = static_cast<int>(std::round(to.first - from.first)) - (from.count - 1);
+  for (int k = first; k < first + from.count + to.count - 1; ++k)
+    if (at(k)) return true;
+  return false;
+}
+
 // Multiplier +1, -1 or complex, of a locked pair.
 BoundaryKind kind_of(const Strand& strand) {
   constexpr double slack = 1e-7;
@@ -187,8 +217,12 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
         continue;
       const ParametricCoupling *of_p = coupling(p), *of_q = coupling(q);
       if (of_p == nullptr || of_q == nullptr) return false;
-      const int first = std::max(1, static_cast<int>(std::ceil(std::min(at_p, at_q) - 0.5)));
-      const int last = std::min(options_.max_order, static_cast<int>(std::floor(std::max(at_p, at_q) + 0.5)));
+      const double shift =
+          0.5 + std::max(most_shift(p.mean[i]) + most_shift(p.mean[j]), most_shift(q.mean[i]) + most_shift(q.mean[j]));
+      const double low = std::min(order(p.mean[i], p.mean[j]), order(q.mean[i], q.mean[j])) - shift,
+                   high = std::max(order(p.mean[i], p.mean[j]), order(q.mean[i], q.mean[j])) + shift;
+      const int first = std::max(1, static_cast<int>(std::ceil(low)));
+      const int last = static_cast<int>(std::floor(std::min(high, static_cast<double>(options_.max_order))));
       const auto strength = [&](const ParametricCoupling& of, int k) {
         return p.unstable ? of.either_way(i, j, k) : of(i, j, k);
       };
@@ -215,16 +249,16 @@ double Encounters::motion_towards(Place& p, Place& q, std::size_t a, std::size_t
       if (n == r || moved <= motion || std::max(weaker(p), comparable ? weaker(q) : 0) < needed) continue;
       const ParametricCoupling *of_p = coupling(p), *of_q = comparable ? coupling(q) : of_p;
       if (of_p == nullptr || of_q == nullptr) return HUGE_VAL;
-      const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
-      const int k = static_cast<int>(std::round(to - from));
       const auto coupled = [&](std::size_t from_n, std::size_t to_r, int order) {
         const auto of = [&](const ParametricCoupling& c) {
           return effect == Effect::quenches ? c.either_way(from_n, to_r, order) : c(from_n, to_r, order);
         };
         return std::max(of(*of_p), of(*of_q));
       };
-      const bool acts =
-          k == 0 ? !(of_p->symmetric() && in * ir > 0) : !((k > 0 ? coupled(n, r, k) : coupled(r, n, -k)) < needed);
+      const bool acts = any_order(s, p.mean[n], t, p.mean[r], [&](int k) {
+        return k == 0 ? !(of_p->symmetric() && in * ir > 0)
+                      : !((k > 0 ? coupled(n, r, k) : coupled(r, n, -k)) < needed);
+      });
       if (acts) motion = moved;
     }
   }
@@ -280,12 +314,13 @@ double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b) cons
     for (const std::size_t r : t.mean) {
       if (n == r) continue;
       const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
-      const double from = s.s.imag() + std::round(in - s.s.imag()), to = t.s.imag() + std::round(ir - t.s.imag());
-      const int k = static_cast<int>(std::round(to - from));
-      if (k == 0)
-        largest = strength->symmetric() && in * ir > 0 ? largest : HUGE_VAL;
-      else
-        largest = std::max(largest, k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k));
+      (void)any_order(s, p.mean[n], t, p.mean[r], [&](int k) {
+        if (k == 0)
+          largest = strength->symmetric() && in * ir > 0 ? largest : HUGE_VAL;
+        else
+          largest = std::max(largest, k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k));
+        return std::isinf(largest);
+      });
     }
   }
   return largest;

@@ -11,7 +11,6 @@ namespace hb {
 
 namespace {
 
-using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
@@ -21,7 +20,7 @@ using cplx = std::complex<double>;
 
 // Ways that turn round more than once are not in the sums (chosen by experiment).
 constexpr double margin = 3;
-// A way through a resonance counts much, not infinitely.
+// Where the sum of all ways is asked for a way through a resonance counts much, not infinitely.
 constexpr double least_detuning = 0.25;
 constexpr std::size_t most_modes_frozen = 8;
 // Per radian; growth below 1e-9 is not looked for.
@@ -35,6 +34,10 @@ struct MeanModes {
   VectorXcd mu;
   MatrixXd X, Y;
 };
+
+// What a way of strength a brings to an exponent that it misses by the detuning: no more than that exponent itself, or
+// the detuning 1/4 where a is stronger.
+double on_the_way(double a, double detuning) { return a / std::max({detuning, std::min(least_detuning, a), 1e-300}); }
 
 double largest_off_diagonal(const MatrixXd& A) {
   double largest = 0;
@@ -123,22 +126,37 @@ MatrixXd harmonic(const ScaledSystem& system, const MeanModes& modes, Index k) {
   return modes.Y * K.cwiseAbs() * modes.X;
 }
 
-// Frequencies over the turn with the stiffness held at each angle, ascending, for each mode's own damping b; empty
-// where one is not positive everywhere.
+// Frequencies over the turn with the stiffness held at each angle, ascending, for each mode's own damping b, to second
+// order in how fast the modes turn; empty where they change too fast to be followed through the turn.
 VectorXd frozen_frequencies(const ScaledSystem& system, const VectorXd& b) {
   constexpr Index most_harmonics = 31, angles = 64;  // more than the names of exponents need
+  constexpr double least_apart = 4, least_frequency = 2, most_correction = 0.02;
   const Index I = system.num_modes();
-  const MatrixXd samples =
-      fourier::synthesise(fourier::resized(system.K, std::min(system.K.num_harmonics(), most_harmonics)), angles);
-  VectorXd sum = VectorXd::Zero(I);
+  const FourierSeries K = fourier::resized(system.K, std::min(system.K.num_harmonics(), most_harmonics));
+  const MatrixXd samples = fourier::synthesise(K, angles), slopes = fourier::synthesise(fourier::derivative(K), angles);
+  VectorXd sum = VectorXd::Zero(I), correction = VectorXd::Zero(I);
   for (Index j = 0; j < angles; ++j) {
-    const Eigen::Map<const MatrixXd> K(samples.col(j).data(), I, I);
-    VectorXd w2 = dense::symmetric_eigenpairs(K).values;
-    w2 -= 0.25 * b.cwiseAbs2();
-    if (!(w2.minCoeff() > 0)) return {};
-    sum += w2.cwiseSqrt();
+    const Eigen::Map<const MatrixXd> at(samples.col(j).data(), I, I), slope(slopes.col(j).data(), I, I);
+    const dense::SymmetricEigenpairs frozen = dense::symmetric_eigenpairs(at);
+    VectorXd w = frozen.values - 0.25 * b.cwiseAbs2();
+    if (!(w.minCoeff() > least_frequency * least_frequency)) return {};
+    w = w.cwiseSqrt();
+    sum += w;
+    const MatrixXd turned = frozen.vectors.transpose() * slope * frozen.vectors;
+    for (Index i = 0; i < I; ++i) {
+      correction(i) -= std::pow(turned(i, i), 2) / (32 * std::pow(w(i), 5));
+      for (Index l = 0; l < I; ++l) {
+        if (l == i) continue;
+        if (!(std::abs(w(l) - w(i)) > least_apart)) return {};
+        const double apart = w(l) * w(l) - w(i) * w(i), rate = turned(i, l) / apart;
+        correction(i) -= rate * rate * (w(l) * w(l) + 3 * w(i) * w(i)) / (2 * w(i) * apart);
+      }
+    }
   }
-  return sum / static_cast<double>(angles);
+  sum /= static_cast<double>(angles);
+  correction /= static_cast<double>(angles);
+  if (!(correction.cwiseAbs().maxCoeff() < most_correction)) return {};
+  return sum + correction;
 }
 
 bool symmetric_everywhere(const ScaledSystem& system) {
@@ -253,8 +271,7 @@ const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
       a.row(m - 1) = sum.transpose();
     }
     for (Index l = 0; l < mu_.size(); ++l)
-      relative(l, m - 1) =
-          a(m - 1, l) / std::max(least_detuning, std::abs(start + cplx(0, static_cast<double>(m)) - mu_(l)));
+      relative(l, m - 1) = on_the_way(a(m - 1, l), std::abs(start + cplx(0, static_cast<double>(m)) - mu_(l)));
   }
   return a;
 }
@@ -264,13 +281,12 @@ const MatrixXd& ParametricCoupling::back_to(std::size_t r) const {
   if (b.size() > 0) return b;
   const int farthest = std::min(max_order_, static_cast<int>(E_.size()) + farthest_past);
   b = MatrixXd::Zero(farthest, mu_.size());
-  const ArrayXd order = ArrayXd::LinSpaced(farthest, 1, farthest);
   for (std::size_t l = 0; l < back_.size(); ++l) {
     if (l == r) continue;
     const cplx apart = mu_(static_cast<Index>(r)) - mu_(static_cast<Index>(l));
-    const ArrayXd detuning = (apart.real() * apart.real() + (order + apart.imag()).square()).sqrt().max(least_detuning);
-    const auto way = from(conjugate_[l], farthest).col(static_cast<Index>(conjugate_[r])).head(farthest);
-    b.col(static_cast<Index>(l)) = way.array() / detuning;
+    const auto way = from(conjugate_[l], farthest).col(static_cast<Index>(conjugate_[r]));
+    for (Index j = 1; j <= farthest; ++j)
+      b(j - 1, static_cast<Index>(l)) = on_the_way(way(j - 1), std::abs(apart + cplx(0, static_cast<double>(j))));
   }
   return b;
 }

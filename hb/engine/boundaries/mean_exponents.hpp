@@ -17,8 +17,9 @@ struct MeanExponent {
   // Upper estimate of the growth that any resonance with another one can reach, whatever its order; per radian.
   double coupling = 0;
   double modulation = 0;  // the largest sum_k E_k,nr, of all r
-  // Im mu with the stiffness of each angle in turn, averaged over the turn: nearer to what slow modulation makes of the
-  // exponent, however strong it is. Computed where modulation may shift one by half a turn; 0: not known.
+  // Im mu with the stiffness of each angle in turn, to second order, hb/engine/README.md (B13): nearer to what slow
+  // modulation makes of the exponent, however strong it is. Computed where modulation may shift one by half a turn; 0:
+  // not known, or modulation is not slow.
   double frozen = 0;
 };
 

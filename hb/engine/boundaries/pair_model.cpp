@@ -46,6 +46,7 @@ PairModel::PairModel(std::vector<PairNode> nodes)
     mean_error_ = std::max(mean_error_, nodes_[k].pair.mean_error);
     half_trace_error_ = std::max(half_trace_error_, nodes_[k].pair.half_trace_error);
   }
+  for (const PairNode& node : nodes_) largest_ = std::max(largest_, std::abs(node.pair.half_trace));
 }
 
 PairModel::Terms PairModel::terms(double LeadingPair::*of) const {
@@ -67,23 +68,35 @@ PairModel::Value PairModel::at(double x, const Terms& terms) const {
   return {sum, terms.size() < 4 ? HUGE_VAL : std::max(of_last_term * last, of_term_before * before)};
 }
 
+// The remainder of cos 2 pi phi through n nodes is (2 pi)^n/n! prod (phi - phi_k) at most; twice, as phi is taken for
+// linear in x.
+PairModel::Value PairModel::half_trace_at(double x) const {
+  Value c = at(x, half_trace_);
+  const double turned = nodes_[1].turned * (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);
+  double remainder = 2 * largest_;
+  for (std::size_t k = 0; k < nodes_.size(); ++k)
+    remainder *= two_pi * std::abs(turned - nodes_[k].turned) / static_cast<double>(k + 1);
+  c.error = std::max(c.error, remainder);
+  return c;
+}
+
 GrowthBounds PairModel::leading(double x) const {
-  const Value mean = at(x, mean_), c = at(x, half_trace_);
+  const Value mean = at(x, mean_), c = half_trace_at(x);
   const double E = c.error + half_trace_error_, e = mean.error + mean_error_, size = std::abs(c.value);
   return {mean.value - e + std::acosh(std::max(1.0, size - E)) / two_pi,
           mean.value + e + std::acosh(std::max(1.0, size + E)) / two_pi};
 }
 
 double PairModel::predicted(double x) const {
-  return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
+  return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(half_trace_at(x).value))) / two_pi;
 }
 
 double PairModel::lower(double x) const {
-  return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
+  return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(half_trace_at(x).value))) / two_pi;
 }
 
 double PairModel::lowest(double x) const {
-  const Value mean = at(x, mean_), c = at(x, half_trace_);
+  const Value mean = at(x, mean_), c = half_trace_at(x);
   return mean.value - mean.error - mean_error_ -
          std::acosh(std::max(1.0, std::abs(c.value) + c.error + half_trace_error_)) / two_pi;
 }
@@ -92,7 +105,7 @@ std::vector<double> PairModel::telling() const {
   std::vector<double> found = probes(nodes_[0].x, nodes_[1].x), places = found;
   places.insert(places.end(), {nodes_[0].x, nodes_[1].x});
   std::ranges::sort(places);
-  const auto c = [&](double x) { return at(x, half_trace_).value; };
+  const auto c = [&](double x) { return half_trace_at(x).value; };
   const auto size = [&](double x) { return std::abs(c(x)); };
   for (std::size_t k = 0; k + 1 < places.size(); ++k) {
     const double here = places[k], next = places[k + 1];

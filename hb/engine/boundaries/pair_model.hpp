@@ -13,6 +13,8 @@ namespace hb {
 struct PairNode {
   double x = 0;
   LeadingPair pair;
+  // Turns by which the pair's exponents may have moved since the first node, as a coordinate along x.
+  double turned = 0;
 };
 
 class PairModel {
@@ -21,7 +23,7 @@ class PairModel {
   explicit PairModel(std::vector<PairNode> nodes);
 
   // Growth of the two at x, an estimate: the error is three times the last term of the interpolation, or 3/4 of the one
-  // before, and that of the nodes.
+  // before, and that of the nodes; of the half trace the remainder of a cosine of as many turns at least.
   GrowthBounds leading(double x) const;
   // The same without errors.
   double predicted(double x) const;
@@ -40,10 +42,11 @@ class PairModel {
   using Terms = std::vector<double>;
   Terms terms(double LeadingPair::*of) const;
   Value at(double x, const Terms& terms) const;
+  Value half_trace_at(double x) const;
 
   std::vector<PairNode> nodes_;
   Terms mean_, half_trace_;
-  double mean_error_ = 0, half_trace_error_ = 0;
+  double mean_error_ = 0, half_trace_error_ = 0, largest_ = 1;
 };
 
 }  // namespace hb

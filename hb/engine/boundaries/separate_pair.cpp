@@ -28,12 +28,6 @@ const std::optional<LeadingPair>& pair_of(const Place& place, Apart what) {
   return what == Apart::pair ? place.pair : place.alone;
 }
 
-PairModel model_of(const std::vector<const Place*>& places, Apart what) {
-  std::vector<PairNode> nodes;
-  for (const Place* place : places) nodes.push_back({place->x(), *pair_of(*place, what)});
-  return PairModel(std::move(nodes));
-}
-
 // Upper estimate of the growth of all other exponents between p and q.
 double others_between(const LeadingPair& p, const LeadingPair& q) {
   return p.others == q.others ? p.others : std::max(p.others, q.others) + std::abs(p.others - q.others);
@@ -56,6 +50,24 @@ double grown_shift(const MeanExponent& a, const MeanExponent& b) {
   return 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1);
 }
 
+// How far mean exponent n and its shift by modulation move between two places.
+double moved(const Place& p, const Place& q, std::size_t n) {
+  return std::abs((q.mean[n].value - p.mean[n].value).imag()) + grown_shift(p.mean[n], q.mean[n]);
+}
+
+PairModel model_of(const std::vector<const Place*>& places, Apart what) {
+  const Place& first = *places[0];
+  const auto turned = [&](const Place& place) {
+    if (what == Apart::alone || &place == &first) return 0.0;
+    if (place.mean.size() != first.mean.size()) return HUGE_VAL;
+    const auto [a, b] = slowest(first.mean);
+    return std::copysign(std::max(moved(first, place, a), moved(first, place, b)), place.x() - first.x());
+  };
+  std::vector<PairNode> nodes;
+  for (const Place* place : places) nodes.push_back({place->x(), *pair_of(*place, what), turned(*place)});
+  return PairModel(std::move(nodes));
+}
+
 // Whether places are near enough to each other to show what happens between them: the pair moves by `most_turns` at
 // most, and no other exponent moves against it by more than it decays faster, both with what modulation may shift them.
 enum class Motion { unknown, too_far, followed };
@@ -63,18 +75,16 @@ Motion motion_between(const Place& p, const Place& q) {
   if (p.mean.size() != q.mean.size() || p.mean.size() < 2) return Motion::unknown;
   const std::array<std::size_t, 2> slow = slowest(p.mean);
   if (slow[0] == slow[1] || slow != slowest(q.mean)) return Motion::unknown;
-  const auto moved = [&](std::size_t n) {
-    return std::abs((q.mean[n].value - p.mean[n].value).imag()) + grown_shift(p.mean[n], q.mean[n]);
-  };
   double pair = 0, growth = HUGE_VAL;
   for (const std::size_t n : slow) {
-    pair = std::max(pair, moved(n));
+    pair = std::max(pair, moved(p, q, n));
     growth = std::min({growth, p.mean[n].value.real(), q.mean[n].value.real()});
   }
   bool followed = pair <= most_turns;
   for (std::size_t n = 0; n < p.mean.size(); ++n) {
     if (n == slow[0] || n == slow[1]) continue;
-    const double faster = growth - std::max(p.mean[n].value.real(), q.mean[n].value.real()), against = moved(n) + pair;
+    const double faster = growth - std::max(p.mean[n].value.real(), q.mean[n].value.real()),
+                 against = moved(p, q, n) + pair;
     if (against <= faster) continue;
     followed = false;
     if (!(against <= (faster >= much_faster ? most_too_far_of_those : most_too_far) * faster)) return Motion::unknown;
