@@ -60,4 +60,12 @@ TEST(FrozenFrequencies, AreUnknownWhereModesPassEachOther) {
   for (const MeanExponent& mean : mean_exponents(scale_system(system, 1))) EXPECT_EQ(mean.frozen, 0);
 }
 
+TEST(FrozenFrequencies, AreUnknownUnderFastModulation) {
+  HillSystem system = slowly_modulated(0.4, 0.7);
+  FourierSeries& K = system.stiffness[0];
+  K = fourier::resized(K, 40);
+  K.c(8, 40) = 500;
+  for (const MeanExponent& mean : mean_exponents(scale_system(system, 1))) EXPECT_EQ(mean.frozen, 0);
+}
+
 }  // namespace

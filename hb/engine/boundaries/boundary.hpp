@@ -8,7 +8,7 @@ namespace hb {
 struct SweepOptions {
   double tolerance = 1e-11;  // bracket of a boundary, relative to |x|
   double least_growth = 1e-9;  // a weaker instability, relative to the speed, is not looked for
-  int max_order = 128;  // nor one of higher order k
+  int max_order = 512;  // nor one of higher order k
   StabilityOptions stability;
 };
 

@@ -129,10 +129,11 @@ MatrixXd harmonic(const ScaledSystem& system, const MeanModes& modes, Index k) {
 // Frequencies over the turn with the stiffness held at each angle, ascending, for each mode's own damping b, to second
 // order in how fast the modes turn; empty where they change too fast to be followed through the turn.
 VectorXd frozen_frequencies(const ScaledSystem& system, const VectorXd& b) {
-  constexpr Index most_harmonics = 31, angles = 64;  // more than the names of exponents need
+  constexpr Index most_harmonics = 31, angles = 64;
   constexpr double least_apart = 4, least_frequency = 2, most_correction = 0.02;
-  const Index I = system.num_modes();
-  const FourierSeries K = fourier::resized(system.K, std::min(system.K.num_harmonics(), most_harmonics));
+  const Index I = system.num_modes(), H = std::min(system.K.num_harmonics(), most_harmonics);
+  const double left_out = 2 * system.K.c.rightCols(system.K.num_harmonics() - H).cwiseAbs().sum();
+  const FourierSeries K = fourier::resized(system.K, H);
   const MatrixXd samples = fourier::synthesise(K, angles), slopes = fourier::synthesise(fourier::derivative(K), angles);
   VectorXd sum = VectorXd::Zero(I), correction = VectorXd::Zero(I);
   for (Index j = 0; j < angles; ++j) {
@@ -141,6 +142,7 @@ VectorXd frozen_frequencies(const ScaledSystem& system, const VectorXd& b) {
     VectorXd w = frozen.values - 0.25 * b.cwiseAbs2();
     if (!(w.minCoeff() > least_frequency * least_frequency)) return {};
     w = w.cwiseSqrt();
+    if (!(left_out < most_correction * w.minCoeff())) return {};
     sum += w;
     const MatrixXd turned = frozen.vectors.transpose() * slope * frozen.vectors;
     for (Index i = 0; i < I; ++i) {
