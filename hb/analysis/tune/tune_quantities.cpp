@@ -336,6 +336,12 @@ double growth_error(const SceneModel& model, const RodModel& rod, double speed, 
 
 }  // namespace
 
+std::vector<double> numbers_of(const std::vector<MetricValue>& values) {
+  std::vector<double> numbers;
+  for (const MetricValue& value : values) numbers.push_back(value.value);
+  return numbers;
+}
+
 void complete(MetricValue& value, const SceneModel& model, const SectionHeights& heights, const SpeedSpan& span,
               const Settings& settings, const Metric& metric) {
   if (!std::isfinite(value.value) || metric.kind == MetricKind::mass || metric.kind == MetricKind::speed_range) return;

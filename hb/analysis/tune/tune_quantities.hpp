@@ -30,6 +30,9 @@ struct MetricValue {
   std::optional<double> theory_error = std::nullopt;
 };
 
+// Their values.
+[[nodiscard]] std::vector<double> numbers_of(const std::vector<MetricValue>& values);
+
 // Section height across the rod, by name; "*" for all that are not named.
 using SectionHeights = std::map<std::string, double>;
 

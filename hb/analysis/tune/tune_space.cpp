@@ -3,22 +3,23 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+
+#include "lib/stopwatch.hpp"
 
 namespace hb {
 namespace {
 
-class Stopwatch {
+class TimeCounted {
  public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
+  explicit TimeCounted(double& seconds) : seconds_(seconds) {}
+  ~TimeCounted() { seconds_ += watch_.seconds(); }
+  TimeCounted(const TimeCounted&) = delete;
+  TimeCounted& operator=(const TimeCounted&) = delete;
 
  private:
   double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch watch_;
 };
 
 // Names of all that a condition without a name holds for; empty where it is one number.
@@ -105,7 +106,7 @@ std::vector<MetricValue> DesignSpace::values(const std::vector<double>& x, int t
 const std::vector<MetricValue>& DesignSpace::values(const std::vector<double>& x) {
   const auto known = known_.find(x);
   if (known != known_.end()) return known->second;
-  const Stopwatch watch(counts_.analyses_seconds);
+  const TimeCounted counted(counts_.analyses_seconds);
   ++counts_.analyses;
   return known_.emplace(x, values(x, 1)).first->second;
 }
@@ -124,7 +125,7 @@ const std::vector<MetricValue>* DesignSpace::try_values(const std::vector<double
 std::optional<Eigen::MatrixXd> DesignSpace::gradients(const std::vector<double>& x, const std::vector<double>& lower,
                                                       const std::vector<double>& upper) {
   const std::vector<MetricValue>& here = values(x);
-  const Stopwatch watch(counts_.gradients_seconds);
+  const TimeCounted counted(counts_.gradients_seconds);
   const DesignFamily family{[this](const std::vector<double>& y) { return model(y); },
                             [this](const SceneModel& scene) { return heights(scene); }, lower, upper, settings_};
   std::optional<Eigen::MatrixXd> found = metric_gradients(family, x, metrics_, here);

@@ -8,6 +8,7 @@
 
 #include "hb/engine/exponents/slaving_iteration.hpp"
 #include "lib/constants.hpp"
+#include "lib/modulus.hpp"
 
 namespace hb {
 
@@ -16,7 +17,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 using slaving::Iteration;
-using slaving::modulus;
 using slaving::Partition;
 
 namespace {

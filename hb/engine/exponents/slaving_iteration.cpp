@@ -7,6 +7,7 @@
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
+#include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::slaving {
@@ -93,9 +94,9 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
         const cplx factor = -1.0 / (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0));
         inverse_[slot(j, l, k)] << factor * A(1, 1), -factor * A(0, 1), -factor * A(1, 0), factor * A(0, 0);
       }
-  const auto moduli = Eigen::Map<const Eigen::VectorXcd>(inverse_.data()->data(), 4 * Index(inverse_.size()));
+  const auto all = Eigen::Map<const Eigen::VectorXcd>(inverse_.data()->data(), 4 * Index(inverse_.size()));
   inverse_moduli_.resize(4, Index(inverse_.size()));
-  inverse_moduli_.reshaped() = moduli.cwiseAbs2().cwiseSqrt();
+  inverse_moduli_.reshaped() = moduli(all);
   weigh_residuals();
 }
 

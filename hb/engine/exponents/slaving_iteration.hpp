@@ -26,9 +26,6 @@ Partition partition(Eigen::Index I, std::span<const Eigen::Index> slow);
 // Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
 void drop_tail(FourierSeries& series, Eigen::MatrixXd& error);
 
-// |z| without the care that hypot takes of overflow: |z|^2 of scaled systems stays far from it.
-inline double modulus(std::complex<double> z) { return std::sqrt(std::norm(z)); }
-
 // One attempt with N samples of the turn.
 class Iteration {
  public:

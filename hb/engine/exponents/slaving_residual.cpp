@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hb/engine/exponents/slaving_iteration.hpp"
+#include "lib/modulus.hpp"
 
 namespace hb::slaving {
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "lib/constants.hpp"
+#include "lib/modulus.hpp"
 
 namespace hb::steady {
 

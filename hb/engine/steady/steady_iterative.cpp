@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/modulus.hpp"
 #include "lib/workspace.hpp"
 
 namespace hb::steady {

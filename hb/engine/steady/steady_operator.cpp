@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lib/constants.hpp"
+#include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::steady {

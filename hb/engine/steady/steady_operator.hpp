@@ -12,13 +12,6 @@
 
 namespace hb::steady {
 
-// |z| by squares: scaled systems stay far from the ends of the range, where hypot would be needed.
-inline double modulus(std::complex<double> z) { return std::sqrt(std::norm(z)); }
-template <class Matrix>
-auto moduli(const Matrix& z) {
-  return z.cwiseAbs2().cwiseSqrt();
-}
-
 // Half spectrum of I real functions: (H+1) x I, column i holds harmonics 0..H of component i.
 using Spectrum = Eigen::MatrixXcd;
 

@@ -15,6 +15,7 @@
 #include "hb/engine/steady/truncation.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
+#include "lib/modulus.hpp"
 
 namespace hb {
 
@@ -168,7 +169,7 @@ class Solver {
     const Index above = system_.f.rows();  // the load's own rows have no noise
     for (Index k = H + 1; k < r.rows(); ++k)
       for (Index i = 0; i < r.cols(); ++i)
-        if (steady::modulus(r(k, i)) <= noise(i) && (k >= above || system_.f(k, i) == 0.0)) r(k, i) = 0;
+        if (modulus(r(k, i)) <= noise(i) && (k >= above || system_.f(k, i) == 0.0)) r(k, i) = 0;
     const double slack = steady::tail_slack(A, response);
     double sum = 0;
     Index k = r.rows() - 1;

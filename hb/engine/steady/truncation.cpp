@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::steady {
