@@ -197,22 +197,23 @@ class Location {
     if (sample.stability.verdict == Verdict::bounded && above != found_.boundary.unstable_above) settled_ = sample.x;
   }
 
+  // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
+  // from the boundary to where it is g. An error as large as g leaves open all between places with sure verdicts.
+  double beyond_growth() const {
+    const bool above = found_.boundary.unstable_above;
+    const double g = above ? g_high_ : g_low_;
+    if (!(g > 0)) return 0;
+    const double x = found_.boundary.x, grown = std::abs((above ? certain_high_ : certain_low_) - x);
+    const double part = std::pow(5 * largest_error_ / g, 2);
+    return part < 0.5 ? part / (1 - part) * grown : std::max(grown, std::abs(settled_ - x));
+  }
+
   void set_error() {
     found_.boundary.x = 0.5 * (low_ + high_);
     found_.boundary.error = 0.5 * (high_ - low_);
     const bool known = slope() > 0;
     if (by_sign_ && known) found_.boundary.error += std::min(growth_error_ / slope(), certain_high_ - certain_low_);
-    // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
-    // from the boundary to where it is g. An error as large as g leaves open all between places with sure verdicts.
-    if (const double g = found_.boundary.unstable_above ? g_high_ : g_low_; !by_sign_ && g > 0) {
-      const double certain = found_.boundary.unstable_above ? certain_high_ : certain_low_;
-      const double x = found_.boundary.x, part = std::pow(5 * largest_error_ / g, 2);
-      if (part < 0.5)
-        found_.boundary.error += part / (1 - part) * std::abs(certain - x);
-      else
-        found_.boundary.error +=
-            std::isnan(settled_) ? whole_ : std::max(std::abs(certain - x), std::abs(settled_ - x));
-    }
+    if (!by_sign_) found_.boundary.error += std::isnan(settled_) ? whole_ : beyond_growth();
     found_.boundary.converged = found_.boundary.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
   }
 
