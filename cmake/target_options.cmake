@@ -41,8 +41,9 @@ function(hb_target_options target)
   endif()
 endfunction()
 
-# Analyses ask the engine and put together what it answers: sweeps take as long whether these are optimised or not, and
-# words, files, pictures and tests cost as little. Optimised lightly they compile in seven tenths of the time.
+# Searches and analyses ask the engine and put together what it answers: sweeps and maps take as long whether these are
+# optimised or not, and words, files, pictures and tests cost as little. Optimised lightly they compile in seven tenths of
+# the time.
 function(hb_lightly_optimised)
   foreach(target IN LISTS ARGN)
     if(TARGET ${target})
