@@ -190,6 +190,18 @@ TEST_F(Command, HelpAndVersionSucceed) {
   }
 }
 
+TEST_F(Command, HelpNamesEachCommandAndEachHasItsOwn) {
+  const std::string all = hb("--help").out;
+  for (const std::string name :
+       {"new", "scene", "steady", "sweep", "map", "check", "bench", "tune", "report", "compare", "fit"}) {
+    EXPECT_NE(all.find("\n  " + name + " "), std::string::npos) << name;
+    const CommandResult own = hb(name + " --help");
+    EXPECT_EQ(own.status, 0) << name;
+    EXPECT_NE(own.out.find("Usage: hb " + name), std::string::npos) << own.out;
+    EXPECT_EQ(hb("help " + name).out, own.out);
+  }
+}
+
 TEST_F(Command, WrongCommandsExitWith2) {
   std::ofstream(folder_ / "empty.toml");
   for (const char* arguments :

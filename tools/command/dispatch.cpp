@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <exception>
+#include <iterator>
 #include <new>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -60,6 +62,25 @@ std::string plain(const std::string& sentence) {
   return sentence;
 }
 
+struct Command {
+  std::string_view name;
+  void (*add)(CLI::App& app, int& status);
+};
+constexpr Command commands[] = {
+    {"new", add_new_command},         {"scene", add_scene_command}, {"steady", add_steady_command},
+    {"sweep", add_sweep_command},     {"map", add_map_command},     {"check", add_check_command},
+    {"bench", add_bench_command},     {"tune", add_tune_command},   {"report", add_report_command},
+    {"compare", add_compare_command}, {"fit", add_fit_command},
+};
+
+// The one that is asked for; the flags of all others would take longer to set up than many an answer. All where none
+// of them is.
+void add_commands(CLI::App& app, std::string_view asked, int& status) {
+  const bool known = std::ranges::find(commands, asked, &Command::name) != std::end(commands);
+  for (const Command& command : commands)
+    if (!known || command.name == asked) command.add(app, status);
+}
+
 }  // namespace
 
 int say(int status, const std::string& what) {
@@ -80,17 +101,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", version());
   int status = exit_ok;
-  add_new_command(app, status);
-  add_scene_command(app, status);
-  add_steady_command(app, status);
-  add_sweep_command(app, status);
-  add_map_command(app, status);
-  add_check_command(app, status);
-  add_bench_command(app, status);
-  add_tune_command(app, status);
-  add_report_command(app, status);
-  add_compare_command(app, status);
-  add_fit_command(app, status);
+  add_commands(app, argc > 1 ? argv[1] : "", status);
   if (argc == 1) {  // nothing asked
     fmt::print(stderr, "{}", app.help());
     return exit_wrong_input;
