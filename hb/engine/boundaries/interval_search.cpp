@@ -49,6 +49,7 @@ class Search {
 
   SearchedInterval run(const StabilitySample& a, const StabilitySample& b, const StabilitySample* before,
                        const StabilitySample* after, std::span<const StabilitySample> farther) {
+    if (!is_unstable(a) && !is_unstable(b) && bounded(a, b)) return {};
     for (const StabilitySample& sample : farther) places_.emplace(sample.x, encounters_.place(sample));
     for (const StabilitySample* sample : {before, &a, &b, after})
       if (sample != nullptr) places_.emplace(sample->x, encounters_.place(*sample));
@@ -229,7 +230,7 @@ class Search {
 
   // NaN: settled; otherwise where to look.
   double doubtful(Place& p, Place& q) {
-    if (!p.unstable && bounded(p, q)) return nan;
+    if (!p.unstable && bounded(p.sample, q.sample)) return nan;
     for (const Apart what : {Apart::pair, Apart::alone})
       if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())
         if (const std::optional<double> x = doubtful_while_apart(places, what, options_.least_growth)) {
@@ -335,10 +336,10 @@ class Search {
 
   // A closed-form bound on the growth proves stability at both ends and between them with more to spare than it
   // changes.
-  bool bounded(const Place& p, const Place& q) const {
-    const double a = p.sample.growth_bound, b = q.sample.growth_bound;
+  bool bounded(const StabilitySample& p, const StabilitySample& q) const {
+    const double a = p.growth_bound, b = q.growth_bound;
     if (!(std::max(a, b) + std::abs(a - b) < 0)) return false;
-    const std::optional<ScaledSystem> between = at_(0.5 * (p.x() + q.x()));
+    const std::optional<ScaledSystem> between = at_(0.5 * (p.x + q.x));
     if (!between) return false;
     const double m = growth_bound(*between);
     return std::max({a, b, m}) + std::max(std::abs(a - m), std::abs(b - m)) < 0;

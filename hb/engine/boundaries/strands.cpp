@@ -27,6 +27,8 @@ std::vector<double> parting_lines(const Strands& strands, const std::vector<Mean
   std::vector<double> lines, means;
   if (strands.all.size() != mean.size()) return lines;
   std::vector<Seen> seen;
+  seen.reserve(mean.size());
+  means.reserve(mean.size());
   for (std::size_t k = 0; k < mean.size(); ++k) {
     seen.push_back({growth_by_itself(strands, k), strands.all[k].error});
     means.push_back(mean[k].value.real());
@@ -47,6 +49,7 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
     return std::ranges::any_of(lines, [&](double line) { return (x < line) != (y < line); });
   };
   std::vector<std::pair<double, std::size_t>> distances;
+  distances.reserve(mean.size());
   for (std::size_t n = 0; n < mean.size(); ++n) {
     if (parted(s.real(), mean[n].value.real())) continue;
     const double decay = -mean[n].value.real(), seen = -s.real();
@@ -129,7 +132,9 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
   Strands strands;
   strands.x = sample.x;
   strands.growth_error = sample.stability.growth_error / sample.speed;
+  strands.mean.reserve(mean.size());
   for (const MeanExponent& exponent : mean) strands.mean.push_back(exponent.value);
+  strands.all.reserve(sample.stability.exponents.size() + sample.stability.uncertain.size());
   for (const std::vector<Exponent>* list : {&sample.stability.exponents, &sample.stability.uncertain}) {
     for (const Exponent& e : *list) {
       if (!std::isfinite(e.error)) continue;
@@ -137,8 +142,8 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
       strands.all.push_back({s, e.error / sample.speed, {}});
     }
   }
-  std::stable_sort(strands.all.begin(), strands.all.end(),
-                   [](const Strand& a, const Strand& b) { return a.s.real() > b.s.real(); });
+  const auto faster = [](const Strand& a, const Strand& b) { return a.s.real() > b.s.real(); };
+  if (!std::ranges::is_sorted(strands.all, faster)) std::ranges::stable_sort(strands.all, faster);
   find_partners(strands.all);
   const std::vector<double> lines = parting_lines(strands, mean);
   const std::vector<std::vector<std::size_t>> frozen = frozen_names(strands.all, mean);

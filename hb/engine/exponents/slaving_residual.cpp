@@ -19,37 +19,36 @@ constexpr double least_carried = 0.01;
 // exp(sum_m (z_m/m) y^m) = sum_d c_d y^d by c_d = sum_m z_m c_(d-m)/d; from each d on the largest, at most 1. With
 // the last w of them at most l, all others at most L, and sum_m z_m l + sum_(m>w) z_m L <= d l, no later one is above
 // l.
-VectorXd carried_by(const VectorXd& z) {
+void carried_by(const VectorXd& z, VectorXd& back, VectorXd& c) {
   constexpr double most = 1e100;
   const Index H = z.size();
-  VectorXd back = VectorXd::Zero(H + 1);  // c_H .. c_0
+  back.setZero(H + 1);  // c_H .. c_0
   back(H) = 1;
   const double sum = z.sum();
   double largest = 1;  // of all c so far
   Index small = 0;  // so many of the last c are
   for (Index d = 1; d <= H; ++d) {
-    const double c = std::min(z.head(d).dot(back.segment(H - d + 1, d)) / double(d), most);
-    back(H - d) = c;
-    largest = std::max(largest, c);
-    small = c <= least_carried ? small + 1 : 0;
+    const double next = std::min(z.head(d).dot(back.segment(H - d + 1, d)) / double(d), most);
+    back(H - d) = next;
+    largest = std::max(largest, next);
+    small = next <= least_carried ? small + 1 : 0;
     const double room = (double(d) - sum) * least_carried;
     if (small > 0 && room >= 0 && z.tail(H - small).sum() * largest <= room) break;
   }
-  VectorXd c = back.reverse();
+  c = back.reverse();
   for (Index d = H; d-- > 0;) c(d) = std::max(c(d), c(d + 1));
-  return c.cwiseMin(1.0).cwiseMax(least_carried);
+  c = c.cwiseMin(1.0).cwiseMax(least_carried);
 }
 
 // For each harmonic k the largest size_l carried from k to l.
-VectorXd reached(const VectorXd& size, const VectorXd& carried) {
+void reached(const VectorXd& size, const VectorXd& carried, VectorXd& result) {
   const Index H = size.size() - 1;
-  VectorXd result = size.cwiseMax(least_carried * size.maxCoeff());
+  result = size.cwiseMax(least_carried * size.maxCoeff());
   for (Index d = 1; d <= H && carried(d) > least_carried; ++d) {
     auto below = result.head(H + 1 - d), above = result.tail(H + 1 - d);
     below = below.cwiseMax(carried(d) * size.tail(H + 1 - d));
     above = above.cwiseMax(carried(d) * size.head(H + 1 - d));
   }
-  return result;
 }
 
 }  // namespace
@@ -58,13 +57,13 @@ double Iteration::carried_change(const FourierSeries& alpha) {
   const auto spectrum = forward_.spectrum();
   const Index nm = n_ * m_;
   double sum = 0, squares = 0;
-  VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1);
+  VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1), phase(H_), carried, back, part;
   for (Index j = 0; j < n_; ++j) {
     const auto own = given_.c.row(F_[j] + I_ * F_[j]);
     const double fast = std::max(std::sqrt(std::abs(own(0).real())), 1e-3);
     for (Index l = 0; l < m_; ++l) {
       const Index q = j + n_ * l;
-      VectorXd phase = VectorXd::Zero(H_);  // |K_m|/w_F + |alpha_m|/w_S of the harmonics from 1
+      phase.setZero();  // |K_m|/w_F + |alpha_m|/w_S of the harmonics from 1
       phase.head(own.size() - 1) = own.tail(own.size() - 1).cwiseAbs2().cwiseSqrt() / fast;
       for (Index s = 0; s < m_; ++s)
         phase += alpha.c.row(s + m_ * l).segment(1, H_).cwiseAbs2().cwiseSqrt().transpose() / weight_[std::size_t(l)];
@@ -76,9 +75,10 @@ double Iteration::carried_change(const FourierSeries& alpha) {
         size1(k) = rate * inverse_size(0, j, l, k);
         size2(k) = rate * inverse_size(1, j, l, k);
       }
-      const VectorXd carried = carried_by(phase);
+      carried_by(phase, back, carried);
       const auto add = [&](const VectorXd& r, const VectorXd& gain, double effect) {
-        const VectorXd part = reached(gain, carried) * (effect / gain.maxCoeff());
+        reached(gain, carried, part);
+        part *= effect / gain.maxCoeff();
         for (Index k = 0; k <= H_; ++k) {
           const double change = part(k) * r(k);
           sum += (k > 0 ? 2 : 1) * change;

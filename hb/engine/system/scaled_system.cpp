@@ -13,7 +13,12 @@ namespace hb {
 
 namespace {
 
-bool is_diagonal(const Eigen::MatrixXd& A) { return (A - Eigen::MatrixXd(A.diagonal().asDiagonal())).isZero(0); }
+bool is_diagonal(const Eigen::MatrixXd& A) {
+  for (Eigen::Index j = 0; j < A.cols(); ++j)
+    for (Eigen::Index i = 0; i < A.rows(); ++i)
+      if (i != j && A(i, j) != 0) return false;
+  return true;
+}
 
 bool is_symmetric(const Eigen::MatrixXd& A) { return (A - A.transpose()).norm() <= 8 * eps * A.norm(); }
 
@@ -131,7 +136,12 @@ Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& syste
 
 Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
 
-Eigen::VectorXd ScaledSystem::mean_diagonal() const { return mean_stiffness().diagonal(); }
+Eigen::VectorXd ScaledSystem::mean_diagonal() const {
+  const Eigen::Index I = num_modes();
+  Eigen::VectorXd diagonal(I);
+  for (Eigen::Index i = 0; i < I; ++i) diagonal(i) = K.c(i * (I + 1), 0).real();
+  return diagonal;
+}
 
 Eigen::VectorXd ScaledSystem::squared_frequencies() const {
   const Eigen::MatrixXd K0 = mean_stiffness();
