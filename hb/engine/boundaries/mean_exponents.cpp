@@ -299,9 +299,13 @@ double ParametricCoupling::ways(std::size_t n, std::size_t r, int k) const {
   const Index past = std::min<Index>(max_order_ - k + 1, past_.size()), most = farthest - k;
   const auto to_n = static_cast<Index>(n), to_r = static_cast<Index>(r);
   double sum = from(n, k + static_cast<int>(past) - 1).col(to_r).segment(k - 1, past).dot(past_.head(past));
-  sum += from(n, farthest).middleRows(k, most).cwiseProduct(back_to(r).topRows(most)).sum();
-  for (std::size_t l = 0; l < from_.size(); ++l)
-    sum += from(l, farthest).col(to_r).segment(k, most).dot(back_to(l).col(to_n).head(most));
+  // back_to may lengthen what from gives a reference to: it comes first.
+  const MatrixXd& back = back_to(r);
+  sum += from(n, farthest).middleRows(k, most).cwiseProduct(back.topRows(most)).sum();
+  for (std::size_t l = 0; l < from_.size(); ++l) {
+    const auto first = back_to(l).col(to_n).head(most);
+    sum += from(l, farthest).col(to_r).segment(k, most).dot(first);
+  }
   return sum;
 }
 

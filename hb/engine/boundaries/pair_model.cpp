@@ -76,7 +76,7 @@ PairModel::Value PairModel::half_trace_at(double x) const {
   double remainder = 2 * largest_;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     remainder *= two_pi * std::abs(turned - nodes_[k].turned) / static_cast<double>(k + 1);
-  c.error = std::max(c.error, remainder);
+  if (!(remainder <= c.error)) c.error = std::isnan(remainder) ? HUGE_VAL : remainder;  // not known how far they turned
   return c;
 }
 

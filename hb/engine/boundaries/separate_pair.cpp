@@ -154,7 +154,7 @@ std::optional<std::array<double, 2>> expected_change(const std::vector<const Pla
   }
   if (high >= 1) return std::nullopt;
   for (int k = 0; k < halvings; ++k) (beyond(0.5 * (low + high)) ? high : low) = 0.5 * (low + high);
-  // As far as a third of the growth's error, which is three times the last term, moves it.
+  // As far as a third of the growth's error moves it: what the last term alone would tell, or more.
   const double x = from + high * width, step = 1e-4 * width;
   const GrowthBounds growth = model.leading(x);
   const double slope = std::abs(model.predicted(x + step) - model.predicted(x - step)) / (2 * step);
