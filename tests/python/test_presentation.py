@@ -34,6 +34,29 @@ def test_only_numpy_is_needed():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
+def test_what_is_missing_is_named_with_its_package():
+    """`plot()` without matplotlib ended in a bare ImportError."""
+    code = (
+        "import sys; sys.modules.update(dict.fromkeys(['matplotlib', 'pandas', 'xarray']))\n"
+        "import hb\n"
+        f"m = hb.load({str(SCENES / 'six_link.toml')!r}); s = m.steady(rpm=300, modes=1)\n"
+        "w = m.sweep(rpm=(300, 500, 100), modes=1); p = m.map(x='rpm=300:500:3', y='AB.J=40:50:2', modes=1)\n"
+        "c = m.check(rpm=300, modes=1)\n"
+        "calls = [m.plot, s.plot, s['AB'].plot, w.plot, w['AB'].plot, p.plot, c.plot]\n"
+        "calls += [r.to_frame for r in (s, s['AB'], w, w['AB'], p, c)] + [r.to_xarray for r in (s, w, p)]\n"
+        "for call in calls:\n"
+        "    try: call()\n"
+        "    except hb.MissingPackage as error: print(call.__name__, error)\n"
+    )
+    said = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout.splitlines()
+    assert len(said) == 16
+    for line in said:
+        name, package = {"plot": ("plot()", "matplotlib"), "to_frame": ("to_frame()", "pandas"), "to_xarray": ("to_xarray()", "xarray")}[
+            line.split()[0]
+        ]
+        assert f"{name} needs the package {package}" in line and f"apt install python3-{package}" in line
+
+
 def test_a_frame_has_the_commands_table(steady):
     pytest.importorskip("pandas")
     frame = steady["AB"].to_frame()

@@ -11,7 +11,7 @@ from ._core import Force, Rod, Stability
 from ._core import version as __version__
 from .bench import Bench, RodBench
 from .check import Check, RodCheck
-from .errors import Error, RequestError, SceneError, SceneProblem
+from .errors import Error, MissingPackage, RequestError, SceneError, SceneProblem
 from .fit import DampingFit, fit_decay, fit_peak
 from .hill_system import HillSystem
 from .map import Boundary, Map, RodMap
@@ -30,6 +30,7 @@ __all__ = [
     "Force",
     "HillSystem",
     "Map",
+    "MissingPackage",
     "RequestError",
     "Rod",
     "RodBench",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from typing import NamedTuple, Optional
 
@@ -83,6 +84,28 @@ class RequestError(Error):
 
     def __str__(self) -> str:
         return str(self.args[0])
+
+
+class MissingPackage(Error, ImportError):
+    """A package that only this call needs is not there: `package`, and its name in Debian, `debian`."""
+
+    def __init__(self, package: str, needed_by: str) -> None:
+        self.package = package
+        self.debian = f"python3-{package}"
+        super().__init__(
+            f"{needed_by} needs the package {package}, which this Python does not have: "
+            f"apt install {self.debian} (or pip install {package})"
+        )
+
+
+def require(package: str, needed_by: str) -> None:
+    """Imports what a call needs, or says what to install."""
+    try:
+        importlib.import_module(package)
+    except ModuleNotFoundError as error:
+        if error.name != package:
+            raise  # it is there, and something of its own is missing
+        raise MissingPackage(package, needed_by) from None
 
 
 def refused(field: str, found: object, allowed: str) -> RequestError:

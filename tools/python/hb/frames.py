@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from .errors import refused
+from .errors import refused, require
 
 if TYPE_CHECKING:
     import pandas
@@ -21,6 +21,7 @@ _POINT_COLUMNS = ("error_bound", "theory_error", "deflection", "bending_moment",
 
 
 def of_table(table: tuple[list[str], Any]) -> "pandas.DataFrame":
+    require("pandas", "to_frame()")
     import pandas
 
     columns, rows = table
@@ -28,6 +29,7 @@ def of_table(table: tuple[list[str], Any]) -> "pandas.DataFrame":
 
 
 def of_steady(result: "Steady", what: str) -> "pandas.DataFrame":
+    require("pandas", "to_frame()")
     import pandas
 
     if what not in _ROD_TABLES:
@@ -36,6 +38,7 @@ def of_steady(result: "Steady", what: str) -> "pandas.DataFrame":
 
 
 def steady_dataset(result: "Steady") -> "xarray.Dataset":
+    require("xarray", "to_xarray()")
     import numpy
     import xarray
 
@@ -60,6 +63,7 @@ def steady_dataset(result: "Steady") -> "xarray.Dataset":
 
 
 def of_sweep(result: "Sweep") -> "pandas.DataFrame":
+    require("pandas", "to_frame()")
     import pandas
 
     columns: dict[tuple[str, str], Any] = {}
@@ -75,6 +79,7 @@ def of_sweep(result: "Sweep") -> "pandas.DataFrame":
 
 
 def sweep_dataset(result: "Sweep") -> "xarray.Dataset":
+    require("xarray", "to_xarray()")
     import numpy
     import xarray
 
@@ -101,6 +106,7 @@ def sweep_dataset(result: "Sweep") -> "xarray.Dataset":
 
 
 def map_dataset(result: "Map") -> "xarray.Dataset":
+    require("xarray", "to_xarray()")
     import xarray
 
     return xarray.Dataset(
@@ -118,6 +124,7 @@ def map_dataset(result: "Map") -> "xarray.Dataset":
 
 
 def of_check(result: "Check") -> "pandas.DataFrame":
+    require("pandas", "to_frame()")
     import pandas
 
     document = result.to_dict()
@@ -131,6 +138,7 @@ def of_check(result: "Check") -> "pandas.DataFrame":
 
 
 def of_bench(result: "Bench") -> "pandas.DataFrame":
+    require("pandas", "to_frame()")
     import pandas
 
     rows = [{"rod": name} | row for name, rod in result.rods.items() for row in rod.rows]

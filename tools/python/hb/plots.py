@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Optional
 
+from .errors import require
 from .frames import require_kind
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from .steady import Steady
     from .sweep import Sweep, SweepRod
     from .tune import Tune
+
+require("matplotlib", "plot()")
 
 LINES = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 UNSTABLE = "#d55e00"  # shaded bands
