@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "hb/analysis/range_warnings.hpp"
+
 namespace hb {
 namespace {
 
@@ -93,6 +95,7 @@ Map MapTask::compute(Work& work) const {
           static_cast<int>(options_.num_modes),
           search.search.tolerance,
           {},
+          range_warnings(family_, {&request_.x, &request_.y}),
           true};
   if (request_.band) map.band_of = request_.band->parameter;
   for (std::size_t end = 0; end < ends_.size(); ++end) {

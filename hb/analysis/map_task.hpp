@@ -28,6 +28,7 @@ struct Map : MapResult {
   int num_modes = 0;
   double boundary_tolerance = 0;  // of boundary points, relative
   std::string evidence;  // one sentence: what was computed
+  std::vector<std::string> warnings;  // of the scenes at its corners: range_warnings()
   bool complete = true;  // false: whoever did the work ended early
 };
 

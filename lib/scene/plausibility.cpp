@@ -25,8 +25,9 @@ double in_si(double value, Dimension dimension, const Units& units) {
 void remark(const TableView& table, std::string_view key, Concern concern, const std::string& words,
             const SceneContext& context) {
   const toml::node* node = table.node(key);
-  context.remarks.push_back({concern, fmt::format("{}: {}: {}", table.problems().place(node ? *node : table.table()),
-                                                  table.path_of(key), words)});
+  context.remarks.push_back(
+      {concern, fmt::format("{}: {}", table.problems().place(node ? *node : table.table()), table.path_of(key)),
+       words});
 }
 
 // A value of SI size in the largest of these units that leaves it at least 1.
@@ -281,23 +282,23 @@ void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults
          context);
 }
 
-std::vector<std::string> warnings(std::vector<Remark> remarks) {
+std::vector<std::string> warning_lines(std::vector<Remark> remarks) {
   std::erase_if(remarks, [](const Remark& remark) { return remark.concern == Concern::note; });
   std::ranges::stable_sort(remarks, std::greater{}, &Remark::concern);
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < remarks.size();) {
     const Concern concern = remarks[i].concern;
     const auto others = std::ranges::count(remarks, concern, &Remark::concern) - 1;
-    lines.push_back(remarks[i].line + (others == 0 ? "" : fmt::format(" (and {} more of this kind)", others)));
+    lines.push_back(remarks[i].line() + (others == 0 ? "" : fmt::format(" (and {} more of this kind)", others)));
     i += static_cast<std::size_t>(others) + 1;
   }
   return lines;
 }
 
-std::vector<std::string> notes(const std::vector<Remark>& remarks) {
+std::vector<std::string> note_lines(const std::vector<Remark>& remarks) {
   std::vector<std::string> lines;
   for (const Remark& remark : remarks) {
-    if (remark.concern == Concern::note) lines.push_back(remark.line);
+    if (remark.concern == Concern::note) lines.push_back(remark.line());
   }
   return lines;
 }

@@ -22,9 +22,4 @@ void remark_on_linkage(const TableView& scene, const Linkage& linkage, const Sce
 void remark_on_speed(const TableView& analysis, const AnalysisDefaults& defaults, const Linkage& linkage,
                      const SceneContext& context);
 
-// Most likely to spoil the answer first; of several of one kind the first, with their number. Notes are left out of
-// `warnings` and are the only ones in `notes`.
-[[nodiscard]] std::vector<std::string> warnings(std::vector<Remark> remarks);
-[[nodiscard]] std::vector<std::string> notes(const std::vector<Remark>& remarks);
-
 }  // namespace hb

@@ -180,8 +180,9 @@ Scene scene_from(const toml::table& tree, const std::string& name, const std::fi
     if (analysis) remark_on_speed(*analysis, result.analysis, *linkage, context);
     refuse_obstruction(*linkage, tree, problems, overrides);
   }
-  result.warnings = warnings(remarks);
-  result.notes = notes(remarks);
+  result.warnings = warning_lines(remarks);
+  result.notes = note_lines(remarks);
+  result.remarks = std::move(remarks);
   return result;
 }
 

@@ -53,13 +53,28 @@ struct AnalysisDefaults {
   double tolerance = 1e-10;
 };
 
+// What is odd but usable, in growing order of how likely it spoils the answer. A note does not.
+enum class Concern { note, slenderness, seam, speed, gravity, section, size, material };
+struct Remark {
+  Concern concern;
+  std::string subject;  // "file:line: key"
+  std::string words;  // "found ..."
+  std::string line() const { return subject + ": " + words; }
+};
+
+// Most likely to spoil the answer first; of several of one kind the first, with their number. Notes are left out of the
+// warnings and are the only ones in the notes.
+[[nodiscard]] std::vector<std::string> warning_lines(std::vector<Remark> remarks);
+[[nodiscard]] std::vector<std::string> note_lines(const std::vector<Remark>& remarks);
+
 struct Scene {
   std::string title;
   std::filesystem::path file;
   Units units;
   std::variant<Linkage, HillSystem> model;
   AnalysisDefaults analysis;
-  // "file:line: key: found ..., allowed ...": odd, but usable. The gravest first; notes do not touch the answer.
+  std::vector<Remark> remarks;
+  // Their lines, "file:line: key: found ..., allowed ...", the gravest first; notes do not touch the answer.
   std::vector<std::string> warnings, notes;
 };
 

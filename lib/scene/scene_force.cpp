@@ -76,8 +76,8 @@ FourierSeries from_file(const TableView& table, const Measure& measure, const st
     return sampled_series(
         numbers, columns.angle, {columns.value}, angle_unit, quantity, [&](const std::string& remark) {
           context.remarks.push_back(
-              {Concern::seam,
-               fmt::format("{}: {}: {}", table.problems().place(*table.node("file")), table.path_of("file"), remark)});
+              {Concern::seam, fmt::format("{}: {}", table.problems().place(*table.node("file")), table.path_of("file")),
+               remark});
         });
   } catch (const SceneError& error) {
     table.problem("file", fmt::format("found \"{}\" with {}", printable(file, 100), error.what()));

@@ -157,8 +157,8 @@ class TermsReader {
           table, columns.angle, columns.components, angle_unit_of(table, columns.angle, context_.angle_unit()),
           matrices_ ? "stiffness" : "load", [&](const std::string& remark) {
             context_.remarks.push_back(
-                {Concern::seam,
-                 fmt::format("{}: {}: {}", term.problems().place(*term.node("file")), term.path_of("file"), remark)});
+                {Concern::seam, fmt::format("{}: {}", term.problems().place(*term.node("file")), term.path_of("file")),
+                 remark});
           });
       if (scale != 1) series.c *= scale;
       add(power, series);

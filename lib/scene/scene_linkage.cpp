@@ -148,10 +148,10 @@ class LinkageReader {
       const std::string unit = context_.units.mass + " " + context_.units.length + "^2";
       context_.remarks.push_back(
           {Concern::note,
-           fmt::format("{}: {}: found {:.6g} {}, below mass radius^2 of com = {:.6g} {}, which no body has; taken as "
+           fmt::format("{}: {}", problems_.place(*table.node("inertia_pivot")), table.path_of("inertia_pivot")),
+           fmt::format("found {:.6g} {}, below mass radius^2 of com = {:.6g} {}, which no body has; taken as "
                        "given: the link turns about a fixed pivot, where inertia_pivot alone counts",
-                       problems_.place(*table.node("inertia_pivot")), table.path_of("inertia_pivot"), *about_joint,
-                       unit, steiner, unit)});
+                       *about_joint, unit, steiner, unit)});
     }
   }
 

@@ -6,13 +6,6 @@
 
 namespace hb {
 
-// What is odd but usable, in growing order of how likely it spoils the answer. A note does not.
-enum class Concern { note, slenderness, seam, speed, gravity, section, size, material };
-struct Remark {
-  Concern concern;
-  std::string line;
-};
-
 struct SceneContext {
   Units units;
   std::filesystem::path folder;  // of further files

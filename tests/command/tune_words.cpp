@@ -1,6 +1,7 @@
 // `hb tune`: what it says of designs, writes, and refuses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -63,6 +64,57 @@ TEST_F(Tune, SaysWhatIsNotConfirmedOfAnUnstableStart) {
                                   "--over rpm=300:3000 --speeds 12 --analyses 12");
   EXPECT_NE(result.out.find("the design before is not stable"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(">"), std::string::npos) << result.out;
+}
+
+// A goal that damping does not change read "+0 %", one that it hardly does "-5.1e-05 %".
+TEST_F(Tune, SaysInWordsWhatChangesTheGoalByNothing) {
+  const std::string range =
+      " --vary rod.section.height=0.006:0.02 --over rpm=1000:2000 --speeds 4 --modes 1 --analyses 12";
+  const std::string mass = hb("tune engine.toml --minimise mass --keep stable" + range).out;
+  EXPECT_NE(mass.find("internal damping, all links             nothing"), std::string::npos) << mass;
+  EXPECT_EQ(mass.find("+0 %"), std::string::npos) << mass;
+  const std::string deflection = hb("tune engine.toml --minimise deflection" + range).out;
+  EXPECT_NE(deflection.find("less than 0.001 %"), std::string::npos) << deflection;
+  EXPECT_EQ(deflection.find("e-", deflection.find("1 % more of")), std::string::npos) << deflection;
+}
+
+// Designs that only a slope asked for were counted as designs tried, and the best of these might be one of them.
+TEST_F(Tune, CountsWhatOnlySlopesAskedForApart) {
+  // Varied speeds have no adjoint solution: differences.
+  const CommandResult result =
+      hb("tune engine.toml --maximise speed-range --vary over.to=1000:3000 --keep stable --keep 'deflection<=1e-4' "
+         "--over rpm=500:1500 --speeds 4 --modes 1 --algorithm slsqp --analyses 30 --stats --json");
+  const Json found = Json::parse(result.out);
+  EXPECT_GT(found["analyses_for_slopes"], 0) << result.out;
+  EXPECT_LT(found["analyses_for_slopes"], found["analyses"]);
+  const Json direct = document(least_mass + "--algorithm direct --analyses 12 --modes 1 --stats", 3);
+  EXPECT_EQ(direct["analyses_for_slopes"], 0);
+  for (const Json& stage : direct["stats"]) {
+    if (stage["stage"] != "designs") continue;
+    // The confirmation is on other speeds and counted there.
+    EXPECT_EQ(stage["note"].get<std::string>().find(
+                  std::to_string(direct["analyses"].get<int>() - direct["confirmations"].get<int>()) + " analysed"),
+              0)
+        << stage;
+  }
+}
+
+// A bare number beside a section in mm is in the scene's metres: only `hb steady` and `hb sweep` said that no rod has
+// it.
+TEST_F(Tune, WarnsOfBoundsInAUnitThatWasNotMeant) {
+  const std::string goal = " --minimise mass --over rpm=1000:2000 --speeds 2 --modes 1 --analyses 4 ";
+  const std::string no_rod = "rod.elastic.section: found length/sqrt(J/area) = 0.0831";
+  const Json found = Json::parse(hb("tune engine.toml --json" + goal + "--vary rod.section.height=0.006:5").out);
+  const auto told = std::ranges::find_if(found["warnings"], [&](const Json& warning) {
+    const std::string words = warning;
+    return words.find(no_rod) != std::string::npos && words.ends_with("(at the upper bounds)");
+  });
+  EXPECT_NE(told, found["warnings"].end()) << found["warnings"];
+  const std::string table = hb("tune engine.toml" + goal + "--vary rod.section.height=0.006:5").out;
+  EXPECT_NE(table.find(no_rod), std::string::npos) << table;
+  EXPECT_NE(table.find("WARNING: engine.toml"), std::string::npos) << table;
+  EXPECT_FALSE(Json::parse(hb("tune engine.toml --json" + goal + "--vary rod.section.height=0.006:0.0065").out)
+                   .contains("warnings"));
 }
 
 TEST_F(Tune, SaysWhichConditionCannotBeMet) {

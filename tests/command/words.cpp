@@ -318,9 +318,28 @@ TEST_F(Words, TheLastPointOfASweepIsInItsTableWithUnits) {
 TEST_F(Words, ASweepSaysHowFarTheNextBoundaryIs) {
   const Json found = Json::parse(said("sweep " + scene("mathieu") + " --omega 1.5:2.6:0.1 --json"))["rods"]["system"];
   EXPECT_NEAR(found["distance_to_boundary"][0].get<double>(), 2.0325246720 - 1.5, 1e-9);
-  expect(said("sweep " + scene("mathieu") + " --omega 1.5:2.6:0.1"), {"to boundary"});
+  expect(said("sweep " + scene("mathieu") + " --omega 1.5:2.6:0.1"), {"to boundary [rad/s]"});
   expect(said("sweep " + scene("slider_crank") + " --rpm 500:900:100 --modes 1"), {"stable at all 5 points"},
          {"to boundary"});
+}
+
+// A bare number beside a section in mm is in the scene's metres; a sweep said so of its first value alone, a map never.
+TEST_F(Words, RangesAreWarnedOfAtBothEnds) {
+  const std::string scene = " " HB_SOURCE_DIR "/results/first_steps/scene.toml --modes 1 ";
+  const char* const no_rod = "rod.elastic.section: found length/sqrt(J/area) = 0.0866";
+  const std::string sweep = said("sweep" + scene + "--no-search --rpm 1000 --x rod.section.height=0.008:12:x3");
+  expect(sweep, {"WARNING: ", no_rod, "taken as given (at rod.section.height = 12)"});
+  for (const std::string axes : {"--x rpm=1000:2000:3 --y rod.section.height=0.008:12:3",
+                                 "--x rod.section.height=0.008:12:3 --y rpm=1000:2000:3"}) {
+    expect(said("map" + scene + "--no-boundaries " + axes), {"WARNING: ", no_rod, "(at rod.section.height = 12)"});
+    const Json found = Json::parse(said("map" + scene + "--json --no-boundaries " + axes));
+    EXPECT_NE(found["warnings"][0].get<std::string>().find(no_rod), std::string::npos) << found["warnings"];
+  }
+  // What every value has stands without a place; what none has is not said.
+  expect(said("sweep" + scene + "--no-search --rpm 1000 --set rod.E=200000 --x rod.section.height=0.008:0.009:x2"),
+         {"(solids have 1 GPa to 1.5 TPa); taken as given\n"});
+  expect(said("map" + scene + "--no-boundaries --x rpm=1000:2000:3 --y 'rod.section.height=8 mm:9 mm:2'"), {},
+         {"are section and length in their units?"});
 }
 
 // Good answers ended with status 3 because of a tolerance that nobody had asked for.

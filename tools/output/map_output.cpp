@@ -181,7 +181,7 @@ double tenfold_time(const MapPoint& point) {
 }
 
 MapDocument document_of(const Map& map) {
-  return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries, map.complete};
+  return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries, map.complete, map.warnings};
 }
 
 void write_map(const MapDocument& document, const TextSink& sink) {
@@ -192,6 +192,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   json.add("title", document.scene.title);
   json.add("status", document.complete ? "reached" : "tolerance not reached");
   if (const std::vector<std::string> notes = map_notes(document); !notes.empty()) json.add("notes", notes);
+  if (!document.warnings.empty()) json.add("warnings", document.warnings);
   json.add("x", axis_json(r.x_axis, r.x()));
   json.add("y", axis_json(r.y_axis, r.y()));
   json.add("modes", document.num_modes);
@@ -394,6 +395,27 @@ std::string unit_behind(const PlaneAxis& axis, const Units& units) {
   return unit.empty() ? "" : " " + unit;
 }
 
+std::string boundary_rows(const MapDocument& document) {
+  const MapResult& r = document.result;
+  if (!document.boundaries) return "  boundaries were not asked for\n";
+  if (r.boundaries.empty()) return "  no stability boundary\n";
+  std::string text = fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n",
+                                 "rod", "kind", "points", r.x_axis.path, r.y_axis.path);
+  constexpr std::size_t most = 30;
+  for (std::size_t k = 0; k < r.boundaries.size() && k < most; ++k) {
+    const auto& points = r.boundaries[k].curve.points;
+    const auto [x0, x1] = std::minmax_element(points.begin(), points.end(),
+                                              [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.x < b.x; });
+    const auto [y0, y1] = std::minmax_element(points.begin(), points.end(),
+                                              [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.y < b.y; });
+    text += fmt::format("    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", r.rods[r.boundaries[k].rod],
+                        to_string(r.boundaries[k].curve.kind), points.size(),
+                        fmt::format("{:.6g} ... {:.6g}", x0->x, x1->x), fmt::format("{:.6g} ... {:.6g}", y0->y, y1->y));
+  }
+  if (r.boundaries.size() > most) text += fmt::format("    ... {} more (--json has all)\n", r.boundaries.size() - most);
+  return text;
+}
+
 }  // namespace
 
 std::string map_summary(const MapDocument& document) {
@@ -440,22 +462,8 @@ std::string map_summary(const MapDocument& document) {
   text += loads_rows(document);
   for (const std::string& note : map_notes(document))
     text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
-  if (!document.boundaries) return text + "  boundaries were not asked for\n";
-  if (r.boundaries.empty()) return text + "  no stability boundary\n";
-  text += fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", "rod", "kind",
-                      "points", r.x_axis.path, r.y_axis.path);
-  constexpr std::size_t most = 30;
-  for (std::size_t k = 0; k < r.boundaries.size() && k < most; ++k) {
-    const auto& points = r.boundaries[k].curve.points;
-    const auto [x0, x1] = std::minmax_element(points.begin(), points.end(),
-                                              [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.x < b.x; });
-    const auto [y0, y1] = std::minmax_element(points.begin(), points.end(),
-                                              [](const BoundaryPoint& a, const BoundaryPoint& b) { return a.y < b.y; });
-    text += fmt::format("    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n", r.rods[r.boundaries[k].rod],
-                        to_string(r.boundaries[k].curve.kind), points.size(),
-                        fmt::format("{:.6g} ... {:.6g}", x0->x, x1->x), fmt::format("{:.6g} ... {:.6g}", y0->y, y1->y));
-  }
-  if (r.boundaries.size() > most) text += fmt::format("    ... {} more (--json has all)\n", r.boundaries.size() - most);
+  text += boundary_rows(document);
+  for (const std::string& warning : document.warnings) text += fmt::format("WARNING: {}\n", warning);
   return text;
 }
 

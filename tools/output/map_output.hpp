@@ -18,6 +18,7 @@ struct MapDocument {
   double tolerance = 0;  // of boundary points, relative
   bool boundaries = true;  // they were asked for
   bool complete = true;  // false: ended early
+  std::vector<std::string> warnings = {};
 };
 // Refers to the map.
 [[nodiscard]] MapDocument document_of(const Map& map);

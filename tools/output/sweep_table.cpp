@@ -49,6 +49,9 @@ std::string growth_digits(const Stability& stability) {
 
 bool is_doubtful(const RodPoint& point) { return beyond_theory(point.theory_error) || beyond_limits(point); }
 
+// "to boundary [rpm]"
+std::string boundary_column(const SweepScene& scene) { return "to boundary" + bracketed(axis_unit(scene)); }
+
 void add_point(Text& text, const SweepScene& scene, const SweepResult& result, std::size_t r, const SweepPoint& point,
                bool distances) {
   const OutputUnits units = output_units(scene.scene());
@@ -71,7 +74,8 @@ void add_point(Text& text, const SweepScene& scene, const SweepResult& result, s
     add(text, "  {:>16}", growth_digits(stability));
     if (distances) {
       const std::optional<double> distance = distance_to_boundary(result.rods[r], point.x);
-      add(text, "  {:>14}", distance ? fmt::format("{:.6g}", *distance) : "");
+      add(text, "  {:>{}}", distance ? fmt::format("{:.6g}", *distance) : "",
+          std::max<std::size_t>(14, boundary_column(scene).size()));
     }
     add(text, "  {}", stability.verdict == Verdict::unstable ? "UNSTABLE" : to_string(stability.verdict));
   }
@@ -167,7 +171,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
     if (has_theory(scene, result)) add(text, "  {:>12}", "theory error");
     if (result.computed.stability) {
       add(text, "  {:>16}", "growth" + bracketed(units.rate));
-      if (distances) add(text, "  {:>14}", "to boundary");
+      if (distances) add(text, "  {:>14}", boundary_column(scene));
       add(text, "  verdict");
     }
     add(text, "\n");

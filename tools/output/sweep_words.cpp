@@ -149,7 +149,7 @@ std::string sweep_title_verdict(const SweepResult& result) {
 }
 
 std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResult& result) {
-  std::vector<std::string> warnings = scene.scene().warnings;
+  std::vector<std::string> warnings = scene.warnings();
   for (std::string& sentence : theory_warnings(scene, result)) warnings.push_back(std::move(sentence));
   const std::vector<double>& values = scene.axis().values;
   for (std::size_t r = 0; r < result.rods.size(); ++r) {

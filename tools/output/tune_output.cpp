@@ -272,6 +272,14 @@ std::string conditions_text(const TuneResult& result, const Scene& scene) {
   return text;
 }
 
+// "+1.2 %"; what is too small to matter, and may be rounding, in words.
+std::string per_cent(double change) {
+  constexpr double least = 1e-3;
+  if (change == 0) return "  nothing";
+  if (std::abs(change) < least) return fmt::format("  less than {:g} %", least);
+  return fmt::format("{:>+10.3g} %", change);
+}
+
 std::string changes_of_goal_text(const TuneTask& task, const TuneResult& result) {
   std::string text;
   if (result.sensitivity && !smooth(result) && result.design.status == DesignStatus::optimal)
@@ -280,19 +288,19 @@ std::string changes_of_goal_text(const TuneTask& task, const TuneResult& result)
         "is not given ({:.0f} % of the goal's slope is not balanced)\n",
         100 * result.slope_left_over);
   if (result.goal_gradient.size() > 0 && result.goal_after != 0) {
-    text += "\n1 % more of      changes the goal by\n";
+    text += fmt::format("\n{:<38}{}\n", "1 % more of", "  changes the goal by");
     if (!result.worst_at_once.empty())
       text += fmt::format("  {} are worst at once: less changes the goal in another way than more\n",
                           fmt::join(result.worst_at_once, " and "));
     for (std::size_t i = 0; i < task.variables.size(); ++i) {
       const double change = result.goal_gradient(static_cast<Eigen::Index>(i)) * result.tuned[i];
-      text += fmt::format("{:<28}{:>+10.3g} %\n", task.variables[i].path, change / result.goal_after);
+      text += fmt::format("{:<38}{}\n", task.variables[i].path, per_cent(change / result.goal_after));
     }
     if (result.damping_sensitivity)
-      text += fmt::format("{:<28}{:>+10.3g} %\n", "internal damping, all links", *result.damping_sensitivity);
+      text += fmt::format("{:<38}{}\n", "internal damping, all links", per_cent(*result.damping_sensitivity));
     if (result.damping_sensitivity_of_best)
-      text += fmt::format("{:<28}{:>+10.3g} %, with the variables following\n", "  the same",
-                          *result.damping_sensitivity_of_best);
+      text +=
+          fmt::format("{:<38}{}\n", "  it, and the variables follow it", per_cent(*result.damping_sensitivity_of_best));
   }
   return text;
 }
@@ -301,8 +309,13 @@ std::string search_text(const TuneResult& result, const Scene& scene) {
   std::string text = fmt::format("\n{} designs analysed: {}, and {} on four times the speeds\n",
                                  result.design.trials.size() + static_cast<std::size_t>(result.confirmations),
                                  result.design.evidence, result.confirmations);
+  if (result.design.num_for_slopes > 0)
+    text +=
+        fmt::format("{} of these are neighbours of others, for slopes by differences\n", result.design.num_for_slopes);
+  if (result.analyses_after > 0)
+    text += fmt::format("{} more of the design found with a number changed, for its slopes\n", result.analyses_after);
   if (result.counts.gradients > 0)
-    text += fmt::format("{} gradients from adjoint solutions and Floquet vectors\n", result.counts.gradients);
+    text += counted(result.counts.gradients, "gradient") + " from adjoint solutions and Floquet vectors\n";
   if (result.counts.not_closing > 0)
     text += fmt::format("{} designs tried do not close over the turn\n", result.counts.not_closing);
   if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
@@ -401,7 +414,9 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
           changes_of_goal_text(task, result);
   for (const std::string& path : result.without_effect)
     text += fmt::format("the goal and conditions do not depend on {} here\n", path);
-  return text + search_text(result, scene);
+  text += search_text(result, scene);
+  for (const std::string& warning : result.warnings) text += fmt::format("WARNING: {}\n", warning);
+  return text;
 }
 
 Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene, bool stats) {
@@ -435,12 +450,15 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
   }
   json["conditions"] = conditions_json(result);
   if (result.sensitivity) json["slope_left_over"] = number(result.slope_left_over);
+  if (!result.warnings.empty()) json["warnings"] = result.warnings;
   json["without_effect"] = result.without_effect;
   json["worst_at_once"] = result.worst_at_once;
   if (result.damping_sensitivity) json["damping_sensitivity"] = *result.damping_sensitivity;
   if (result.damping_sensitivity_of_best) json["damping_sensitivity_of_best"] = *result.damping_sensitivity_of_best;
   json["analyses"] = result.design.trials.size() + static_cast<std::size_t>(result.confirmations);
   json["confirmations"] = result.confirmations;
+  json["analyses_for_slopes"] = result.design.num_for_slopes;
+  json["analyses_after"] = result.analyses_after;
   json["gradients"] = result.counts.gradients;
   json["not_closing"] = result.counts.not_closing;
   json["refused"] = result.counts.refused;

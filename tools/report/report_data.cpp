@@ -172,10 +172,7 @@ void ReportData::add_sweep(const SweepScene& scene, const SweepResult& result, c
   add_along(scene, result);
   for (const char* key : {"status", "notes"})
     if (sweep.contains(key)) data_[key] = sweep[key];
-  if (sweep.contains("warnings"))
-    for (const Json& warning : sweep["warnings"])
-      if (std::find(data_["warnings"].begin(), data_["warnings"].end(), warning) == data_["warnings"].end())
-        data_["warnings"].push_back(warning);
+  if (sweep.contains("warnings")) add_warnings(sweep["warnings"]);
   add_places(places, settings, scene.axis().kind != Axis::Kind::parameter);
 
   // What the page reads of the sweep's own document; its columns are elsewhere.
@@ -271,6 +268,12 @@ void ReportData::add_places(const std::vector<ReportPlace>& places, const Settin
   }
 }
 
+void ReportData::add_warnings(const Json& sentences) {
+  Json& known = data_["warnings"];
+  for (const Json& sentence : sentences)
+    if (std::find(known.begin(), known.end(), sentence) == known.end()) known.push_back(sentence);
+}
+
 void ReportData::add_map(Json map, const SceneSource& source) {
   if (rods_.empty())
     for (const auto& [name, rod] : map["rods"].items()) {
@@ -280,6 +283,7 @@ void ReportData::add_map(Json map, const SceneSource& source) {
   const std::string over =
       fmt::format("stability over {} and {}", map["x"]["path"].get<std::string>(), map["y"]["path"].get<std::string>());
   subtitle_ = subtitle_.empty() ? over : subtitle_ + "; " + over;
+  if (map.contains("warnings")) add_warnings(map["warnings"]);
   data_["map"] = map_data(std::move(map), source, scene_.units, block_);
 }
 

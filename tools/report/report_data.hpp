@@ -43,6 +43,7 @@ class ReportData {
   [[nodiscard]] std::string page(PageText text) const;
 
  private:
+  void add_warnings(const nlohmann::ordered_json& sentences);  // each once
   void add_rods(const SceneModel& model, const Scene& scene);
   void add_places(const std::vector<ReportPlace>& places, const Settings& settings, bool one_scene);
   void add_along(const SweepScene& scene, const SweepResult& result);

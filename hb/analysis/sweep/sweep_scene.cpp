@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "hb/analysis/range_warnings.hpp"
+
 namespace hb {
 namespace {
 
@@ -83,6 +85,12 @@ LinkagePlace SweepScene::linkage_at(double x) const {
   FamilyMember member = family_.at({{axis_.path, x}});
   if (!member.scene) return {std::nullopt, std::move(member.why_not)};
   return {std::get<Linkage>(std::move(member.scene->model)), ""};
+}
+
+std::vector<std::string> SweepScene::warnings() const {
+  if (axis_.kind != Axis::Kind::parameter) return scene().warnings;
+  const Along along{axis_.path, axis_.values};
+  return range_warnings(family_, {&along});
 }
 
 ScenePlace SweepScene::at(double x) const {

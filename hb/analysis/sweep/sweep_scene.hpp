@@ -52,6 +52,8 @@ class SweepScene {
   double fixed_rpm() const { return fixed_rpm_; }
   const Settings& settings() const { return settings_; }
   const Scene& scene() const { return first_->scene; }  // at the first value that closes
+  // Of the scene, of the axis' both ends where it is a number of the scene: range_warnings().
+  [[nodiscard]] std::vector<std::string> warnings() const;
   const SceneModel& first() const { return *first_; }
 
  private:

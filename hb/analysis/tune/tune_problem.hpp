@@ -88,7 +88,8 @@ struct TuneResult {
   // d ln goal / d ln internal damping of all links, at fixed variables, and of the best goal: active conditions move.
   std::optional<double> damping_sensitivity, damping_sensitivity_of_best;
   std::optional<DesignCurves> curves_before, curves_after;
-  TuneCounts counts;
+  TuneCounts counts;  // until the search had ended; gradients: all
+  int analyses_after = 0;  // beside the designs tried: neighbours and other dampings, for slopes at the design found
   int without_response = 0;  // designs tried that have no periodic solution at some speed
   int num_modes = 0;  // kept of each rod's series
   int rounds = 1;  // searches, each from the last with more speeds, more modes or more room for errors
@@ -99,6 +100,7 @@ struct TuneResult {
   bool verified() const { return agrees && holds && modes_suffice; }
   std::string goal_unit;  // empty for weighted sums
   SpeedSpan span_before, span_after;
+  std::vector<std::string> warnings;  // of the scenes before and after, and of the bounds: place_warnings()
   std::vector<Stage> stages;
 };
 

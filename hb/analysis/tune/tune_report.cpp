@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "hb/analysis/range_warnings.hpp"
 #include "lib/stopwatch.hpp"
 
 namespace hb {
@@ -182,6 +183,19 @@ void damping_sensitivity(TuneSearch& search, TuneResult& result) {
   result.damping_sensitivity_of_best = search.aims().sign() * best / result.goal_after;
 }
 
+// Bounds need not be reached: only what was hardly meant matters there.
+std::vector<std::string> warnings_of(const TuneTask& task, const TuneResult& result) {
+  std::vector<double> lower, upper;
+  for (const TuneVariable& variable : task.variables) {
+    lower.push_back(variable.lower);
+    upper.push_back(variable.upper);
+  }
+  return place_warnings(task.family, {{numbers_at(task, result.start), "the design before"},
+                                      {numbers_at(task, result.tuned), "the design found"},
+                                      {numbers_at(task, lower), "the lower bounds", Concern::gravity},
+                                      {numbers_at(task, upper), "the upper bounds", Concern::gravity}});
+}
+
 void stages(const TuneSearch& search, double report_seconds, TuneResult& result) {
   const TuneCounts& counts = search.counts();
   std::string computed, skipped;
@@ -197,9 +211,17 @@ void stages(const TuneSearch& search, double report_seconds, TuneResult& result)
       "response");
   say(any(is_margin), "stability");
   say(any(needs_forces), "joint forces");
-  const auto count = [](int number, const char* what) { return fmt::format("{} {}", number, what); };
-  result.stages.push_back({"designs", counts.analyses_seconds,
-                           count(counts.analyses, "analysed: ") + (computed.empty() ? "no speeds" : computed), false});
+  const TuneCounts& searched = search.searched();
+  result.stages.push_back({"designs", searched.analyses_seconds,
+                           fmt::format("{} analysed{}: {}", searched.analyses,
+                                       result.design.num_for_slopes == 0
+                                           ? ""
+                                           : fmt::format(", {} of them for slopes", result.design.num_for_slopes),
+                                       computed.empty() ? "no speeds" : computed),
+                           false});
+  if (result.analyses_after > 0)
+    result.stages.push_back({"slopes at the design found", counts.analyses_seconds - searched.analyses_seconds,
+                             fmt::format("{} analysed with a number changed", result.analyses_after), false});
   if (!skipped.empty()) result.stages.push_back({skipped, 0, "no goal and no condition needs it", true});
   result.stages.push_back({"gradients", counts.gradients_seconds,
                            fmt::format("{} by adjoint, {} by differences of whole analyses", counts.gradients,
@@ -226,8 +248,12 @@ void report_design(TuneSearch& search, TuneResult& result) {
       result.without_effect.push_back(task.variables[i].path);
   damping_sensitivity(search, result);
   result.num_modes = search.num_modes();
-  result.counts = search.counts();
+  result.counts = search.searched();
+  result.counts.gradients = search.counts().gradients;
+  result.counts.gradients_by_differences = search.counts().gradients_by_differences;
+  result.analyses_after = search.counts().analyses - search.searched().analyses;
   result.without_response = search.without_response();
+  result.warnings = warnings_of(task, result);
   stages(search, report_seconds, result);
 }
 

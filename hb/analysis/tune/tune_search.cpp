@@ -42,6 +42,7 @@ TuneSearch::TuneSearch(const TuneTask& task, const Work& work)
 void TuneSearch::run(TuneResult& result) {
   result.design = first_search();
   confirm(result);
+  searched_ = counts_;
   result.start = start_;
   result.tuned = to_vector(result.design.x);
   for (const ConditionPart& part : aims_->parts()) result.condition_of.push_back(part.of);
@@ -84,7 +85,9 @@ DesignResult TuneSearch::first_search() {
   DesignOptions options = task_.options;
   options.max_evaluations = std::max(1, options.max_evaluations - 1);  // and the confirmation
   try {
-    return optimise(watched, options);
+    DesignResult found = optimise(watched, options);
+    note_trials(found);
+    return found;
   } catch (const std::invalid_argument&) {
     if (any) throw;
     throw RequestError("vary", "no design", "bounds and speeds with some",
@@ -154,11 +157,12 @@ bool TuneSearch::go_on(const std::vector<MetricValue>& values, int modes, TuneRe
   local.only_local = true;
   local.max_evaluations = left;
   DesignResult again = optimise(problem_, local);
+  note_trials(again);
   again.trials.insert(again.trials.begin(), result.design.trials.begin(), result.design.trials.end());
   again.num_missing += result.design.num_missing;
   again.num_gradients += result.design.num_gradients;
-  const char* gap = again.evidence.starts_with(',') ? "" : " ";
-  again.evidence = fmt::format("{}; with{}{}{}", result.design.evidence, why.substr(1), gap, again.evidence);
+  again.num_for_slopes += result.design.num_for_slopes;
+  again.evidence = fmt::format("{}; with{}: {}", result.design.evidence, why.substr(1), again.evidence);
   result.design = std::move(again);
   return true;
 }
@@ -175,11 +179,7 @@ DesignProblem TuneSearch::problem_over(DesignSpace& space, const std::vector<dou
   problem.evaluate = [this, &space](const Eigen::VectorXd& x) -> std::optional<DesignValues> {
     const std::vector<MetricValue>* metrics = space.try_values(to_vector(x));
     if (!metrics) return std::nullopt;
-    const std::vector<double> numbers = numbers_of(*metrics);
-    std::optional<DesignValues> values = aims_->design_values(numbers);
-    if (!values) ++without_response_;
-    if (values) note_best(numbers);
-    return values;
+    return aims_->design_values(numbers_of(*metrics));
   };
   if (!with_gradient) return problem;
   problem.gradient = [this, &space, lower, upper](const Eigen::VectorXd& x) -> std::optional<DesignGradient> {
@@ -188,6 +188,18 @@ DesignProblem TuneSearch::problem_over(DesignSpace& space, const std::vector<dou
     return aims_->design_gradient(*slopes, numbers_of(space.values(to_vector(x))));
   };
   return problem;
+}
+
+// Of designs tried; neighbours that a difference asked for are none.
+void TuneSearch::note_trials(const DesignResult& found) {
+  for (const DesignTrial& trial : found.trials) {
+    const std::vector<MetricValue>* metrics = trial.for_slopes ? nullptr : space_->known(to_vector(trial.x));
+    if (!metrics) continue;
+    if (trial.values)
+      note_best(numbers_of(*metrics));
+    else
+      ++without_response_;
+  }
 }
 
 void TuneSearch::note_best(const std::vector<double>& numbers) {

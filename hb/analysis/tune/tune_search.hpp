@@ -36,8 +36,9 @@ class TuneSearch {
   [[nodiscard]] Scene scene_at(const std::vector<double>& x) const;
   int num_modes() const;
   const TuneCounts& counts() const { return counts_; }
+  const TuneCounts& searched() const { return searched_; }  // until the search had ended
   const std::vector<MetricValue>& confirmed() const { return confirmed_; }  // of the best design, by metric
-  // What each condition could have alone, of all designs tried; empty: none had a response.
+  // What each condition could have alone, of all designs tried (those for slopes are not); empty: none had a response.
   const std::vector<double>& best() const { return best_; }
   int without_response() const { return without_response_; }  // designs tried
   double confirmation_seconds() const { return confirmation_seconds_; }
@@ -48,6 +49,7 @@ class TuneSearch {
   DesignResult first_search();
   void confirm(TuneResult& result);
   bool go_on(const std::vector<MetricValue>& values, int modes, TuneResult& result);
+  void note_trials(const DesignResult& found);
   void note_best(const std::vector<double>& numbers);
 
   const TuneTask& task_;
@@ -55,7 +57,7 @@ class TuneSearch {
   Settings settings_;
   std::vector<double> start_;
   std::unique_ptr<DesignAims> aims_;
-  TuneCounts counts_;
+  TuneCounts counts_, searched_;
   std::optional<DesignSpace> space_;
   DesignProblem problem_;
   std::vector<MetricValue> confirmed_;

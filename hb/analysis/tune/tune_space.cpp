@@ -122,6 +122,11 @@ const std::vector<MetricValue>* DesignSpace::try_values(const std::vector<double
   return nullptr;
 }
 
+const std::vector<MetricValue>* DesignSpace::known(const std::vector<double>& x) const {
+  const auto found = known_.find(x);
+  return found == known_.end() ? nullptr : &found->second;
+}
+
 std::optional<Eigen::MatrixXd> DesignSpace::gradients(const std::vector<double>& x, const std::vector<double>& lower,
                                                       const std::vector<double>& upper) {
   const std::vector<MetricValue>& here = values(x);

@@ -41,6 +41,8 @@ class DesignSpace {
   [[nodiscard]] const std::vector<MetricValue>& values(const std::vector<double>& x);
   // The same; empty, and counted, where there is no scene or no linkage that turns.
   [[nodiscard]] const std::vector<MetricValue>* try_values(const std::vector<double>& x);
+  // Of a design that was analysed, or nullptr.
+  [[nodiscard]] const std::vector<MetricValue>* known(const std::vector<double>& x) const;
   // d metric_k/dx_i; empty as in metric_gradients, or where the speeds themselves vary.
   [[nodiscard]] std::optional<Eigen::MatrixXd> gradients(const std::vector<double>& x, const std::vector<double>& lower,
                                                          const std::vector<double>& upper);

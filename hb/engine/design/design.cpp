@@ -105,6 +105,21 @@ std::vector<Condition> conditions_of(Search& search, Waiting& waiting) {
   return conditions;
 }
 
+// Says at its end how many analyses the method took, also where they run out.
+class Said {
+ public:
+  Said(Search& search, std::string method)
+      : search_(search), method_(std::move(method)), before_(search.evaluations()) {}
+  ~Said() { search_.say(method_, search_.evaluations() - before_); }
+  Said(const Said&) = delete;
+  Said& operator=(const Said&) = delete;
+
+ private:
+  Search& search_;
+  std::string method_;
+  int before_;
+};
+
 // NLopt's failures that leave a result: rounding limits progress. Everything else is ours.
 bool run(const Waiting& waiting, nlopt::opt& opt, std::vector<double>& u) {
   double value = 0;
@@ -145,10 +160,8 @@ bool epigraph(Search& search, nlopt::algorithm algorithm, const char* name, doub
   for (Condition& c : conditions) opt.add_inequality_constraint(condition_beside, &c, 0.0);
   opt.set_xtol_abs(search.options().tolerance);
   opt.set_initial_step(first_step);
-  const int before = search.evaluations();
-  const bool converged = run(waiting, opt, us);
-  search.say(fmt::format("{} on the epigraph", name), search.evaluations() - before);
-  return converged;
+  const Said said(search, fmt::format("{} on the epigraph", name));
+  return run(waiting, opt, us);
 }
 
 bool local(Search& search, nlopt::algorithm algorithm, const char* name, double first_step) {
@@ -164,10 +177,8 @@ bool local(Search& search, nlopt::algorithm algorithm, const char* name, double 
   opt.set_xtol_abs(search.options().tolerance);
   opt.set_initial_step(first_step);
   std::vector<double> u = search.best_place();
-  const int before = search.evaluations();
-  const bool converged = run(waiting, opt, u);
-  search.say(name, search.evaluations() - before);
-  return converged;
+  const Said said(search, name);
+  return run(waiting, opt, u);
 }
 
 bool penalised_search(Search& search, nlopt::algorithm algorithm, const char* name, int budget) {
@@ -189,10 +200,8 @@ bool penalised_search(Search& search, nlopt::algorithm algorithm, const char* na
     opt.set_population(4);
   }
   std::vector<double> u = search.best_place();
-  const int before = search.evaluations();
-  const bool converged = run(waiting, opt, u);
-  search.say(name, search.evaluations() - before);
-  return converged;
+  const Said said(search, name);
+  return run(waiting, opt, u);
 }
 
 void restore(Search& search) {
@@ -213,9 +222,8 @@ void restore(Search& search) {
   for (Condition& c : conditions) opt.add_inequality_constraint(condition_with_slack, &c, 0.0);
   opt.set_xtol_abs(search.options().tolerance);
   opt.set_stopval(-1e-3);
-  const int before = search.evaluations();
+  const Said said(search, "COBYLA on the largest violation");
   run(waiting, opt, us);
-  search.say("COBYLA on the largest violation", search.evaluations() - before);
 }
 
 void validate(const DesignProblem& problem, const DesignOptions& options) {

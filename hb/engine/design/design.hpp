@@ -64,6 +64,7 @@ enum class DesignStatus {
 struct DesignTrial {
   Eigen::VectorXd x;
   std::optional<DesignValues> values;
+  bool for_slopes = false;  // a neighbour that only a difference asked for
 };
 
 struct DesignResult {
@@ -72,6 +73,7 @@ struct DesignResult {
   DesignValues values;
   std::vector<DesignTrial> trials;  // in their order
   int num_missing = 0;  // trials where there was no design
+  int num_for_slopes = 0;  // trials that are DesignTrial::for_slopes
   int num_gradients = 0;  // that the problem gave
   std::string evidence;  // one sentence: what was done
   bool out_of_analyses = false;  // as many as allowed were done

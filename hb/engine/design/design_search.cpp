@@ -104,7 +104,8 @@ const std::optional<DesignValues>& DesignSearch::at(const std::vector<double>& u
   } else {
     note(x, *found);
   }
-  result_.trials.push_back({x, found});
+  result_.trials.push_back({x, found, differencing_});
+  result_.num_for_slopes += differencing_;
   if (options_.progress && best_) options_.progress(evaluations(), feasible(), best_->values.goal);
   return seen_.emplace(u, std::move(found)).first->second;
 }
@@ -167,8 +168,10 @@ const MatrixXd& DesignSearch::slopes(const std::vector<double>& u) {
       for (Index k = 0; k < p; ++k) all(1 + m + k) = part(place, static_cast<std::size_t>(k));
       return all;
     };
+    differencing_ = true;
     result = *difference_jacobian(values, Eigen::Map<const VectorXd>(u.data(), n), VectorXd::Zero(n), VectorXd::Ones(n),
                                   VectorXd::Constant(n, difference_step));
+    differencing_ = false;
   }
   return slopes_.emplace(u, std::move(result)).first->second;
 }
@@ -205,12 +208,11 @@ DesignResult DesignSearch::finish(bool converged) {
   result_.x = best_->x;
   result_.values = best_->values;
   result_.status = !feasible() ? DesignStatus::infeasible : converged ? DesignStatus::optimal : DesignStatus::stopped;
+  result_.evidence = "the start";
   for (const auto& [what, analyses] : said_)
-    result_.evidence += fmt::format("{}{} ({} analyses)", result_.evidence.empty() ? "" : ", then ", what, analyses);
+    result_.evidence += fmt::format(", then {} ({} {})", what, analyses, analyses == 1 ? "analysis" : "analyses");
   result_.out_of_analyses = left() <= 0;
-  if (result_.out_of_analyses)
-    result_.evidence +=
-        std::string(result_.evidence.empty() ? "the start" : "") + ", stopped by the number of analyses";
+  if (result_.out_of_analyses) result_.evidence += ", stopped by the number of analyses";
   return std::move(result_);
 }
 

@@ -86,6 +86,7 @@ class DesignSearch {
   std::map<std::vector<double>, Eigen::MatrixXd> slopes_;  // rows: goal, conditions, parts; columns: u_i
   std::optional<double> scale_;
   int revisits_ = 0;
+  bool differencing_ = false;  // what is evaluated is for slopes alone
   double worst_goal_, worst_violation_ = 0;
   std::optional<Best> best_;
   std::vector<std::pair<std::string, int>> said_;

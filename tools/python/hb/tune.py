@@ -135,6 +135,16 @@ class Tune(Result):
         return self._document.get("analyses")
 
     @property
+    def analyses_for_slopes(self) -> Any:
+        """How many of these are neighbours of other designs, for slopes by differences."""
+        return self._document.get("analyses_for_slopes")
+
+    @property
+    def analyses_after(self) -> Any:
+        """Analyses beside the search, for slopes at the design found."""
+        return self._document.get("analyses_after")
+
+    @property
     def confirmations(self) -> Any:
         """Analyses on four times the speeds."""
         return self._document.get("confirmations")
