@@ -4,20 +4,11 @@
 
 #include <algorithm>
 
+#include "hb/analysis/map_lines.hpp"
 #include "hb/analysis/sweep/sweep_parts.hpp"
-#include "hb/analysis/sweep/sweep_scene.hpp"
 
 namespace hb {
 namespace {
-
-bool is_speed_axis(const PlaneAxis& axis) { return axis.role != PlaneAxis::Role::scene_number; }
-
-Axis sweep_axis(const PlaneAxis& axis, const std::vector<double>& values) {
-  const Axis::Kind kind = axis.role == PlaneAxis::Role::rpm     ? Axis::Kind::rpm
-                          : axis.role == PlaneAxis::Role::omega ? Axis::Kind::omega
-                                                                : Axis::Kind::parameter;
-  return {kind, axis.path, values};
-}
 
 PlaceLoads loads_of(const SweepScene& scene, double x) {
   SweepPoint point;
@@ -65,25 +56,23 @@ std::vector<PlaceLoads> map_loads(const SceneFamily& family, const PlaneAxis& x_
                                   const PlaneAxis& y_axis, const std::vector<double>& y, Settings settings,
                                   double speed, const PartsOf& parts) {
   settings.only = {.steady = false, .stability = false, .reactions = false, .shape = true};
-  // Along the speed the linkage is the same.
-  const bool columns = is_speed_axis(y_axis);
-  const PlaneAxis &along = columns ? y_axis : x_axis, &fixed = columns ? x_axis : y_axis;
-  const std::vector<double>&values = columns ? y : x, &lines = columns ? x : y;
+  const MapLines lines(family, x_axis, x, y_axis, y, std::move(settings), speed);
   const auto line = [&](std::size_t k) {
+    const std::vector<double>& values = lines.values();
     std::vector<PlaceLoads> found(values.size());
     try {
-      const SweepScene scene(family.with({{fixed.path, lines[k]}}), settings, sweep_axis(along, values), speed, 0);
+      const SweepScene scene = lines.scene(k);
       for (std::size_t i = 0; i < values.size(); ++i) found[i] = loads_of(scene, values[i]);
     } catch (const SceneError&) {  // none along this line
     }
     return found;
   };
   const auto found = computed_parts<std::vector<PlaceLoads>>(
-      parts, lines.size(), line, [](auto& visit, std::vector<PlaceLoads>& places) { visit_line(visit, places); });
+      parts, lines.count(), line, [](auto& visit, std::vector<PlaceLoads>& places) { visit_line(visit, places); });
   std::vector<PlaceLoads> places(x.size() * y.size());
   for (std::size_t k = 0; k < found.size(); ++k)
     for (std::size_t i = 0; i < found[k].size(); ++i)
-      places[columns ? k + x.size() * i : i + x.size() * k] = found[k][i];
+      places[lines.x_index(k, i) + x.size() * lines.y_index(k, i)] = found[k][i];
   return places;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hb/analysis/map_loads.hpp"
+#include "hb/analysis/map_theory.hpp"
 #include "hb/analysis/request.hpp"
 #include "hb/analysis/resonance_lines.hpp"
 #include "hb/analysis/scene_band.hpp"
@@ -41,6 +42,8 @@ struct MapResult {
   BandParameter band_of = BandParameter::damping;  // what the factors multiply
   std::vector<ResonanceLine> lines;  // of the first rod
   std::vector<MissingPoints> missing;
+  bool theory_judged = false;  // the theory error was looked at: of a linkage whose steady state is asked for
+  std::vector<TheoryPlace> theory;  // where
   std::vector<PlaceLoads> loads;  // at every point, as `worst()`; empty: not asked for
 
   // Largest growth over the rods; x fastest.

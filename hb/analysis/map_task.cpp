@@ -106,9 +106,13 @@ Map MapTask::compute(Work& work) const {
     for (std::size_t r = 0; r < plane.rods().size(); ++r) maps.push_back(rod_map(plane, r, x, y, curves));
     map.band.push_back({factors_[end], worst_boundaries(plane, maps, search)});
   }
+  Settings settings = settings_;
+  settings.modes = static_cast<int>(options_.num_modes);
+  if (settings_.only.steady && std::holds_alternative<Linkage>(map.scene.model)) {
+    map.theory_judged = true;
+    map.theory = map_theory(family_, x_axis_, x, y_axis_, y, settings, options_.speed, work.of("theory error"));
+  }
   if (request_.stress) {
-    Settings settings = settings_;
-    settings.modes = static_cast<int>(options_.num_modes);
     map.loads = map_loads(family_, x_axis_, x, y_axis_, y, settings, options_.speed, work.of("stress"));
   }
   std::size_t samples = 0;

@@ -93,6 +93,51 @@ TEST_F(Map, ARodThatANumberDoesNotMeetIsComputedOnOneLine) {
   EXPECT_EQ(places("3"), places("24"));
 }
 
+// A map said nothing of the theory that its verdicts are by.
+TEST_F(Map, SaysWhereTheLinearTheoryHoldsAsOneSpeedDoes) {
+  const std::string rod = scene("six_link") + " --modes 2 --no-boundaries ";
+  const std::string rpm = "rpm=300:1200:4", second_moment = "AB.J=40:50:3";
+  const Json by_x = document(rod + "--x " + rpm + " --y " + second_moment),
+             by_y = document(rod + "--x " + second_moment + " --y " + rpm);
+  ASSERT_EQ(by_x["theory_sample"].size(), 4u);  // the corners of a small grid
+  for (const Json& place : by_x["theory_sample"]) {
+    const std::string at = " --rpm " + place["x"].dump() + " --set AB.J=" + place["y"].dump();
+    const Json steady = Json::parse(hb("steady " + scene("six_link") + " --modes 2 --json" + at).out);
+    for (const char* name : {"AB", "CD"}) {
+      const double expected = steady["rods"][name]["theory_error"];
+      EXPECT_NEAR(place["theory_error"][name], expected, 1e-6 * expected) << at;
+    }
+    const double growth = steady["growth_theory_error"];
+    EXPECT_NEAR(place["growth_theory_error"], growth, 1e-3 * growth + 1e-9) << at;
+    const auto same = [&](const Json& other) { return other["x"] == place["y"] && other["y"] == place["x"]; };
+    const auto turned = std::ranges::find_if(by_y["theory_sample"], same);
+    ASSERT_NE(turned, by_y["theory_sample"].end());
+    EXPECT_EQ((*turned)["theory_error"], place["theory_error"]);
+  }
+  const std::string words = hb("map " + rod + "--x " + rpm + " --y " + second_moment).out;
+  EXPECT_NE(words.find("by the linear theory, whose error at 4 points, corners included, is up to "), std::string::npos)
+      << words;
+}
+
+TEST_F(Map, WarnsBeyondTheLinearTheoryInWordsAndPicture) {
+  const std::string fast = scene("six_link") + " --modes 2 --no-boundaries --x rpm=300:3000:4 --y AB.J=40:50:3 ";
+  const CommandResult result = hb("map " + fast + "--out out");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("WARNING: AB: beyond the linear theory at 2 of 4 points looked at ("), std::string::npos)
+      << result.out;
+  EXPECT_NE(read(folder_ / "out/map.svg").find("beyond it at 2 of 4 points looked at"), std::string::npos);
+  EXPECT_NE(read(folder_ / "out/map_theory.csv").find("rpm,AB.J,theory error AB,theory error CD,"), std::string::npos)
+      << read(folder_ / "out/map_theory.csv");
+  const Json found = document(fast);
+  EXPECT_EQ(found["warnings"].size(), 2u) << found["warnings"];
+  const Json none = document(fast + "--only stability");
+  EXPECT_FALSE(none.contains("theory_sample"));
+  EXPECT_EQ(none["warnings"][0], "AB: theory not judged: q was not computed");
+  EXPECT_NE(hb("map " + fast + "--only stability").out.find("theory not judged"), std::string::npos);
+  const Json hill = document(scene("mathieu") + " --x omega=1:3:4 --y " + swing + "=0.1:1:4");
+  EXPECT_FALSE(hill.contains("theory_sample") || hill.contains("warnings"));
+}
+
 // At every place what `hb steady` says there, whichever axis is the speed.
 TEST_F(Map, StressesOfItsPlacesAreThoseOfOneSpeed) {
   const std::string rod =

@@ -5,6 +5,7 @@
 #include "tools/output/branches_output.hpp"
 #include "tools/output/csv_output.hpp"
 #include "tools/output/map_loads_output.hpp"
+#include "tools/output/map_theory_output.hpp"
 #include "tools/output/sweep_machine.hpp"
 #include "tools/output/sweep_output.hpp"
 #include "tools/output/sweep_theory.hpp"
@@ -94,6 +95,7 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
                            "boundaries of stability of " + result.rods[r]));
   }
   files.resonance = write(map_resonance_csv(document));
+  if (!result.theory.empty()) files.theory = write(map_theory_csv(document));
   for (const BandEnd& end : result.band) {
     const char* parameter = to_string(result.band_of);
     files.band.push_back(write(map_boundary_csv(

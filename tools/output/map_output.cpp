@@ -15,6 +15,7 @@
 #include "tools/output/json_digits.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/map_loads_output.hpp"
+#include "tools/output/map_theory_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/printable.hpp"
@@ -172,6 +173,13 @@ std::vector<std::string> map_notes(const MapDocument& document) {
   return notes;
 }
 
+// Of the scenes, then of the linear theory.
+std::vector<std::string> map_warnings(const MapDocument& document) {
+  std::vector<std::string> warnings = document.warnings;
+  for (std::string& sentence : map_theory_warnings(document)) warnings.push_back(std::move(sentence));
+  return warnings;
+}
+
 }  // namespace
 
 double growth_per_turn(const MapPoint& point) { return point.growth_rate * 2 * std::numbers::pi / point.speed; }
@@ -192,7 +200,8 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   json.add("title", document.scene.title);
   json.add("status", document.complete ? "reached" : "tolerance not reached");
   if (const std::vector<std::string> notes = map_notes(document); !notes.empty()) json.add("notes", notes);
-  if (!document.warnings.empty()) json.add("warnings", document.warnings);
+  if (const std::vector<std::string> warnings = map_warnings(document); !warnings.empty())
+    json.add("warnings", warnings);
   json.add("x", axis_json(r.x_axis, r.x()));
   json.add("y", axis_json(r.y_axis, r.y()));
   json.add("modes", document.num_modes);
@@ -232,6 +241,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   Json lines = Json::array();
   for (const ResonanceLine& line : r.lines) lines.push_back({{"speed", line.name(false)}, {"pieces", line.pieces}});
   json.add("resonance_lines", std::move(lines));
+  if (r.theory_judged) json.add("theory_sample", theory_sample_json(document));
   if (document.boundaries) json.add("boundary_points_not_reached", boundary_points_not_reached(r));
   json.add("counts", {{"stable", n.stable},
                       {"bounded", n.bounded},
@@ -459,11 +469,12 @@ std::string map_summary(const MapDocument& document) {
     if (!document.complete) break;
     text += fmt::format("  no system at {} points, the first at {}: {}\n", m.count, place_text(m.x, m.y), m.message);
   }
-  text += loads_rows(document);
+  text += map_theory_rows(document) + loads_rows(document);
   for (const std::string& note : map_notes(document))
     text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
   text += boundary_rows(document);
-  for (const std::string& warning : document.warnings) text += fmt::format("WARNING: {}\n", warning);
+  for (const std::string& warning : map_warnings(document))
+    if (!warning.ends_with("theory not judged: q was not computed")) text += fmt::format("WARNING: {}\n", warning);
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "tools/output/map_theory_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/wording.hpp"
@@ -243,8 +244,8 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "samplen 3 width -4 font ',12'\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
       literal(short_name(document.scene) + ", " + map_verdict(document)),
-      quoted("stability of the steady motion" + rods), map_axes(document), quoted(c.label), bar.settings, map_frame,
-      line_labels(r));
+      quoted("stability of the steady motion" + rods + map_theory_caption(document)), map_axes(document),
+      quoted(c.label), bar.settings, map_frame, line_labels(r));
   if (some_missing) {
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";
@@ -281,6 +282,17 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
         fmt::format("'{}' using 2:3 with lines linewidth 0.8 dashtype (6,6) linecolor '#444444' title "
                     "'resonance, speed = label'",
                     files.resonance));
+  }
+  if (!files.theory.empty()) {
+    const std::size_t column = 4 + r.rods.size();
+    const auto marks = [&](int beyond, const char* style, const char* title) {
+      layers.push_back(fmt::format("'{}' using (${} == {} ? $1 : NaN):2 with points {} linecolor '#000000' title '{}'",
+                                   files.theory, column, beyond, style, title));
+    };
+    if (std::ranges::any_of(r.theory, &TheoryPlace::beyond))
+      marks(1, "pointtype 2 pointsize 0.9 linewidth 1.4", "beyond the linear theory, where looked at");
+    if (!std::ranges::all_of(r.theory, &TheoryPlace::beyond))
+      marks(0, "pointtype 6 pointsize 0.7 linewidth 1", "within the linear theory, where looked at");
   }
   for (std::string& layer : boundary_layers(r, files)) layers.push_back(std::move(layer));
   figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));

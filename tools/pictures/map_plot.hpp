@@ -10,6 +10,7 @@ enum class MapColour { growth, per_turn, tenfold_time };
 
 struct MapFiles {
   std::string grid, boundaries, resonance;
+  std::string theory;  // empty: not looked at
   std::string loads;  // empty: not asked for
   std::vector<std::string> band;  // as in MapResult::band
 };

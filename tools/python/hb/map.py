@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Optional
 
@@ -158,6 +159,12 @@ class Map(_Grid, Result):
         """With band: for each factor the boundaries of the worst link; those of damping too."""
         entries = self._document.get("band", []) or self._document.get("damping_range", [])
         return {float(entry["factor"]): [Boundary(curve) for curve in entry["boundaries"]] for entry in entries}
+
+    @property
+    def theory_sample(self) -> Any:
+        """Theory errors at some places, corners included: x, y, theory_error by link, growth_theory_error; None in them:
+        beyond the linear theory. None for a HillSystem, and where q was not asked for."""
+        return deepcopy(self._document.get("theory_sample"))
 
     @property
     def shortfalls(self) -> list[str]:
