@@ -175,9 +175,10 @@ std::string loads_rows(const MapDocument& document) {
                          const LoadValue& value) {
       const WorstPlace worst = worst_place(r, rod, smallest, value);
       if (std::isnan(worst.value)) return;
-      text += fmt::format("    {:<8} {:<34} {:>11.4g}{:<4} at {} = {:.6g}, {} = {:.6g}{}\n", r.rods[rod], what,
-                          factor * worst.value, unit.empty() ? "" : " " + unit, r.x_axis.path, r.x()[worst.place % nx],
-                          r.y_axis.path, r.y()[worst.place / nx], smallest && worst.value < 1 ? ": NOT ENOUGH" : "");
+      text += fmt::format("    {:<8} {:<34} {:>11.4g}{:<4} at {}{}\n", r.rods[rod], what, factor * worst.value,
+                          unit.empty() ? "" : " " + unit,
+                          place_words(document, r.x()[worst.place % nx], r.y()[worst.place / nx]),
+                          smallest && worst.value < 1 ? ": NOT ENOUGH" : "");
     };
     row("largest deflection", false, 1, units.length, [](const RodLoads& loads) { return or_nan(loads.deflection); });
     row("largest stress", false, units.megapascal, "MPa", of_stress(&StressPoint::max_abs));

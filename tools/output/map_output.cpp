@@ -180,7 +180,25 @@ std::vector<std::string> map_warnings(const MapDocument& document) {
   return warnings;
 }
 
+// "mm^4"; empty where the number has none, or its name is it.
+std::string unit_name(const PlaneAxis& axis, const Units& units) {
+  if (axis.role == PlaneAxis::Role::rpm) return "";
+  return axis.role == PlaneAxis::Role::omega ? "rad/" + units.time : path_unit(axis.path, units);
+}
+
+std::string unit_behind(const PlaneAxis& axis, const Units& units) {
+  const std::string unit = unit_name(axis, units);
+  return unit.empty() ? "" : " " + unit;
+}
+
 }  // namespace
+
+std::string place_words(const MapDocument& document, double x, double y) {
+  const auto number = [&](const PlaneAxis& axis, double value) {
+    return fmt::format("{} = {:.6g}{}", axis.path, value, unit_behind(axis, document.scene.units));
+  };
+  return number(document.result.x_axis, x) + ", " + number(document.result.y_axis, y);
+}
 
 double growth_per_turn(const MapPoint& point) { return point.growth_rate * 2 * std::numbers::pi / point.speed; }
 
@@ -398,19 +416,14 @@ std::string map_verdict(const MapDocument& document) {
 
 namespace {
 
-// " mm^4"; empty where the number has none, or its name is it.
-std::string unit_behind(const PlaneAxis& axis, const Units& units) {
-  if (axis.role == PlaneAxis::Role::rpm) return "";
-  const std::string unit = axis.role == PlaneAxis::Role::omega ? "rad/" + units.time : path_unit(axis.path, units);
-  return unit.empty() ? "" : " " + unit;
-}
-
 std::string boundary_rows(const MapDocument& document) {
   const MapResult& r = document.result;
+  const Units& units = document.scene.units;
   if (!document.boundaries) return "  boundaries were not asked for\n";
   if (r.boundaries.empty()) return "  no stability boundary\n";
   std::string text = fmt::format("\n  boundaries, ranges of their points\n    {:<8} {:<8} {:>6}  {:>25}  {:>25}\n",
-                                 "rod", "kind", "points", r.x_axis.path, r.y_axis.path);
+                                 "rod", "kind", "points", r.x_axis.path + bracketed(unit_name(r.x_axis, units)),
+                                 r.y_axis.path + bracketed(unit_name(r.y_axis, units)));
   constexpr std::size_t most = 30;
   for (std::size_t k = 0; k < r.boundaries.size() && k < most; ++k) {
     const auto& points = r.boundaries[k].curve.points;
@@ -439,10 +452,6 @@ std::string map_summary(const MapDocument& document) {
     return fmt::format("{} = {:.10g} ... {:.10g}{}, {} values", of.path, values.front(), values.back(),
                        unit_behind(of, units), values.size());
   };
-  const auto place_text = [&](double x, double y) {
-    return fmt::format("{} = {:.6g}{}, {} = {:.6g}{}", r.x_axis.path, x, unit_behind(r.x_axis, units), r.y_axis.path, y,
-                       unit_behind(r.y_axis, units));
-  };
   text += fmt::format("  x  {}\n  y  {}\n", axis(r.x_axis, r.x()), axis(r.y_axis, r.y()));
   text += linkage ? fmt::format("  rods {}, {} each\n\n", fmt::join(r.rods, ", "), counted(document.num_modes, "mode"))
                   : fmt::format("  {} {}\n\n", document.num_modes, document.num_modes == 1 ? "unknown" : "unknowns");
@@ -463,11 +472,12 @@ std::string map_summary(const MapDocument& document) {
     const auto place = static_cast<std::size_t>(fastest - r.worst().data());
     text += fmt::format("  largest growth {:.6g} 1/{} ({:.4g} per {}) at {}\n", fastest->growth_rate,
                         document.scene.units.time, growth_per_turn(*fastest), linkage ? "turn" : "period",
-                        place_text(r.x()[place % r.x().size()], r.y()[place / r.x().size()]));
+                        place_words(document, r.x()[place % r.x().size()], r.y()[place / r.x().size()]));
   }
   for (const MissingPoints& m : r.missing) {
     if (!document.complete) break;
-    text += fmt::format("  no system at {} points, the first at {}: {}\n", m.count, place_text(m.x, m.y), m.message);
+    text += fmt::format("  no system at {} points, the first at {}: {}\n", m.count, place_words(document, m.x, m.y),
+                        m.message);
   }
   text += map_theory_rows(document) + loads_rows(document);
   for (const std::string& note : map_notes(document))

@@ -20,6 +20,9 @@ struct MapDocument {
   bool complete = true;  // false: ended early
   std::vector<std::string> warnings = {};
 };
+// "rpm = 3000, AB.J = 40 mm^4"
+[[nodiscard]] std::string place_words(const MapDocument& document, double x, double y);
+
 // Refers to the map.
 [[nodiscard]] MapDocument document_of(const Map& map);
 

@@ -20,9 +20,8 @@ std::size_t count_beyond(const MapResult& r) {
   return static_cast<std::size_t>(std::ranges::count_if(r.theory, &TheoryPlace::beyond));
 }
 
-// "rpm = 3000, AB.J = 40"
-std::string where(const MapResult& r, const TheoryPlace& place) {
-  return fmt::format("{} = {:.6g}, {} = {:.6g}", r.x_axis.path, r.x()[place.x], r.y_axis.path, r.y()[place.y]);
+std::string where(const MapDocument& document, const TheoryPlace& place) {
+  return place_words(document, document.result.x()[place.x], document.result.y()[place.y]);
 }
 
 // The mechanism's growth rate at a place that was looked at.
@@ -31,7 +30,8 @@ double growth_at(const MapResult& r, const TheoryPlace& place) {
 }
 
 // Of a rod; empty where it is within the linear theory at all of them.
-std::string beyond_words(const MapResult& r, std::size_t rod) {
+std::string beyond_words(const MapDocument& document, std::size_t rod) {
+  const MapResult& r = document.result;
   std::size_t count = 0, without = 0;
   double largest = 0;
   const TheoryPlace *first = nullptr, *first_without = nullptr;
@@ -48,9 +48,9 @@ std::string beyond_words(const MapResult& r, std::size_t rod) {
   std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
   if (first_without)
     size += fmt::format("{}no value at {} of them, first at {}: {}", size.empty() ? "" : ", ", without,
-                        where(r, *first_without), first_without->reason);
+                        where(document, *first_without), first_without->reason);
   return fmt::format("{}: beyond the linear theory at {} of {} points looked at ({}){}", r.rods[rod], count,
-                     r.theory.size(), size, first == first_without ? "" : ", first at " + where(r, *first));
+                     r.theory.size(), size, first == first_without ? "" : ", first at " + where(document, *first));
 }
 
 }  // namespace
@@ -98,7 +98,8 @@ std::vector<std::string> map_theory_warnings(const MapDocument& document) {
   std::vector<std::string> sentences;
   if (!is_linkage(document)) return sentences;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
-    std::string words = r.theory_judged ? beyond_words(r, k) : r.rods[k] + ": theory not judged: q was not computed";
+    std::string words =
+        r.theory_judged ? beyond_words(document, k) : r.rods[k] + ": theory not judged: q was not computed";
     if (!words.empty()) sentences.push_back(std::move(words));
   }
   const auto above = std::ranges::count_if(r.theory, [&](const TheoryPlace& place) {

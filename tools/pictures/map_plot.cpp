@@ -290,9 +290,9 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
                                    files.theory, column, beyond, style, title));
     };
     if (std::ranges::any_of(r.theory, &TheoryPlace::beyond))
-      marks(1, "pointtype 2 pointsize 0.9 linewidth 1.4", "beyond the linear theory, where looked at");
+      marks(1, "pointtype 2 pointsize 0.9 linewidth 1.4", "beyond the linear theory");
     if (!std::ranges::all_of(r.theory, &TheoryPlace::beyond))
-      marks(0, "pointtype 6 pointsize 0.7 linewidth 1", "within the linear theory, where looked at");
+      marks(0, "pointtype 6 pointsize 0.7 linewidth 1", "within the linear theory");
   }
   for (std::string& layer : boundary_layers(r, files)) layers.push_back(std::move(layer));
   figure.commands += fmt::format("plot {}\n", fmt::join(layers, ", \\\n  "));
