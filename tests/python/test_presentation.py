@@ -123,6 +123,16 @@ def test_colours_are_the_commands(map):
     pyplot.close("all")
 
 
+def test_a_maps_picture_says_where_the_linear_theory_holds(six_link):
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    map = six_link.map(x="rpm=300:3000:4", y="AB.J=40:50:3", modes=2, boundaries=False)
+    assert [place["beyond"] for place in map.theory_sample] == [False, True, False, True]
+    ax = map.plot()
+    assert "beyond it at 2 of 4 points looked at" in ax.get_title(loc="left")
+    assert {"beyond the linear theory", "within the linear theory"} <= {line.get_label() for line in ax.get_lines()}
+    pyplot.close("all")
+
+
 def test_a_picture_without_its_quantity_is_refused():
     pytest.importorskip("matplotlib.pyplot")
     sweep = hb.load(SCENES / "mathieu.toml").sweep(omega=(1.9, 2.5, 0.1), only="stability")

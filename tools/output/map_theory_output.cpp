@@ -64,7 +64,8 @@ Json theory_sample_json(const MapDocument& document) {
     sample.push_back({{"x", r.x()[place.x]},
                       {"y", r.y()[place.y]},
                       {"theory_error", std::move(errors)},
-                      {"growth_theory_error", number(place.growth)}});
+                      {"growth_theory_error", number(place.growth)},
+                      {"beyond", place.beyond()}});
   }
   return sample;
 }

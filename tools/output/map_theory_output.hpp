@@ -10,7 +10,7 @@
 
 namespace hb::tools {
 
-// A list: x, y, `theory_error` by rod, `growth_theory_error`; null beyond the linear theory.
+// A list: x, y, `theory_error` by rod, `growth_theory_error`; null: no value; `beyond` the linear theory.
 [[nodiscard]] Json theory_sample_json(const MapDocument& document);
 
 // One line; empty for a [hill] scene.

@@ -162,8 +162,8 @@ class Map(_Grid, Result):
 
     @property
     def theory_sample(self) -> Any:
-        """Theory errors at some places, corners included: x, y, theory_error by link, growth_theory_error; None in them:
-        beyond the linear theory. None for a HillSystem, and where q was not asked for."""
+        """Theory errors at some places, corners included: x, y, theory_error by link, growth_theory_error (None in
+        them: no value), and whether a link is beyond the linear theory there. None for a HillSystem, and where q was not asked for."""
         return deepcopy(self._document.get("theory_sample"))
 
     @property

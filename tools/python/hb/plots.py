@@ -383,6 +383,13 @@ def map(result: "Map", ax: Optional["Axes"] = None) -> "Axes":
         if boundary.kind not in labelled:
             handles.append(drawn)
         labelled.add(boundary.kind)
+    sample = result.theory_sample or []
+    beyond = [place for place in sample if place["beyond"]]
+    for places, mark, words in ((beyond, "x", "beyond"), ([place for place in sample if not place["beyond"]], "o", "within")):
+        if places:
+            at = [place["x"] for place in places], [place["y"] for place in places]
+            style: dict[str, Any] = {"markersize": 5, "markerfacecolor": "none", "linestyle": "none", "clip_on": False}
+            handles += ax.plot(*at, mark, color="#000000", label=f"{words} the linear theory", **style)
     bar = ax.figure.colorbar(shown, ax=ax, label=f"growth rate [1/{result.scene.units['time']}]")
     ticks = [v for e in range(int(np.floor(np.log10(scale))), int(np.floor(np.log10(largest))) + 1) for v in (10.0**e,) if 0.4 * scale <= v <= largest]
     places = [-np.arcsinh(v / scale) for v in reversed(ticks)] + [0.0] + [np.arcsinh(v / scale) for v in ticks]
@@ -394,6 +401,8 @@ def map(result: "Map", ax: Optional["Axes"] = None) -> "Axes":
     ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=label(result.x_path), ylabel=label(result.y_path))
     rods = list(result.rods)
     of = "" if rods == ["system"] else ", " + ", ".join(rods) + (" (the worst)" if len(rods) > 1 else "")
+    if rods != ["system"]:
+        of += ", by the linear theory" + (f"; beyond it at {len(beyond)} of {len(sample)} points looked at" if beyond else "")
     _title(ax, _name(result.scene), "stability of the steady motion" + of)
     if handles:
         ax.legend(handles=handles, fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=2)
