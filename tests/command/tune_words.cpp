@@ -117,6 +117,14 @@ TEST_F(Tune, WarnsOfBoundsInAUnitThatWasNotMeant) {
                    .contains("warnings"));
 }
 
+// The refusal named --rpm FROM:TO:STEP, which is not how a design is told its speeds.
+TEST_F(Tune, WithoutSpeedsNamesTheFlagForThem) {
+  const std::string words = refusal("--minimise mass --vary rod.section.height=0.005:0.01");
+  EXPECT_NE(words.find("--over: no speeds given, and engine.toml has none under [analysis]; allowed: rpm=FROM:TO"),
+            std::string::npos)
+      << words;
+}
+
 TEST_F(Tune, SaysWhichConditionCannotBeMet) {
   const CommandResult result =
       hb("tune engine.toml --minimise mass --vary rod.section.height=0.002:0.005 --keep 'deflection<=1e-7' --keep "

@@ -29,6 +29,11 @@ std::pair<SpeedSpan, bool> span_of(const TuneFlags& flags, const Scene& scene) {
   bool in_rpm = true;
   double from = 0, to = 0;
   if (flags.over.empty()) {
+    if (flags.rpm.empty() && flags.omega.empty() && !scene.analysis.rpm && !scene.analysis.omega)
+      throw UsageError(
+          fmt::format("--over: no speeds given, and {} has none under [analysis]; allowed: rpm=FROM:TO, as in "
+                      "rpm=300:3000, or omega=FROM:TO (rad per {})",
+                      scene.file.string(), scene.units.time));
     const SpeedRange range = speed_range(flags, scene);
     in_rpm = range.in_rpm;
     from = range.speeds.from;

@@ -23,7 +23,7 @@ void add_tune_flags(CLI::App& command, TuneFlags& flags) {
       .add_option("--minimise,--minimize", flags.minimise,
                   "deflection, stress, total-stress, force (each :NAME for one rod or joint), torque-ripple (largest "
                   "minus smallest "
-                  "torque), mass, or a sum such as "
+                  "torque), mass, theory (the theory error), or a sum such as "
                   "0.7*deflection+0.3*mass of parts over their start values")
       ->type_name("GOAL");
   command
@@ -40,7 +40,7 @@ void add_tune_flags(CLI::App& command, TuneFlags& flags) {
       "--keep", flags.keep,
       "stable, stable>=M (1/time) or M/turn, deflection<=, stress<= (MPa, of bending), total-stress<= (MPa), safety>= "
       "(against "
-      "yielding and fatigue), force:JOINT<= (N), torque-ripple<= "
+      "yielding and fatigue), theory<=, force:JOINT<= (N), torque-ripple<= "
       "(N m), mass<=, frequency>= (Hz), clearance:N>= (least |omega_1/(n Omega) - 1| over speeds, rods and n = 1..N)",
       "CONDITION");
   command.add_option("--over", flags.over, "speeds over which the worst case counts")->type_name("rpm=A:B");

@@ -268,10 +268,11 @@ void ReportData::add_places(const std::vector<ReportPlace>& places, const Settin
   }
 }
 
-void ReportData::add_warnings(const Json& sentences) {
+void ReportData::add_warnings(const Json& sentences, const std::string& of) {
   Json& known = data_["warnings"];
   for (const Json& sentence : sentences)
-    if (std::find(known.begin(), known.end(), sentence) == known.end()) known.push_back(sentence);
+    if (std::find(known.begin(), known.end(), sentence) == known.end())
+      known.push_back(of + sentence.get<std::string>());
 }
 
 void ReportData::add_map(Json map, const SceneSource& source) {
@@ -283,7 +284,7 @@ void ReportData::add_map(Json map, const SceneSource& source) {
   const std::string over =
       fmt::format("stability over {} and {}", map["x"]["path"].get<std::string>(), map["y"]["path"].get<std::string>());
   subtitle_ = subtitle_.empty() ? over : subtitle_ + "; " + over;
-  if (map.contains("warnings")) add_warnings(map["warnings"]);
+  if (map.contains("warnings")) add_warnings(map["warnings"], "map: ");
   data_["map"] = map_data(std::move(map), source, scene_.units, block_);
 }
 

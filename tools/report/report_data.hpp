@@ -43,7 +43,8 @@ class ReportData {
   [[nodiscard]] std::string page(PageText text) const;
 
  private:
-  void add_warnings(const nlohmann::ordered_json& sentences);  // each once
+  // Each once, those of a part of the page with its name before them.
+  void add_warnings(const nlohmann::ordered_json& sentences, const std::string& of = "");
   void add_rods(const SceneModel& model, const Scene& scene);
   void add_places(const std::vector<ReportPlace>& places, const Settings& settings, bool one_scene);
   void add_along(const SweepScene& scene, const SweepResult& result);
