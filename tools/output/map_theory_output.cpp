@@ -140,10 +140,10 @@ CsvFile map_theory_csv(const MapDocument& document) {
   return file;
 }
 
-std::string map_theory_caption(const MapDocument& document) {
-  if (!is_linkage(document)) return "";
+std::string map_theory_caption(const MapDocument& document, const std::string& rods) {
+  if (!is_linkage(document)) return "stability of the steady motion" + rods;
   const MapResult& r = document.result;
-  std::string text = ", by the linear theory";
+  std::string text = "stability by the linear theory" + rods;
   if (const std::size_t beyond = count_beyond(r); beyond > 0)
     text += fmt::format("; beyond it at {} of {} points looked at", beyond, r.theory.size());
   return text;

@@ -22,7 +22,8 @@ namespace hb::tools {
 // x, y, theory error of each rod, of the growth rate, 1 beyond the linear theory (else 0).
 [[nodiscard]] CsvFile map_theory_csv(const MapDocument& document);
 
-// ", by the linear theory; beyond it at 3 of 9 points looked at"; empty for a [hill] scene.
-[[nodiscard]] std::string map_theory_caption(const MapDocument& document);
+// "stability by the linear theory, AB, CD; beyond it at 3 of 9 points looked at" with `rods` = ", AB, CD"; of a [hill]
+// scene "stability of the steady motion".
+[[nodiscard]] std::string map_theory_caption(const MapDocument& document, const std::string& rods);
 
 }  // namespace hb::tools

@@ -243,9 +243,8 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "{}set key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
       "samplen 3 width -4 font ',12'\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
-      literal(short_name(document.scene) + ", " + map_verdict(document)),
-      quoted("stability of the steady motion" + rods + map_theory_caption(document)), map_axes(document),
-      quoted(c.label), bar.settings, map_frame, line_labels(r));
+      literal(short_name(document.scene) + ", " + map_verdict(document)), quoted(map_theory_caption(document, rods)),
+      map_axes(document), quoted(c.label), bar.settings, map_frame, line_labels(r));
   if (some_missing) {
     figure.commands +=
         "set object 1 rectangle from graph 0,0 to graph 1,1 behind fillcolor '#8a8a8a' fillstyle solid noborder\n";

@@ -401,9 +401,9 @@ def map(result: "Map", ax: Optional["Axes"] = None) -> "Axes":
     ax.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=label(result.x_path), ylabel=label(result.y_path))
     rods = list(result.rods)
     of = "" if rods == ["system"] else ", " + ", ".join(rods) + (" (the worst)" if len(rods) > 1 else "")
-    if rods != ["system"]:
-        of += ", by the linear theory" + (f"; beyond it at {len(beyond)} of {len(sample)} points looked at" if beyond else "")
-    _title(ax, _name(result.scene), "stability of the steady motion" + of)
+    what = "stability of the steady motion" if rods == ["system"] else "stability by the linear theory"
+    more = f"; beyond it at {len(beyond)} of {len(sample)} points looked at" if beyond else ""
+    _title(ax, _name(result.scene), what + of + more)
     if handles:
         ax.legend(handles=handles, fontsize=8, frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=2)
     return ax
