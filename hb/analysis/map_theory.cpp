@@ -59,7 +59,7 @@ std::vector<double> at(const std::vector<double>& values, const std::vector<std:
 bool TheoryPlace::beyond() const { return std::ranges::any_of(rods, beyond_theory); }
 
 std::vector<std::size_t> theory_indices(std::size_t values, std::size_t points_of_the_grid) {
-  constexpr double points_for_each = 50;
+  constexpr double points_for_each = 80;
   const auto wanted = static_cast<std::size_t>(
       std::clamp(std::round(std::sqrt(static_cast<double>(points_of_the_grid) / points_for_each)), 2.0, 5.0));
   const std::size_t count = std::min(wanted, values);
