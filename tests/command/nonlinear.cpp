@@ -155,6 +155,14 @@ TEST_F(Nonlinear, SweepWritesItsBranchesAndDrawsThem) {
   EXPECT_NE(read(folder_ / "answer/branches_AB.svg").find("dashed unstable"), std::string::npos);
 }
 
+// The table said "every 3th point".
+TEST_F(Nonlinear, TheTableSaysWhichOfItsPointsItShows) {
+  const std::string words = hb("sweep " + scene("six_link") +
+                               " --rpm 1440:1520:10 --modes 1 --only steady,stability --theory nonlinear --no-search")
+                                .out;
+  EXPECT_NE(words.find("(every 3rd point; "), std::string::npos) << words;
+}
+
 TEST_F(Nonlinear, CheckByIntegrationInTimeAgrees) {
   const Json found = document("check " + scene("six_link") + " --rpm 1500 --modes 1");
   EXPECT_EQ(found["agrees"], true);

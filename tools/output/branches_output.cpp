@@ -320,7 +320,7 @@ std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep)
             point.stability->verdict == Verdict::unstable ? "UNSTABLE" : to_string(point.stability->verdict));
       add(text, "\n");
     }
-    if (every > 1) add(text, "  (every {}th point; --json and --out have all)\n", every);
+    if (every > 1) add(text, "  (every {} point; --json and --out have all)\n", ordinal(every));
     add(text, "{}", bent_stress_rows(scene, sweep, branch));
   }
   add(text, "\n{}\n", sweep.folds.empty() ? "no fold" : "folds: the branch turns back");

@@ -476,8 +476,8 @@ std::string map_summary(const MapDocument& document) {
   }
   for (const MissingPoints& m : r.missing) {
     if (!document.complete) break;
-    text += fmt::format("  no system at {} points, the first at {}: {}\n", m.count, place_words(document, m.x, m.y),
-                        m.message);
+    text += fmt::format("  no system at {}, the first at {}: {}\n", counted(m.count, "point"),
+                        place_words(document, m.x, m.y), m.message);
   }
   text += map_theory_rows(document) + loads_rows(document);
   for (const std::string& note : map_notes(document))

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "lib/scene/scene_keys.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/sweep_output.hpp"
@@ -71,11 +72,12 @@ std::string theory_rows(const SweepScene& scene, const SweepResult& result) {
     }
     if (!worst) continue;
     const std::string unit = axis_unit(scene);
-    text += fmt::format("  {:<14} {:.1e} {}  at {}{:.6g}{}{}{}\n", quantity.words, *(worst->*quantity.value),
-                        quantity.is_rate ? units.rate : "of the largest",
-                        is_speed(scene) ? "" : scene.axis().path + " = ", worst->x, unit.empty() ? "" : " " + unit,
-                        without == 0 ? "" : fmt::format("; no value at {} of {} points", without, result.points.size()),
-                        above_rate == 0 ? "" : fmt::format("; not less than the rate itself at {} points", above_rate));
+    text += fmt::format(
+        "  {:<14} {:.1e} {}  at {}{:.6g}{}{}{}\n", quantity.words, *(worst->*quantity.value),
+        quantity.is_rate ? units.rate : "of the largest", is_speed(scene) ? "" : scene.axis().path + " = ", worst->x,
+        unit.empty() ? "" : " " + unit,
+        without == 0 ? "" : fmt::format("; no value at {} of {} points", without, result.points.size()),
+        above_rate == 0 ? "" : fmt::format("; not less than the rate itself at {}", counted(above_rate, "point")));
   }
   return text.empty() ? text : "\nTheory errors of the whole mechanism, largest of all points\n" + text;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/scene/scene_keys.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
@@ -113,7 +114,7 @@ std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
   for (const auto& [from, to] : unstable_anywhere(result)) bands.push_back(span_text(from, to));
   if (n.unstable == 0 && bands.empty()) {
     const std::size_t none = result.points.size() - n.answers;
-    const std::string rest = none > 0 ? fmt::format("; no answer at {} points", none) : "";
+    const std::string rest = none > 0 ? fmt::format("; no answer at {}", counted(none, "point")) : "";
     if (n.answers == 0) return "no answer at any point";
     if (n.undecided > 0) return fmt::format("undecided at {} of {} points{}", n.undecided, n.answers, rest);
     return fmt::format("{} at all {} points{}{}",

@@ -317,10 +317,11 @@ std::string search_text(const TuneResult& result, const Scene& scene) {
   if (result.counts.gradients > 0)
     text += counted(result.counts.gradients, "gradient") + " from adjoint solutions and Floquet vectors\n";
   if (result.counts.not_closing > 0)
-    text += fmt::format("{} designs tried do not close over the turn\n", result.counts.not_closing);
-  if (result.counts.refused > 0) text += fmt::format("{} designs tried are no possible scene\n", result.counts.refused);
+    text += fmt::format("designs tried that do not close over the turn: {}\n", result.counts.not_closing);
+  if (result.counts.refused > 0)
+    text += fmt::format("designs tried that are no possible scene: {}\n", result.counts.refused);
   if (result.without_response > 0)
-    text += fmt::format("{} designs tried have no periodic solution at some speed\n", result.without_response);
+    text += fmt::format("designs tried that have no periodic solution at some speed: {}\n", result.without_response);
   if (std::holds_alternative<Linkage>(scene.model)) text += counted(result.num_modes, "mode") + " of each rod\n";
   if (result.agrees) text += "worst cases confirmed on four times the speeds\n";
   if (result.holds && !result.conditions.empty() && result.design.status != DesignStatus::infeasible)

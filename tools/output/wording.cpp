@@ -102,4 +102,10 @@ std::vector<std::size_t> shown_rows(std::size_t count) {
   return rows;
 }
 
+std::string ordinal(std::size_t number) {
+  const std::size_t last = number % 10, before = number / 10 % 10;
+  const char* ending = before == 1 ? "th" : last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th";
+  return fmt::format("{}{}", number, ending);
+}
+
 }  // namespace hb::tools

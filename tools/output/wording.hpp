@@ -35,4 +35,7 @@ inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided
 // Of `count` points those that a table shows: every so many, at most 17, and the last.
 [[nodiscard]] std::vector<std::size_t> shown_rows(std::size_t count);
 
+// "1st", "2nd", "3rd", "11th", "23rd".
+[[nodiscard]] std::string ordinal(std::size_t number);
+
 }  // namespace hb::tools
