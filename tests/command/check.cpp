@@ -44,6 +44,10 @@ TEST_F(Check, SaysWhatTheLinearTheoryIsOffBy) {
   EXPECT_NE(text.out.find("linear theory            off by 0.037"), std::string::npos) << text.out;
   const Json several = Json::parse(hb(at + "300:1500:600 --json").out);
   EXPECT_EQ(several["rods"]["AB"]["theory_error"].size(), 3u);
+  // One sentence for a link, not for each speed.
+  ASSERT_EQ(several["warnings"].size(), 1u) << several["warnings"];
+  EXPECT_EQ(several["warnings"][0].get<std::string>().find("AB: beyond the linear theory at 1 of 3 points ("), 0u)
+      << several["warnings"];
   EXPECT_FALSE(Json::parse(hb(at + "300 --json").out).contains("warnings"));
   EXPECT_FALSE(
       Json::parse(hb("check " + scene("mathieu") + " --omega 1 --tol 1e-7 --json").out)["rods"]["system"].contains(

@@ -342,6 +342,19 @@ TEST_F(Words, RangesAreWarnedOfAtBothEnds) {
          {"are section and length in their units?"});
 }
 
+// `hb check` and `hb compare` were silent on a scene that `hb steady` warns of.
+TEST_F(Words, AnOddSceneIsWarnedOfWhereverItIsComputed) {
+  const std::string file = HB_SOURCE_DIR "/results/first_steps/scene.toml";
+  const std::string odd = " --rpm 1000 --modes 1 --set rod.section.height=12 ";
+  for (const std::string command : {"steady " + file, "check " + file})
+    expect(said(command + odd), {"WARNING: ", "are section and length in their units?"});
+  expect(said("compare " + file + " " + file + odd), {"WARNING: A and B: ", "are section and length in their units?"});
+  expect(said("compare " + file + " " + file + " --rpm 1000 --modes 1 --set-b rod.section.height=12"),
+         {"WARNING: B: ", "are section and length in their units?"}, {"WARNING: A"});
+  expect(said("compare " + file + " " + file + " --rpm 1000:1100:x2 --modes 1 --set-b rod.section.height=12"),
+         {"WARNING: B: ", "are section and length in their units?"}, {"WARNING: A"});
+}
+
 // Good answers ended with status 3 because of a tolerance that nobody had asked for.
 TEST_F(Words, WhatIsKnownLessWellWithoutBeingAskedForIsANote) {
   const std::string undamped = " --omega 2 --set 'hill.damping.0.0=0' --only stability";

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/check_report.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/json_parts.hpp"
-#include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
@@ -172,14 +172,8 @@ Json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks, 
     shooting += check.seconds_shooting;
     marching += check.seconds_marching;
   }
-  Json warnings = Json::array();
-  for (const SpeedCheck& check : checks) {
-    const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
-    if (model.linkage())
-      for (const std::string& sentence : theory_warnings(check.theory_rods, check.theory))
-        warnings.push_back(at + sentence);
-  }
-  if (!warnings.empty()) json["warnings"] = std::move(warnings);
+  if (std::vector<std::string> warnings = check_warnings(model, checks); !warnings.empty())
+    json["warnings"] = std::move(warnings);
   json["seconds"] = {{"harmonic_balance", series}, {"shooting", shooting}};
   if (marching > 0) json["seconds"]["marching"] = marching;
   return json;

@@ -194,12 +194,7 @@ void add_verdict(Text& text, const SceneModel& model, const std::vector<SpeedChe
       add(text, "DISAGREES: {}{}\n", at, differs(check.joints->torque, units));
     for (const std::string& sentence : check.shortfalls) add(text, "NOT REACHED: {}{}\n", at, sentence);
   }
-  for (const SpeedCheck& check : checks) {
-    const std::string at = checks.size() > 1 ? speed_text(check.speed, model.scene) + ": " : "";
-    if (model.linkage())
-      for (const std::string& sentence : theory_warnings(check.theory_rods, check.theory))
-        add(text, "WARNING: {}{}\n", at, sentence);
-  }
+  for (const std::string& sentence : check_warnings(model, checks)) add(text, "WARNING: {}\n", sentence);
   add(text, "{}\n", agreement(checks).sentence);
 }
 
@@ -209,6 +204,27 @@ std::string check_verdict(const std::vector<SpeedCheck>& checks) {
   std::vector<NamedVerdicts> points;
   for (const SpeedCheck& check : checks) points.push_back(check.verdicts);
   return checks.size() == 1 ? mechanism_verdict(points.front()) : verdict_at_points(points, "speeds");
+}
+
+std::vector<std::string> check_warnings(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
+  std::vector<std::string> sentences = model.scene.warnings;
+  if (!model.linkage()) return sentences;
+  const std::vector<std::string>& rods = checks.front().theory_rods;
+  if (checks.size() == 1 ||
+      std::ranges::none_of(checks, [](const SpeedCheck& check) { return check.theory.has_value(); })) {
+    for (std::string& sentence : theory_warnings(rods, checks.front().theory)) sentences.push_back(std::move(sentence));
+    return sentences;
+  }
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    std::vector<TheoryAlong> places;
+    for (const SpeedCheck& check : checks)
+      places.push_back({rpm_from_speed(check.speed, model.scene.units), check.theory.has_value(),
+                        check.theory ? check.theory->rods[r].q : std::nullopt,
+                        check.theory ? check.theory->reason : ""});
+    if (std::string sentence = theory_warning(rods[r], "rpm", places); !sentence.empty())
+      sentences.push_back(std::move(sentence));
+  }
+  return sentences;
 }
 
 std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings,

@@ -12,6 +12,9 @@ namespace hb::tools {
 // speeds"; empty where stability was not asked for.
 [[nodiscard]] std::string check_verdict(const std::vector<SpeedCheck>& checks);
 
+// Of the scene, then of the linear theory, over several speeds in the words of a sweep.
+[[nodiscard]] std::vector<std::string> check_warnings(const SceneModel& model, const std::vector<SpeedCheck>& checks);
+
 // The verdict and whether the paths agree; one speed in detail or a table of speeds, then what disagrees, what was not
 // reached.
 [[nodiscard]] std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks,

@@ -344,7 +344,8 @@ std::string compare_along_table(const ComparedSide& a, const ComparedSide& b) {
     of = q.of;
     text += fmt::format("{}{:>12}{:>12}\n", compared_row(q), at(each.at_a), at(each.at_b));
   }
-  return text + rod_end(of) + "\nsame: no further apart than the errors of both computations\n";
+  return text + rod_end(of) + "\nsame: no further apart than the errors of both computations\n" +
+         compared_warnings(a, b);
 }
 
 Json compare_along_json(const ComparedSide& a, const ComparedSide& b) {

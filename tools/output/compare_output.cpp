@@ -228,6 +228,20 @@ std::string compare_table(const ComparedSide& a, const ComparedSide& b) {
   }
   text += "\nsame: no further apart than the errors of both computations\n";
   if (a.document.at("omega") != b.document.at("omega")) text += "WARNING: the two are at different speeds\n";
+  return text + compared_warnings(a, b);
+}
+
+std::string compared_warnings(const ComparedSide& a, const ComparedSide& b) {
+  const auto of = [](const ComparedSide& side) { return side.document.value("warnings", std::vector<std::string>()); };
+  const std::vector<std::string> of_a = of(a), of_b = of(b);
+  const auto has = [](const std::vector<std::string>& list, const std::string& sentence) {
+    return std::ranges::find(list, sentence) != list.end();
+  };
+  std::string text;
+  for (const std::string& sentence : of_a)
+    text += fmt::format("WARNING: {}: {}\n", has(of_b, sentence) ? "A and B" : "A", sentence);
+  for (const std::string& sentence : of_b)
+    if (!has(of_a, sentence)) text += fmt::format("WARNING: B: {}\n", sentence);
   return text;
 }
 

@@ -41,6 +41,8 @@ struct ComparedFactors {
 [[nodiscard]] std::vector<ComparedQuantity> compared_quantities(const ComparedSide& a, const ComparedSide& b);
 
 [[nodiscard]] std::string compare_table(const ComparedSide& a, const ComparedSide& b);
+// Those of both sides, a line each; what both have once.
+[[nodiscard]] std::string compared_warnings(const ComparedSide& a, const ComparedSide& b);
 [[nodiscard]] nlohmann::ordered_json compare_json(const ComparedSide& a, const ComparedSide& b);
 // "stable", "UNSTABLE because of AB"; empty where the document has none.
 [[nodiscard]] std::string side_verdict(const ComparedSide& side);

@@ -25,26 +25,16 @@ std::string too_large(const RodResult& rod, const Body& link, const std::optiona
   return fmt::format("{}", fmt::join(reasons, ", "));
 }
 
-// Ranges of neighbouring points where `is` holds: "1270 to 1370, 1440 to 6000".
-template <class Predicate>
-std::string runs(const std::vector<SweepPoint>& points, const Predicate& is) {
+// Ranges of neighbouring places where `is` holds: "1270 to 1370, 1440 to 6000".
+std::string runs(const std::vector<double>& x, const std::vector<bool>& is) {
   std::string text;
-  const SweepPoint *first = nullptr, *last = nullptr;
-  const auto close = [&] {
-    if (first)
-      text += fmt::format("{}{:.6g}{}", text.empty() ? "" : ", ", first->x,
-                          first == last ? "" : fmt::format(" to {:.6g}", last->x));
-    first = nullptr;
-  };
-  for (const SweepPoint& point : points) {
-    if (point.rods.empty() || !is(point)) {
-      close();
-      continue;
-    }
-    if (!first) first = &point;
-    last = &point;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!is[k]) continue;
+    const std::size_t first = k;
+    while (k + 1 < x.size() && is[k + 1]) ++k;
+    text += fmt::format("{}{:.6g}{}", text.empty() ? "" : ", ", x[first],
+                        first == k ? "" : fmt::format(" to {:.6g}", x[k]));
   }
-  close();
   return text;
 }
 
@@ -70,6 +60,28 @@ std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
   return sentences;
 }
 
+std::string theory_warning(const std::string& name, const std::string& path, const std::vector<TheoryAlong>& places) {
+  std::size_t count = 0, points = 0, without = 0;
+  double largest = 0;
+  std::string why;
+  std::vector<double> x;
+  std::vector<bool> is;
+  for (const TheoryAlong& place : places) {
+    x.push_back(place.x);
+    is.push_back(place.there && beyond_theory(place.error));
+    points += place.there;
+    if (!is.back()) continue;
+    ++count;
+    if (place.error) largest = std::max(largest, *place.error);
+    without += !place.error;
+    if (!place.error && why.empty()) why = fmt::format("at {} = {:.6g}: {}", path, place.x, place.reason);
+  }
+  if (count == 0) return "";
+  std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
+  if (without > 0) size += fmt::format("{}no value at {} of them, first {}", size.empty() ? "" : ", ", without, why);
+  return fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size, path, runs(x, is));
+}
+
 std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result) {
   if (!model.linkage()) return {};
   std::vector<std::string> rods;
@@ -91,26 +103,12 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
       sentences.push_back(name + ": theory not judged: q was not computed");
       continue;
     }
-    std::size_t count = 0, points = 0, without = 0;
-    double largest = 0;
-    std::string why;
-    for (const SweepPoint& point : result.points) {
-      if (point.rods.empty()) continue;
-      ++points;
-      const std::optional<double>& error = point.rods[r].theory_error;
-      if (!beyond_theory(error)) continue;
-      ++count;
-      if (error) largest = std::max(largest, *error);
-      without += !error;
-      if (!error && why.empty())
-        why = fmt::format("at {} = {:.6g}: {}", scene.axis().path, point.x, point.theory_reason);
-    }
-    if (count == 0) continue;
-    std::string size = largest > 0 ? fmt::format("theory error up to {:.2g}", largest) : "";
-    if (without > 0) size += fmt::format("{}no value at {} of them, first {}", size.empty() ? "" : ", ", without, why);
-    sentences.push_back(
-        fmt::format("{}: {} at {} of {} points ({}): {} = {}", name, beyond, count, points, size, scene.axis().path,
-                    runs(result.points, [&](const SweepPoint& p) { return beyond_theory(p.rods[r].theory_error); })));
+    std::vector<TheoryAlong> places;
+    for (const SweepPoint& point : result.points)
+      places.push_back({point.x, !point.rods.empty(), point.rods.empty() ? std::nullopt : point.rods[r].theory_error,
+                        point.theory_reason});
+    if (std::string sentence = theory_warning(name, scene.axis().path, places); !sentence.empty())
+      sentences.push_back(std::move(sentence));
   }
   return sentences;
 }
@@ -129,8 +127,13 @@ std::vector<std::string> limit_warnings(const SceneModel& model, const SpeedResu
 std::vector<std::string> limit_warnings(const SweepScene& scene, const SweepResult& result) {
   std::vector<std::string> sentences;
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
-    const std::string where =
-        runs(result.points, [&](const SweepPoint& point) { return beyond_limits(point.rods[r]); });
+    std::vector<double> x;
+    std::vector<bool> is;
+    for (const SweepPoint& point : result.points) {
+      x.push_back(point.x);
+      is.push_back(!point.rods.empty() && beyond_limits(point.rods[r]));
+    }
+    const std::string where = runs(x, is);
     if (where.empty()) continue;
     double share = 0, strain = 0;
     for (const SweepPoint& point : result.points) {

@@ -15,6 +15,16 @@ namespace hb::tools {
 [[nodiscard]] std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result);
 [[nodiscard]] std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
                                                        const std::optional<TheoryErrors>& errors);
+// A place along a sweep; without an answer nothing counts.
+struct TheoryAlong {
+  double x = 0;
+  bool there = true;
+  std::optional<double> error;
+  std::string reason;  // why there is none
+};
+// "AB: beyond the linear theory at 3 of 30 points (...): rpm = 1400 to 1600"; empty where it is nowhere.
+[[nodiscard]] std::string theory_warning(const std::string& name, const std::string& path,
+                                         const std::vector<TheoryAlong>& places);
 // Where along the sweep; one sentence for each elastic link.
 [[nodiscard]] std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepResult& result);
 
