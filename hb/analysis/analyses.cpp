@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "hb/analysis/expected_memory.hpp"
+
 namespace hb {
 
 std::shared_ptr<const SweepScene> sweep_scene(const SceneFamily& family, const SweepRequest& request) {
@@ -77,6 +79,7 @@ Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
   const std::vector<double> speeds = speeds_of(request, scene);
   if (!(request.case_limit > 0)) throw RequestError("case_limit", fmt::format("{}", request.case_limit), "seconds > 0");
   result.model = std::make_shared<const SceneModel>(make_model(scene, result.settings));
+  if (request.expected) request.expected(expected_bytes(*result.model, result.settings));
   std::vector<std::optional<SpeedCheck>> found(speeds.size());
   work.for_each(speeds.size(), [&](std::size_t k) {
     if (work.ends_early()) return;

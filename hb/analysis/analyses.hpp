@@ -43,6 +43,8 @@ struct CheckRequest : Request {
   // that is done.
   std::function<void(const std::string& rod, double speed, Integrator, double seconds)> begin = {};
   std::function<void(double speed)> done = {};
+  // Told before the first: bytes that one speed will take, about.
+  std::function<void(double bytes)> expected = {};
 };
 
 // Rad per unit time, those of `rpms` or the one speed. Throws RequestError.

@@ -17,8 +17,8 @@ struct SteadyResult : SpeedResult {
 
 // Periodic steady state, stability, shape and joint forces, as far as asked for. Throws RequestError, and
 // UnresolvedLinkage where the linkage comes too near a dead centre. `expected` is called once the model is there, with
-// the seconds that the rest will take, about.
+// the seconds and the bytes that the rest will take, about.
 [[nodiscard]] SteadyResult steady(const Scene& scene, const Request& request = {},
-                                  const std::function<void(double)>& expected = {});
+                                  const std::function<void(double seconds, double bytes)>& expected = {});
 
 }  // namespace hb

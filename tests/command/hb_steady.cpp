@@ -1,5 +1,6 @@
 // `hb steady` as its users meet it: the built command, its documents, table and exit codes.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <complex>
@@ -391,6 +392,37 @@ TEST_F(Steady, AnswersNearlyAtRest) {
     EXPECT_LE(rod["error_bound"].get<double>(), 1e-8) << name;
     EXPECT_NE(rod["verdict"], "undecided") << name;
   }
+}
+
+TEST_F(Steady, SaysBeforehandThatItWillNotFitIntoMemory) {
+  const std::string limit = "ulimit -v 600000;", crank = scene("slider_crank") + " --time-limit 1";
+  const std::string near = crank + " --set crank.length=144.9 --modes 30";
+  EXPECT_NE(hb("steady " + near, limit).err.find("hb: this speed needs about 1.3 GB"), std::string::npos);
+  EXPECT_NE(hb("check " + near + " --case-limit 0.1", limit).err.find("hb: the check needs about"), std::string::npos);
+  EXPECT_NE(hb("sweep " + near + " --rpm 300:600:x4", limit).err.find("hb: the sweep needs about"), std::string::npos);
+  const std::string long_one = scene("six_link") + " --time-limit 0.2 --no-search --only stability --rpm 300:3000:";
+  EXPECT_NE(hb("sweep " + long_one + "x90000 --modes 30 --json", limit).err.find("hb: the sweep needs about"),
+            std::string::npos);
+  EXPECT_EQ(hb("sweep " + long_one + "x90 --modes 3", limit).err.find("needs about"), std::string::npos);
+  EXPECT_EQ(hb("steady " + crank, limit).err.find("needs about"), std::string::npos);
+}
+
+TEST_F(Steady, TheMemorySaidIsThatMeasured) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "sanitizers take memory of their own";
+#endif
+  const std::string run =
+      "steady " + scene("slider_crank") + " --set crank.length=144.9 --modes 20 --rpm 300 --only shape";
+  const std::string before = "hb: this speed needs about ", text = hb(run, "ulimit -v 500000;").err;
+  const std::size_t at = text.find(before);
+  ASSERT_NE(at, std::string::npos) << text;
+  ASSERT_EQ(hb(run).status, 0);
+  rusage usage{};
+  getrusage(RUSAGE_CHILDREN, &usage);
+  const double measured = 1024.0 * static_cast<double>(usage.ru_maxrss),
+               said = 1e9 * std::stod(text.substr(at + before.size()));
+  EXPECT_GT(measured, said / 3);
+  EXPECT_LT(measured, said * 3);
 }
 
 TEST_F(Steady, SaysBeforehandWhatALongSpeedWillTake) {

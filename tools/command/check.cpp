@@ -107,10 +107,13 @@ int run_check(const CheckFlags& flags) {
   Check found;
   {
     const InterruptGuard guard(!out.folder);
-    CheckProgress progress(request.rpms.size() + request.omegas.size(), out.threads);
+    const std::size_t num_speeds = request.rpms.size() + request.omegas.size();
+    CheckProgress progress(num_speeds, out.threads);
     request.begin = [&](const std::string& rod, double speed, Integrator integrator, double seconds) {
       progress.begin(rod, speed_text(speed, scene), integrator, seconds);
     };
+    const auto at_once = static_cast<double>(std::min(num_speeds, static_cast<std::size_t>(out.threads)));
+    request.expected = [&](double bytes) { say_memory("the check", bytes * at_once); };
     request.done = [&](double) { progress.end(); };
     found = check(scene, request, SharedWork(out.threads, nullptr, {}, early_end(out.folder.has_value())));
   }

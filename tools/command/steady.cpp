@@ -40,7 +40,8 @@ int run_steady(const SteadyFlags& flags) {
   std::optional<OutputFolder> folder;
   if (out.folder) folder.emplace(*out.folder, "steady", origin);
 
-  const SteadyResult result = steady(scene, request, [&](double seconds) {
+  const SteadyResult result = steady(scene, request, [&](double seconds, double bytes) {
+    say_memory("this speed", bytes);
     say_expected("this speed", seconds, "--modes, --only and --time-limit",
                  request.stability_method == StabilityMethod::determinant);
   });

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "hb/analysis/expected_time.hpp"
 #include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
 #include "lib/scene/scene_reader.hpp"
 #include "tools/command/asked.hpp"
@@ -18,6 +17,7 @@
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
 #include "tools/command/sweep_flags.hpp"
+#include "tools/command/sweep_forecast.hpp"
 #include "tools/output/branches_output.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/motion_input.hpp"
@@ -28,7 +28,6 @@
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
-#include "tools/work/progress.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
 #include "tools/work/sweep_key.hpp"
@@ -43,16 +42,6 @@ void add_bands(const nlohmann::ordered_json& document, const SweepScene& swept, 
     figures.push_back(band_figure(swept.scene(), curves, false));
     figures.back().x_label = quoted(axis_label(swept));
   }
-}
-
-// Shorter points are known by the first of them.
-void say_expected_of(const SweepScene& swept, int threads) {
-  constexpr double long_point = 1;
-  const double each = expected_seconds(swept.first(), swept.settings());
-  if (each < long_point) return;
-  say_expected("the sweep", each * std::ceil(static_cast<double>(swept.axis().values.size()) / threads),
-               "--modes, --only, --threads and --time-limit",
-               swept.settings().stability_method == StabilityMethod::determinant);
 }
 
 int run_sweep_command(const SweepFlags& flags) {
@@ -76,7 +65,7 @@ int run_sweep_command(const SweepFlags& flags) {
   SweepResult result;
   const std::vector<BandRequest> bands_asked = bands_of(flags.bands, flags.theory);
   if (!flags.measured.empty()) (void)read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
-  say_expected_of(swept, out.threads);
+  say_forecast_of(swept, out);
   KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
   if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
   std::vector<SweepBand> bands;

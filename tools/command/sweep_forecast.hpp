@@ -1,0 +1,12 @@
+// What a sweep will take, said on standard error before it begins.
+#pragma once
+
+#include "hb/analysis/sweep/sweep_scene.hpp"
+#include "tools/command/output_flags.hpp"
+
+namespace hb::tools {
+
+// Time where points are long, memory where more is needed than is left.
+void say_forecast_of(const SweepScene& swept, const Output& out);
+
+}  // namespace hb::tools
