@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <string>
 
@@ -35,7 +36,7 @@ std::string refusal(const std::string& elastic) {
 
 TEST(Section, AgreesWithTheIntegralsOverTheArea) {
   // F = int b(y) dy, J = int y^2 b(y) dy by the midpoint rule, b the width at height y.
-  const auto integrals = [](double half, auto&& width) {
+  const auto integrals = [](double half, const std::function<double(double)>& width) {
     constexpr int n = 200000;
     SectionValues sum;
     for (int k = 0; k < n; ++k) {
