@@ -65,6 +65,7 @@ std::string bench_text(const Bench& found) {
     fmt::format_to(out, "  (shooting also gives the Floquet exponents, the others do not)\n");
   }
   fmt::format_to(out, "\nlargest memory of the whole run: {:.0f} MB\n", peak_memory_megabytes());
+  for (const std::string& warning : model.scene.warnings) fmt::format_to(out, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }
 
@@ -79,6 +80,7 @@ Json bench_json(const Bench& found) {
   if (const std::optional<Verdict> verdict = worst_of(found.verdicts)) json["verdict"] = to_string(*verdict);
   json["geometry_seconds"] = found.geometry_seconds;
   json["memory_megabytes"] = peak_memory_megabytes();
+  if (!scene.warnings.empty()) json["warnings"] = scene.warnings;
   json["rods"] = Json::object();
   for (const RodBench& bench : found.rods) {
     Json& rod = json["rods"][bench.name];

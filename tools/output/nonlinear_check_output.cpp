@@ -157,6 +157,7 @@ Json nonlinear_check_json(const SceneModel& model, const std::vector<NonlinearCh
     series += check.seconds_harmonic_balance;
     shooting += check.seconds_shooting;
   }
+  if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
   json["seconds"] = {{"harmonic_balance", series}, {"shooting", shooting}};
   return json;
 }
@@ -174,6 +175,7 @@ std::string nonlinear_check_report(const SceneModel& model, const std::vector<No
     agree = agree && check.agrees();
     complete = complete && compared(check);
   }
+  for (const std::string& warning : model.scene.warnings) add(text, "WARNING: {}\n", warning);
   add(text, "{}\n",
       !agree     ? "The paths DISAGREE."
       : complete ? "The paths agree within the sum of their error bars."
