@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "hb/engine/steady/split_products.hpp"
 #include "lib/constants.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -16,35 +18,6 @@ using Index = Eigen::Index;
 using Real = long double;
 
 constexpr Real real_eps = std::numeric_limits<Real>::epsilon();
-
-// A series split at a grid: high parts are multiples of `grid`, a power of two, so that products of high parts and
-// their sums are exact in double; low = rest. Real and imaginary parts stand apart, harmonics -H..H in a row.
-struct Split {
-  Eigen::VectorXd high_re, high_im, low_re, low_im;
-};
-
-// Coefficients (re, im of harmonics 0..H) of one component, to `bits` bits of the largest.
-Split split(const std::vector<Real>& re, const std::vector<Real>& im, int bits) {
-  const Index H = static_cast<Index>(re.size()) - 1;
-  Split s;
-  for (Eigen::VectorXd* part : {&s.high_re, &s.high_im, &s.low_re, &s.low_im}) part->setZero(2 * H + 1);
-  Real largest = 0;
-  for (std::size_t k = 0; k < re.size(); ++k) largest = std::max({largest, std::abs(re[k]), std::abs(im[k])});
-  if (!(largest > 0)) return s;
-  const Real grid = std::ldexp(Real(1), std::ilogb(largest) + 1 - bits);
-  const auto place = [&](Real value, Index k, Real sign, Eigen::VectorXd& high, Eigen::VectorXd& low) {
-    const Real rounded = std::nearbyint(value / grid) * grid;
-    high(H + k) = static_cast<double>(rounded);
-    low(H + k) = static_cast<double>(value - rounded);
-    high(H - k) = static_cast<double>(sign) * high(H + k);
-    low(H - k) = static_cast<double>(sign) * low(H + k);
-  };
-  for (Index k = 0; k <= H; ++k) {
-    place(re[static_cast<std::size_t>(k)], k, 1, s.high_re, s.low_re);
-    place(im[static_cast<std::size_t>(k)], k, -1, s.high_im, s.low_im);
-  }
-  return s;
-}
 
 Index longest(const std::array<FourierSeries, 3>& powers) {
   Index H = 0;
@@ -91,31 +64,6 @@ Response split_response(const FourierSeries& q, Real unit, int bits) {
   return response;
 }
 
-// The products of one entry of C with one component of q: `exact` sums and the rest of them, harmonics 0..reach.
-struct Products {
-  explicit Products(Index reach) : exact_re(reach + 1), exact_im(reach + 1), rest_re(reach + 1), rest_im(reach + 1) {}
-  Eigen::ArrayXd exact_re, exact_im, rest_re, rest_im;
-
-  // C has harmonics up to `top` of the P that it is split for, q up to H.
-  void multiply(const Split& c, Index top, Index P, const Split& x, Index H) {
-    for (Eigen::ArrayXd* part : {&exact_re, &exact_im, &rest_re, &rest_im}) part->setZero();
-    const Index reach = exact_re.size() - 1;
-    for (Index m = -top; m <= top; ++m) {
-      // rows k with |k - m| <= H
-      const Index first = std::max<Index>(0, m - H), count = std::min(reach, m + H) - first + 1;
-      if (count <= 0) continue;
-      const Index from = H + first - m;
-      const double A = c.high_re(P + m), B = c.high_im(P + m), a = c.low_re(P + m), b = c.low_im(P + m);
-      const auto X = x.high_re.array().segment(from, count), Y = x.high_im.array().segment(from, count);
-      const auto u = x.low_re.array().segment(from, count), v = x.low_im.array().segment(from, count);
-      exact_re.segment(first, count) += A * X - B * Y;
-      exact_im.segment(first, count) += A * Y + B * X;
-      rest_re.segment(first, count) += (A * u - B * v) + (a * (X + u) - b * (Y + v));
-      rest_im.segment(first, count) += (A * v + B * u) + (a * (Y + v) + b * (X + u));
-    }
-  }
-};
-
 // Sums over one row of the system, harmonics 0.., and of the moduli of what was added.
 struct RowSums {
   explicit RowSums(Index rows) : re(static_cast<std::size_t>(rows + 1)), im(re.size()), size(re.size()) {}
@@ -159,7 +107,8 @@ Index last_harmonic(const std::vector<Real>& re, const std::vector<Real>& im) {
 }  // namespace
 
 // sum_m C_m q_{k-m} with C = C^ + c, q = q^ + p split at grids so coarse that sums of products C^ q^ have no
-// rounding in double; C^ p + c q is smaller by 2^-bits and needs double only.
+// rounding in double, or rounding that is known to be less than half of their grid; C^ p + c q is smaller by 2^-bits
+// and needs double only.
 AccurateResidual accurate_residual(const HillSystem& system, double speed, const FourierSeries& q, double scale) {
   const Index I = system.num_modes(), H = q.num_harmonics();
   const Index P = longest(system.stiffness), F = longest(system.load);
@@ -167,8 +116,12 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
   // A power of two, so that q / unit is exact; the rest of the scale is applied to the residual.
   const Real Omega = speed, unit = std::ldexp(Real(1), std::ilogb(scale)), remaining = unit / static_cast<Real>(scale);
   // A sum holds 2 (2P+1) products at most: 2 bits + log2 of that must fit into 53.
-  const int bits = (52 - static_cast<int>(std::ceil(std::log2(4.0 * static_cast<double>(P) + 2)))) / 2;
+  const bool by_transforms = SampledProducts::suits(P, H);
+  const int bits = by_transforms ? SampledProducts::bits
+                                 : (52 - static_cast<int>(std::ceil(std::log2(4.0 * static_cast<double>(P) + 2)))) / 2;
   const Response response = split_response(q, unit, bits);
+  std::optional<SampledProducts> sampled;
+  if (by_transforms) sampled.emplace(response.parts, H + P);
 
   AccurateResidual result{Eigen::MatrixXcd(rows + 1, I), Eigen::MatrixXd(rows + 1, I)};
   std::vector<Real> c_re(static_cast<std::size_t>(P + 1)), c_im(c_re.size());
@@ -179,7 +132,7 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
     combine(system.load, i, Omega, h_re, h_im);
     sums.start(h_re, h_im, unit);
     // Sum over all harmonics of the rounding of C and of the low parts: charged to harmonic 0, where |D| is least.
-    Real total = 0;
+    Real total = 0, of_each = 0;
     for (Index j = 0; j < I; ++j) {
       end_if_wished();
       sums.add_motion(q, j, unit, Omega, system.mass(i, j), system.damping(i, j));
@@ -191,15 +144,22 @@ AccurateResidual accurate_residual(const HillSystem& system, double speed, const
         c_size += 2 * (std::abs(c_re[m]) + std::abs(c_im[m]));
       if (!(c_size > 0)) continue;
       const auto component = static_cast<std::size_t>(j);
-      products.multiply(split(c_re, c_im, bits), top, P, response.parts[component], H);
+      const Split entry = split(c_re, c_im, bits);
+      const Real size = c_size * static_cast<Real>(response.sizes[component]);
+      if (const std::optional<double> error = sampled ? sampled->multiply(entry, component, products) : std::nullopt) {
+        of_each += static_cast<Real>(*error);
+      } else {
+        products.multiply(entry, top, P, response.parts[component], H);
+        total += size * static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits);
+      }
       sums.subtract(products);
-      total += c_size * static_cast<Real>(response.sizes[component]) *
-               (static_cast<Real>(2 * top + 16) * static_cast<Real>(eps) * std::ldexp(Real(1), -bits) + 2 * real_eps);
+      total += 2 * real_eps * size;
     }
     for (Index k = 0; k <= rows; ++k) {
       const auto at = static_cast<std::size_t>(k);
       result.r(k, i) = {static_cast<double>(sums.re[at] * remaining), static_cast<double>(sums.im[at] * remaining)};
-      result.rounding(k, i) = static_cast<double>((4 * real_eps * sums.size[at] + (k == 0 ? total : 0)) * remaining);
+      result.rounding(k, i) =
+          static_cast<double>((4 * real_eps * sums.size[at] + of_each + (k == 0 ? total : 0)) * remaining);
     }
   }
   return result;
