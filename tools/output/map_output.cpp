@@ -19,6 +19,7 @@
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
 #include "tools/output/printable.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -484,7 +485,7 @@ std::string map_summary(const MapDocument& document) {
     text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
   text += boundary_rows(document);
   for (const std::string& warning : map_warnings(document))
-    if (!warning.ends_with("theory not judged: q was not computed")) text += fmt::format("WARNING: {}\n", warning);
+    if (!warning.ends_with(not_judged)) text += fmt::format("WARNING: {}\n", warning);
   return text;
 }
 

@@ -9,6 +9,7 @@
 
 #include "hb/analysis/theory_error.hpp"
 #include "tools/output/output_units.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/wording.hpp"
 
 namespace hb::tools {
@@ -73,7 +74,7 @@ Json theory_sample_json(const MapDocument& document) {
 std::string map_theory_rows(const MapDocument& document) {
   const MapResult& r = document.result;
   if (!is_linkage(document)) return "";
-  if (!r.theory_judged) return "  theory not judged: q was not computed (--only with steady)\n";
+  if (!r.theory_judged) return fmt::format("  {} (--only with steady)\n", not_judged);
   if (r.theory.empty()) return "";
   double largest = 0, growth = 0;
   std::string rod;
@@ -99,8 +100,7 @@ std::vector<std::string> map_theory_warnings(const MapDocument& document) {
   std::vector<std::string> sentences;
   if (!is_linkage(document)) return sentences;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
-    std::string words =
-        r.theory_judged ? beyond_words(document, k) : r.rods[k] + ": theory not judged: q was not computed";
+    std::string words = r.theory_judged ? beyond_words(document, k) : r.rods[k] + ": " + not_judged;
     if (!words.empty()) sentences.push_back(std::move(words));
   }
   const auto above = std::ranges::count_if(r.theory, [&](const TheoryPlace& place) {

@@ -207,7 +207,7 @@ std::string sweep_table(const SweepScene& scene, const SweepResult& result) {
   for (const std::string& sentence : result.shortfalls) add(text, "NOT REACHED: {}\n", sentence);
   for (const std::string& sentence : result.notes) add(text, "NOTE: {}\n", sentence);
   for (const std::string& warning : sweep_warnings(scene, result))
-    if (!warning.ends_with("theory not judged: q was not computed")) add(text, "WARNING: {}\n", warning);
+    if (!warning.ends_with(not_judged)) add(text, "WARNING: {}\n", warning);
   if (!verdict.empty()) add(text, "Verdict: {}\n", verdict);
   return fmt::to_string(text);
 }

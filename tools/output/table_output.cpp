@@ -77,7 +77,7 @@ std::string rough_share(double share) {
 
 void add_theory(Text& text, const std::optional<TheoryErrors>& errors, std::size_t r) {
   if (!errors) {
-    add(text, "  theory not judged: q was not computed\n");
+    add(text, "  {}\n", not_judged);
     return;
   }
   const TheoryErrors::Rod& rod = errors->rods[r];

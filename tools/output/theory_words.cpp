@@ -46,7 +46,7 @@ std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
   for (std::size_t r = 0; r < rods.size(); ++r) {
     const std::string& name = rods[r];
     if (!errors) {
-      sentences.push_back(name + ": theory not judged: q was not computed");
+      sentences.push_back(name + ": " + not_judged);
       continue;
     }
     const std::optional<double>& error = errors->rods[r].q;
@@ -100,7 +100,7 @@ std::vector<std::string> theory_warnings(const SweepScene& scene, const SweepRes
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     const std::string& name = result.rods[r].name;
     if (!has_theory(scene, result)) {
-      sentences.push_back(name + ": theory not judged: q was not computed");
+      sentences.push_back(name + ": " + not_judged);
       continue;
     }
     std::vector<TheoryAlong> places;

@@ -11,6 +11,9 @@
 
 namespace hb::tools {
 
+// How a link's warning ends where there is no theory error to judge by; tables say it once for all links.
+inline constexpr const char* not_judged = "theory not judged: q was not computed";
+
 // One sentence for each elastic link, reported or not, whose answer is beyond the theory or not judged.
 [[nodiscard]] std::vector<std::string> theory_warnings(const SceneModel& model, const SpeedResult& result);
 [[nodiscard]] std::vector<std::string> theory_warnings(const std::vector<std::string>& rods,
