@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "hb/engine/exponents/inexact_eigenvalues.hpp"
+#include "hb/engine/exponents/inexact_roots.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
 #include "lib/stop_wish.hpp"
@@ -21,6 +21,7 @@ using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
 constexpr Index most_unknowns = 1200;  // of the whole half window, and of the core and a block
+constexpr double most_turns = 1e4;  // of the fastest mode: so far are pairs of harmonics looked at
 constexpr double settled = 1e-9;
 // A root of D nearer to s + ik than this leaves the row's divisor and the product of sines, where the two cancel.
 constexpr double near = 0.1;
@@ -41,6 +42,11 @@ cplx log_determinant(const dense::Lu<cplx>& lu) {
   cplx sum(0, lu.sign() < 0 ? pi : 0);
   for (const cplx& pivot : lu.pivots()) sum += std::log(pivot);
   return sum;
+}
+
+// Turns of the fastest mode in one of the crank, about.
+double fastest(const VectorXcd& p, const VectorXcd& p_other) {
+  return std::max(p.cwiseAbs().maxCoeff(), p_other.cwiseAbs().maxCoeff());
 }
 
 }  // namespace
@@ -101,27 +107,36 @@ class HillDeterminant::Matrix {
     return {log_det, 16 * eps * double(A.rows()) / lu.rcond()};
   }
 
-  // -1/2 sum E_ij,m E_ji,-m / (D_i(k) D_j(k - m)) over pairs of harmonics that are not both inside; D ~ -k^2 far out.
+  // -1/2 sum E_ij,m E_ji,-m / (D_i(k) D_j(k - m)) over pairs of harmonics that are not both inside; D ~ -k^2 beyond all
+  // resonances.
   [[nodiscard]] cplx beyond_window(Index H) const {
-    const Index far = 4 * H;
-    MatrixXcd inverse(I_, 2 * (far + P_) + 1);
-    for (Index k = -far - P_; k <= far + P_; ++k)
-      for (Index i = 0; i < I_; ++i) inverse(i, k + far + P_) = 1.0 / D(i, k);
+    const Index far = std::max(4 * H, Index(4 * fastest(p_, p_other_))), all = far + P_;
+    MatrixXcd inverse(2 * all + 1, I_);  // 1/D_i(k), k = -all..all
+    for (Index i = 0; i < I_; ++i)
+      for (Index k = -all; k <= all; ++k) inverse(k + all, i) = 1.0 / D(i, k);
+    // Of harmonics from..to.
+    const auto sum = [&](Index i, Index j, Index m, Index from, Index to) -> cplx {
+      if (to < from) return 0;
+      const Index count = to - from + 1;
+      return inverse.col(i)
+          .segment(from + all, count)
+          .cwiseProduct(inverse.col(j).segment(from - m + all, count))
+          .sum();
+    };
     cplx second = 0;
     double trace = 0;
-    for (Index m = -P_; m <= P_; ++m)
-      for (Index i = 0; i < I_; ++i) {
-        end_if_wished();
+    for (Index m = 0; m <= P_; ++m) {
+      end_if_wished();
+      const double both = m > 0 ? 2 : 1;  // i, j, m and j, i, -m are the same pairs
+      for (Index i = 0; i < I_; ++i)
         for (Index j = 0; j < I_; ++j) {
-          const cplx product = E(i, j, m) * E(j, i, -m);
+          const cplx product = both * E(i, j, m) * E(j, i, -m);
           if (product == 0.0) continue;
-          cplx sum = 0;
-          for (Index k = -far; k <= far; ++k)
-            if (std::abs(k) > H || std::abs(k - m) > H) sum += inverse(i, k + far + P_) * inverse(j, k - m + far + P_);
-          second -= 0.5 * product * sum;
+          // k - m <= H and k >= -H inside.
+          second -= 0.5 * product * (sum(i, j, m, -far, m - H - 1) + sum(i, j, m, H + 1, far));
           trace += product.real();
         }
-      }
+    }
     return second - trace / (3 * std::pow(double(far) + 0.5, 3));
   }
 
@@ -196,38 +211,59 @@ HillDeterminant::Value HillDeterminant::truncated(cplx s, Index H) const {
   return {inside.log + matrix.beyond_window(H) + matrix.sines(), inside.error};
 }
 
-HillDeterminant::Value HillDeterminant::operator()(cplx s) const {
+HillDeterminant::Values HillDeterminant::settled_values(const VectorXcd& s, bool but_for_a_factor) const {
+  Values values;
   Index H = std::max<Index>(P_ + P_ / 2, 16);
-  if (H * I_ > most_unknowns) return {0, HUGE_VAL};
-  Value last = truncated(s, H);
-  while (std::isfinite(last.error)) {
-    H *= 2;
-    if (H * I_ > most_unknowns) return {last.log, HUGE_VAL};
-    Value next = truncated(s, H);
-    const cplx change = next.log - last.log;
-    const double size = std::abs(cplx(change.real(), std::remainder(change.imag(), 2 * pi)));
-    last = next;
-    // Terms of third order fall like H^-5: what is left is a small part of the change.
-    if (size <= settled || 2 * H * I_ > most_unknowns || !std::isfinite(size)) {
-      last.error += size;
-      return last;
+  if (H * I_ > most_unknowns || !(fastest(p_, p_other_) <= most_turns)) return values;
+  VectorXcd log(s.size()), change(s.size());
+  VectorXd rounding(s.size());
+  // False where there is no value.
+  const auto take = [&](Index window) {
+    for (Index m = 0; m < s.size(); ++m) {
+      const Value value = truncated(s(m), window);
+      if (!std::isfinite(value.error)) return false;
+      const cplx step = value.log - log(m);
+      change(m) = cplx(step.real(), std::remainder(step.imag(), 2 * pi));
+      log(m) = value.log;
+      rounding(m) = value.error;
     }
-  }
-  return last;
+    return true;
+  };
+  log.setZero();
+  if (!take(H)) return values;
+  double size = 0;
+  do {
+    H *= 2;
+    if (H * I_ > most_unknowns || !take(H)) return values;
+    if (but_for_a_factor) change.array() -= change.mean();
+    const double before = size;
+    size = change.cwiseAbs().maxCoeff();
+    values.error = rounding.array() + left_by(size, before, H);
+  } while (size > settled && 2 * H * I_ <= most_unknowns);
+  if (std::isfinite(size)) values.log = log;
+  return values;
+}
+
+// Terms of third order fall like H^-5 beyond all resonances: what is left is a small part of the change. Before that
+// they fall slowly.
+double HillDeterminant::left_by(double change, double before, Index H) const {
+  constexpr double beyond = 1.5, slowly = 10;
+  return double(H) >= beyond * fastest(p_, p_other_) ? change : slowly * std::max(change, before);
+}
+
+HillDeterminant::Value HillDeterminant::operator()(cplx s) const {
+  const Values values = settled_values(VectorXcd::Constant(1, s), false);
+  return values.log.size() > 0 ? Value{values.log(0), values.error(0)} : Value{0, HUGE_VAL};
 }
 
 HillDeterminant::Polynomial HillDeterminant::on_circle(double c) const {
   // e^{2 pi I s} F at s = c + i (m + 1/2)/M, three points more than the polynomial has coefficients.
   const Index degree = 2 * I_, M = degree + 4;
-  VectorXcd log_P(M / 2);
-  VectorXd error(M / 2);
-  for (Index m = 0; m < M / 2; ++m) {
-    const cplx s(c, (double(m) + 0.5) / double(M));
-    const Value F = (*this)(s);
-    if (!std::isfinite(F.error)) return {};  // nor do the others help
-    log_P(m) = F.log + cplx(0, 2 * pi * double(I_) * s.imag());
-    error(m) = F.error;
-  }
+  VectorXcd s(M / 2);
+  for (Index m = 0; m < M / 2; ++m) s(m) = cplx(c, (double(m) + 0.5) / double(M));
+  const auto [log, error] = settled_values(s, true);
+  if (log.size() == 0) return {};
+  const VectorXcd log_P = log + cplx(0, 2 * pi * double(I_)) * s.imag();
   const double largest = log_P.real().maxCoeff();
   if (!std::isfinite(largest)) return {};
   const VectorXcd P = (log_P.array() - largest).exp();
@@ -246,20 +282,14 @@ Exponents HillDeterminant::roots_near(double c, const Polynomial& polynomial) co
   Exponents result;
   const Index degree = a.size() - 1;
   if (degree < 1 || !(change < 0.1 * std::abs(a(degree)))) return result;
-  MatrixXd companion = MatrixXd::Zero(degree, degree);
-  companion.diagonal(-1).setOnes();
-  companion.col(degree - 1) = -a.head(degree) / a(degree);
-  // Of the last column: changes of the coefficients and of the one that they are divided by.
-  const double column = change / std::abs(a(degree)) * (1 + companion.col(degree - 1).norm());
-  const InexactEigenvalues roots = inexact_eigenvalues(companion, 1.2 * column);
+  const InexactRoots roots = inexact_roots(a, 1.2 * change);
   for (Index j = 0; j < degree; ++j) {
     const double size = std::abs(roots.value(j)), radius = roots.radius(j);
-    if (radius < size / 2)
+    if (std::isfinite(radius))
       result.add({c + std::log(size) / (2 * pi), std::arg(roots.value(j)) / (2 * pi)},
                  radius / (2 * pi * (size - radius)));
-    else
-      result.others_below = std::max(result.others_below, c + std::log(size + radius) / (2 * pi));
   }
+  if (roots.rest > 0) result.others_below = c + std::log(roots.rest) / (2 * pi);
   return result;
 }
 
@@ -296,10 +326,10 @@ std::optional<int> HillDeterminant::exponents_above(double c) const {
 Exponents HillDeterminant::exponents() const {
   double c = std::max(p_.real().maxCoeff(), p_other_.real().maxCoeff());
   Exponents result;
-  if (!std::isfinite((*this)(cplx(c, 0.25)).error)) return result;  // too large, or it does not settle
   constexpr int most_circles = 6;
-  for (int circle = 0; circle < most_circles; ++circle) {
+  for (int circle = 0, lost = 0; circle < most_circles; ++circle) {
     const Polynomial polynomial = on_circle(c);
+    if (polynomial.a.size() == 0) return result;
     result = roots_near(c, polynomial);
     // Values so inexact serve on no circle.
     if (result.s.empty() && !(polynomial.value_error * double(2 * I_ + 1) < 0.1)) return result;
@@ -310,6 +340,7 @@ Exponents HillDeterminant::exponents() const {
       continue;
     }
     if (std::abs(leading - c) < 0.02 && !result.s.empty()) break;
+    if (result.s.empty() && ++lost > 1) break;
     c = leading;
   }
   return result;

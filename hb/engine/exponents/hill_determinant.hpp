@@ -39,6 +39,11 @@ class HillDeterminant {
   std::optional<int> exponents_above(double c) const;
 
  private:
+  // Of the same harmonics at several s; empty: not found. Errors relative, of all values or but for a common factor.
+  struct Values {
+    Eigen::VectorXcd log;
+    Eigen::VectorXd error;
+  };
   // sum a_r (z e^{-2 pi c})^r, scaled; |error| <= change at every point of the circle. Empty a: not found.
   struct Polynomial {
     Eigen::VectorXd a;
@@ -47,6 +52,8 @@ class HillDeterminant {
   };
   class Matrix;
   Value truncated(std::complex<double> s, Eigen::Index H) const;
+  double left_by(double change, double before, Eigen::Index H) const;
+  Values settled_values(const Eigen::VectorXcd& s, bool but_for_a_factor) const;
   Polynomial on_circle(double c) const;
   Exponents roots_near(double c, const Polynomial& polynomial) const;
 
