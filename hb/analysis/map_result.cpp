@@ -1,5 +1,7 @@
 #include "hb/analysis/map_result.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -71,9 +73,25 @@ std::size_t boundary_points_not_reached(const MapResult& result) {
 
 namespace {
 
+// Parts of several rods take differently.
+std::string kind_of_rod(const std::string& kind, std::size_t rod) { return fmt::format("{} of rod {}", kind, rod); }
+
+PartsAhead of_rod(PartsAhead parts, std::size_t rod) {
+  for (auto& [kind, count] : parts) kind = kind_of_rod(kind, rod);
+  return parts;
+}
+
+// `left`: of all maps of the same work; each knows its own kinds by its number.
 StabilityMapSearch rod_search(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
-                              MapOptions search) {
+                              MapOptions search, const std::function<PartsAhead()>& left = {}) {
   search.varies = plane.varies(rod);
+  if (search.parts)
+    search.parts = [rod, left, outer = search.parts](const Parts& parts) {
+      Parts own = parts;
+      if (!parts.kind.empty()) own.kind = kind_of_rod(parts.kind, rod);
+      if (left) own.ahead = left();
+      outer(own);
+    };
   return stability_map_search([&plane, rod](double u, double v) { return plane.system(rod, u, v); }, std::move(x),
                               std::move(y), search);
 }
@@ -82,10 +100,19 @@ StabilityMapSearch rod_search(const ScenePlane& plane, std::size_t rod, std::vec
 
 StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x, std::vector<double> y,
                      const MapOptions& search) {
-  const StabilityMapSearch one = rod_search(plane, rod, std::move(x), std::move(y), search);
+  StabilityMapSearch one;
+  one = rod_search(plane, rod, std::move(x), std::move(y), search, [&] { return of_rod(one.left(), rod); });
   one.begin();
   one.finish();
   return one.result();
+}
+
+PartsAhead parts_of_maps(const ScenePlane& plane, const std::vector<double>& x, const std::vector<double>& y,
+                         const MapOptions& search) {
+  PartsAhead all;
+  for (std::size_t r = 0; r < plane.rods().size(); ++r)
+    for (auto& kind : of_rod(rod_search(plane, r, x, y, search).left(), r)) all.push_back(std::move(kind));
+  return all;
 }
 
 std::vector<RodCurve> worst_boundaries(const ScenePlane& plane, const std::vector<StabilityMap>& maps,
@@ -145,7 +172,14 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
   result.y_axis = y_axis;
   result.rods = plane.rods();
   std::vector<StabilityMapSearch> searches;
-  for (std::size_t r = 0; r < result.rods.size(); ++r) searches.push_back(rod_search(plane, r, x, y, search));
+  const auto left = [&] {
+    PartsAhead all;
+    for (std::size_t r = 0; r < searches.size(); ++r)
+      for (auto& kind : of_rod(searches[r].left(), r)) all.push_back(std::move(kind));
+    return all;
+  };
+  for (std::size_t r = 0; r < result.rods.size(); ++r) searches.push_back(rod_search(plane, r, x, y, search, left));
+  for (const StabilityMapSearch& one : searches) one.sample();
   for (const StabilityMapSearch& one : searches) one.begin();
   for (const StabilityMapSearch& one : searches) one.finish();
   for (const StabilityMapSearch& one : searches) result.maps.push_back(one.result());

@@ -65,6 +65,10 @@ struct MapResult {
 [[nodiscard]] StabilityMap rod_map(const ScenePlane& plane, std::size_t rod, std::vector<double> x,
                                    std::vector<double> y, const MapOptions& search);
 
+// What the maps of all rods take, before they are begun.
+[[nodiscard]] PartsAhead parts_of_maps(const ScenePlane& plane, const std::vector<double>& x,
+                                       const std::vector<double>& y, const MapOptions& search);
+
 // Everything but the bands.
 [[nodiscard]] MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vector<double> x,
                                     const PlaneAxis& y_axis, std::vector<double> y, const MapOptions& search);

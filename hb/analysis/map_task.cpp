@@ -87,8 +87,20 @@ MapTask::MapTask(const SceneFamily& family, const MapRequest& request, const Wor
 Map MapTask::compute(Work& work) const {
   const std::vector<double>&x = request_.x.values, &y = request_.y.values;
   MapOptions search = map_options(settings_);
+  MapOptions curves = search;
+  curves.curves_only = true;
+  PartsAhead of_an_end, later;
+  if (!ends_.empty()) of_an_end = parts_of_maps(*plane_, x, y, curves);
+  constexpr double longer = 2;  // measured of half and twice the damping: 1.5 to 2 for each edge, and what follows
+  for (auto& [kind, count] : of_an_end) count *= longer;
+  for (std::size_t end = 0; end < ends_.size(); ++end) later.insert(later.end(), of_an_end.begin(), of_an_end.end());
   int steps = 0;  // how many there will be shows as the cells are halved
-  search.parts = [&](const Parts& parts) { work.step(fmt::format("stability map, step {}", ++steps), parts); };
+  search.parts = [&](const Parts& parts) {
+    Parts all = parts;
+    all.ahead.insert(all.ahead.end(), later.begin(), later.end());
+    work.step(fmt::format("stability map, step {}", ++steps), all);
+  };
+  curves.parts = search.parts;
   Map map{compute_map(*plane_, x_axis_, x, y_axis_, y, search),
           plane_->scene(),
           settings_,
@@ -100,10 +112,12 @@ Map MapTask::compute(Work& work) const {
   if (request_.band) map.band_of = request_.band->parameter;
   for (std::size_t end = 0; end < ends_.size(); ++end) {
     const ScenePlane plane(ends_[end], x_axis_, y_axis_, options_);
-    MapOptions curves = search;
-    curves.curves_only = true;
+    const std::size_t num_rods = plane.rods().size();
     std::vector<StabilityMap> maps;
-    for (std::size_t r = 0; r < plane.rods().size(); ++r) maps.push_back(rod_map(plane, r, x, y, curves));
+    for (std::size_t r = 0; r < num_rods; ++r) {
+      later.erase(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(of_an_end.size() / num_rods));
+      maps.push_back(rod_map(plane, r, x, y, curves));
+    }
     map.band.push_back({factors_[end], worst_boundaries(plane, maps, search)});
   }
   Settings settings = settings_;

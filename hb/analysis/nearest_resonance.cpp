@@ -50,6 +50,17 @@ std::optional<NearestResonance> nearest_resonance(const HillSystem& system, doub
   return nearest;
 }
 
+// Amplitudes 2 |c_k| against the bound on max |q|, of which sum_k 2 |c_k| is not less.
+int highest_harmonic(const SteadyState& response) {
+  const Eigen::MatrixXcd& c = response.q.c;
+  Eigen::VectorXd amplitudes = Eigen::VectorXd::Zero(c.cols());
+  for (Index k = 0; k < c.cols(); ++k) amplitudes(k) = (k == 0 ? 1 : 2) * c.col(k).cwiseAbs().maxCoeff();
+  const double error = response.error_bound * amplitudes.sum();
+  Index order = std::max<Index>(0, c.cols() - 1);
+  while (order > 0 && !(amplitudes(order) > error)) --order;
+  return static_cast<int>(order);
+}
+
 std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Index num_modes, double speed) {
   const FourierSeries C = stiffness_at(system, speed), h = load_at(system, speed);
   const Index I = system.num_modes();

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "hb/engine/steady/steady_state.hpp"
 #include "lib/hill_system.hpp"
 
 namespace hb {
@@ -21,6 +22,9 @@ struct NearestResonance {
 // Where r = n: of all orders n >= 1 the one whose speed is nearest; empty where none is found (no positive mean
 // stiffness, more than 60 unknowns).
 [[nodiscard]] std::optional<NearestResonance> nearest_resonance(const HillSystem& system, double speed);
+
+// The highest harmonic of a response that is above its error: resonances of higher orders it does not meet. 0: none.
+[[nodiscard]] int highest_harmonic(const SteadyState& response);
 
 // q_1..q_num_modes at equally spaced crank angles (columns) of the solution of C(tau; Omega) u = h(tau; Omega) at each
 // crank angle by itself; u is q, or with shear its two parts (lib/rod/shear.hpp). Empty without a load, where C is

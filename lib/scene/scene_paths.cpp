@@ -224,8 +224,7 @@ toml::table parse_value(const Override& change) {
   }
   const std::size_t comma = change.value.find(',');
   throw SceneError(
-      fmt::format("{}: {}: found {}, allowed a TOML value: a number, \"text\" or a list{}", label(change),
-                  printable(change.path, 100),
+      fmt::format("{}: found {}, allowed a TOML value: a number, \"text\" or a list{}", label(change),
                   change.value.empty() ? "nothing" : fmt::format("\"{}\"", printable(change.value, 100)),
                   comma == std::string::npos || change.value.front() == '[' ? "" : "; the decimal point is a point"));
 }
@@ -240,7 +239,7 @@ toml::table parse_value(const Override& change) {
   for (const std::string& path : known) {
     if (parts_of(path)[0] == first) same.push_back(path);
   }
-  throw SceneError(fmt::format("{}: {}: found no such number{}, allowed {}", label(change), printable(change.path, 100),
+  throw SceneError(fmt::format("{}: found no such number{}, allowed {}", label(change),
                                near.empty() ? "" : " (" + near + " meant?)", joined(same.empty() ? known : same)));
 }
 

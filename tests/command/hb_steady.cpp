@@ -397,11 +397,13 @@ TEST_F(Steady, AnswersNearlyAtRest) {
 TEST_F(Steady, SaysBeforehandThatItWillNotFitIntoMemory) {
   const std::string limit = "ulimit -v 600000;", crank = scene("slider_crank") + " --time-limit 1";
   const std::string near = crank + " --set crank.length=144.9 --modes 30";
-  EXPECT_NE(hb("steady " + near, limit).err.find("hb: this speed needs about 1.3 GB"), std::string::npos);
-  EXPECT_NE(hb("check " + near + " --case-limit 0.1", limit).err.find("hb: the check needs about"), std::string::npos);
-  EXPECT_NE(hb("sweep " + near + " --rpm 300:600:x4", limit).err.find("hb: the sweep needs about"), std::string::npos);
+  EXPECT_NE(hb("steady " + near, limit).err.find("hb steady: this speed needs about 1.3 GB"), std::string::npos);
+  EXPECT_NE(hb("check " + near + " --case-limit 0.1", limit).err.find("hb check: the check needs about"),
+            std::string::npos);
+  EXPECT_NE(hb("sweep " + near + " --rpm 300:600:x4", limit).err.find("hb sweep: the sweep needs about"),
+            std::string::npos);
   const std::string long_one = scene("six_link") + " --time-limit 0.2 --no-search --only stability --rpm 300:3000:";
-  EXPECT_NE(hb("sweep " + long_one + "x90000 --modes 30 --json", limit).err.find("hb: the sweep needs about"),
+  EXPECT_NE(hb("sweep " + long_one + "x90000 --modes 30 --json", limit).err.find("hb sweep: the sweep needs about"),
             std::string::npos);
   EXPECT_EQ(hb("sweep " + long_one + "x90 --modes 3", limit).err.find("needs about"), std::string::npos);
   EXPECT_EQ(hb("steady " + crank, limit).err.find("needs about"), std::string::npos);
@@ -413,7 +415,7 @@ TEST_F(Steady, TheMemorySaidIsThatMeasured) {
 #endif
   const std::string run =
       "steady " + scene("slider_crank") + " --set crank.length=144.9 --modes 20 --rpm 300 --only shape";
-  const std::string before = "hb: this speed needs about ", text = hb(run, "ulimit -v 500000;").err;
+  const std::string before = "hb steady: this speed needs about ", text = hb(run, "ulimit -v 500000;").err;
   const std::size_t at = text.find(before);
   ASSERT_NE(at, std::string::npos) << text;
   ASSERT_EQ(hb(run).status, 0);
@@ -428,8 +430,8 @@ TEST_F(Steady, TheMemorySaidIsThatMeasured) {
 TEST_F(Steady, SaysBeforehandWhatALongSpeedWillTake) {
   ASSERT_EQ(hb("new slider-crank crank.toml").status, 0);
   const std::string near = " crank.toml --set 'crank.length=144.999 mm' --time-limit 0.5";
-  EXPECT_NE(hb("steady" + near).err.find("hb: this speed takes about"), std::string::npos);
-  EXPECT_NE(hb("sweep" + near + " --rpm 300:600:100").err.find("hb: the sweep takes about"), std::string::npos);
+  EXPECT_NE(hb("steady" + near).err.find("hb steady: this speed takes about"), std::string::npos);
+  EXPECT_NE(hb("sweep" + near + " --rpm 300:600:100").err.find("hb sweep: the sweep takes about"), std::string::npos);
   EXPECT_NE(hb("steady crank.toml --stability-method determinant --time-limit 0.5").err.find("takes at most about"),
             std::string::npos);
   EXPECT_EQ(hb("steady crank.toml").err.find("takes"), std::string::npos);

@@ -42,7 +42,7 @@ const std::string swing = "hill.stiffness.1.cos.0.0";
 TEST_F(Map, SaysBeforehandThatItsPointsWillNotFit) {
   const std::string limit = "ulimit -v 400000;", flags = " --modes 1 --time-limit 0.2 --x rpm=300:1900:";
   const std::string large = scene("six_link") + flags + "4000 --y '*.J=30:60:4000'";
-  EXPECT_NE(hb("map " + large, limit).err.find("hb: the map needs about 1.2 GB"), std::string::npos);
+  EXPECT_NE(hb("map " + large, limit).err.find("hb map: the map needs about 1.2 GB"), std::string::npos);
   const std::string small = scene("six_link") + flags + "40 --y '*.J=30:60:40'";
   EXPECT_EQ(hb("map " + small, limit).err.find("needs about"), std::string::npos);
 }

@@ -276,7 +276,7 @@ const std::vector<Misuse> misuses = {
      {},
      "sweep scene.toml --rpm 1:1000000:1 --modes 1 --no-search --time-limit 3",
      3,
-     {"hb: sweep takes about", "--time-limit"}},
+     {"hb sweep: the sweep takes about", "--time-limit"}},
     // Words
     {"nothing_asked",
      {},

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "tests/support/run_command.hpp"
+#include "tools/work/forecast.hpp"
 #include "tools/work/progress.hpp"
 
 namespace {
@@ -41,6 +42,16 @@ TEST_F(Words, ANearestResonanceIsThatOfTheLowestMode) {
   const double omega_1 = std::sqrt(1.5 - std::sqrt(0.25 + 0.09));
   EXPECT_EQ(nearest["order"], 2);
   EXPECT_NEAR(nearest["omega"], omega_1 / 2, 1e-9);
+}
+
+// Far below all resonances one of order 278 was named, of which nothing is in the response.
+TEST_F(Words, AResonanceOfAnOrderThatTheResponseDoesNotHaveIsNone) {
+  const std::string slow = "steady " + scene("six_link") + " --rpm 10 --modes 2";
+  expect(said(slow), {"resonance         none: omega_1 is about ", "the response has harmonics up to "}, {"nearest"});
+  EXPECT_EQ(Json::parse(said(slow + " --json"))["rods"]["AB"]["nearest_resonance"]["in_response"], false);
+  const std::string fast = "steady " + scene("six_link") + " --rpm 1500 --modes 2";
+  expect(said(fast), {"resonance         nearest "}, {"resonance         none"});
+  EXPECT_EQ(Json::parse(said(fast + " --json"))["rods"]["AB"]["nearest_resonance"]["in_response"], true);
 }
 
 // A peak was named after the mode as followed from point to point: 3 Omega with a coarse step, 2 Omega with a fine one.
@@ -161,7 +172,29 @@ TEST_F(Words, AMeanThatItsErrorHidesIsZero) {
 TEST(Progress, WhatIsLeftOfALaterStepIsNotCalledWhatIsLeft) {
   EXPECT_EQ(hb::tools::progress_line("sweep", 30, 120, 2, 0), "sweep: 30 of 120 (25 %), 6 s left");
   EXPECT_EQ(hb::tools::progress_line("stability map, step 3", 448, 14096, 10, 60),
-            "stability map, step 3: 448 of 14096 (3 %), 5 min left of this step; 70 s so far");
+            "stability map, step 3: 448 of 14096 (3 %), 5.1 min left of this step; 70 s so far");
+}
+
+// The sentence was of each step alone, by its first parts: a wild map was said to take six minutes, or nothing was
+// said.
+TEST(Forecast, IsOfAllStepsByThePartsOfEachKind) {
+  double now = 0;
+  hb::tools::Forecast forecast("the map", 1, false, [&now] { return now; });
+  const auto said = [&](auto&& work) {
+    testing::internal::CaptureStderr();
+    work();
+    return testing::internal::GetCapturedStderr();
+  };
+  forecast.begin(10, 0, "node", {{"node", 90}, {"edge", 200}});
+  EXPECT_EQ(said([&] { now = 0.1, forecast.advance(10); }), "");
+  forecast.begin(20, 0, "edge", {{"node", 90}, {"edge", 180}, {"curve point", 10}});
+  EXPECT_EQ(
+      said([&] { now = 1.1, forecast.advance(10); }),
+      "hb: the map takes about 21 s (1 thread); --threads and --time-limit change that\n");  // 1.1 + 190 x 0.1 + 0.9
+  EXPECT_EQ(said([&] { now = 2.1, forecast.advance(10); }), "");
+  forecast.begin(180, 90, "edge", {});  // half of them are known from an earlier run
+  EXPECT_EQ(said([&] { now = 12.1, forecast.advance(10); }),
+            "hb: the map takes about 44 s, as later parts show (1 thread); --threads and --time-limit change that\n");
 }
 
 // Imaginary parts were folded to half the speed without a word; a mode of 88 Hz was shown as 0.3 rad/s.
@@ -188,10 +221,10 @@ TEST_F(Words, ExponentsAreShownWithTheFrequencyOfTheMotion) {
 
 // "resonance 0.0881 away" stood there for a healthy machine.
 TEST_F(Words, ResonanceIsSaidAsSpeedAndAmplification) {
-  const std::string text = said("steady " + scene("slider_crank") + " --rpm 600 --modes 2");
+  const std::string text = said("steady " + scene("slider_crank") + " --rpm 3000 --modes 2");
   expect(text, {"nearest ", "Omega = omega_1 at ", "rpm", "amplification"}, {"away (1: far"});
   // A rod driven far below its first frequency follows its load.
-  const Json rod = Json::parse(said("steady " + scene("slider_crank") + " --rpm 600 --modes 2 --json"))["rods"]["rod"];
+  const Json rod = Json::parse(said("steady " + scene("slider_crank") + " --rpm 3000 --modes 2 --json"))["rods"]["rod"];
   EXPECT_NEAR(rod["amplification"].get<double>(), 1, 0.2);
   const Json& nearest = rod["nearest_resonance"];
   EXPECT_NEAR(nearest["frequency"].get<double>(), nearest["order"].get<double>() * nearest["omega"].get<double>(),

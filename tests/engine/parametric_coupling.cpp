@@ -35,13 +35,30 @@ HillSystem one_mode(double mean, double damping, int harmonic, double amplitude)
 }
 
 TEST(ParametricCoupling, CoversATongueOfHighOrder) {
-  constexpr int order = 150;
-  const HillSystem system = one_mode(1, 1e-5, order, 0.05);
-  const double centre = 2.0 / order;
-  const double truth = excitement(system, 0.99 * centre, 1.01 * centre, 0.5e-5 / centre);
-  EXPECT_GT(truth, 1);
-  EXPECT_GE(ParametricCoupling(scale_system(system, centre), SweepOptions().max_order)(0, 1, order), truth);
-  EXPECT_EQ(ParametricCoupling(scale_system(system, centre), order - 1)(0, 1, order), 0);
+  // By the harmonic of that order itself, as far as orders are looked at and not beyond.
+  for (const int order : {40, 150, 400}) {
+    const HillSystem system = one_mode(1, 1e-5, order, 0.05);
+    const double centre = 2.0 / order;
+    const double truth = excitement(system, 0.99 * centre, 1.01 * centre, 0.5e-5 / centre);
+    EXPECT_GT(truth, 0.25) << order;
+    const double told = ParametricCoupling(scale_system(system, centre), order)(0, 1, order);
+    EXPECT_GE(told, truth) << order;
+    EXPECT_LE(told, 10 * truth) << order;
+    EXPECT_EQ(ParametricCoupling(scale_system(system, centre), order - 1)(0, 1, order), 0) << order;
+  }
+}
+
+// No harmonic has the order itself: two of them add up to it.
+TEST(ParametricCoupling, CoversATongueOfHighOrderWhereHarmonicsAddUpToIt) {
+  for (const int order : {40, 120, 300}) {
+    const HillSystem system = one_mode(1, 1e-6, order / 2, 0.1);
+    const double centre = 2.0 / order;
+    const double truth = excitement(system, 0.97 * centre, 1.01 * centre, 0.5e-6 / centre);
+    EXPECT_GT(truth, 0.02) << order;
+    const double told = ParametricCoupling(scale_system(system, centre), order)(0, 1, order);
+    EXPECT_GE(told, truth) << order;
+    EXPECT_LE(told, 30 * truth) << order;
+  }
 }
 
 // Modes 1 and 2 meet by order 4; neither harmonic couples them, but each is coupled to mode 3, with which mode 2 is

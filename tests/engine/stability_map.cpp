@@ -319,6 +319,48 @@ TEST(StabilityMap, SameBitsInWhateverOrderAndThreadTheWorkIsDone) {
   }
 }
 
+// A few edges before all others tell how long the rest takes, and are not computed again.
+TEST(StabilityMap, IsTheSameAfterASample) {
+  const std::vector<double> x = spaced(1.8, 3.8, 9), y = spaced(0, 0.4, 7);
+  MapOptions options;
+  options.sag = 0.01;
+  const StabilityMap plain = stability_map(coupled_map(0.06), x, y, options);
+  std::vector<std::string> kinds;
+  double edges = 0;
+  options.parts = [&](const Parts& parts) {
+    kinds.push_back(parts.kind);
+    if (parts.kind == "edge") edges += static_cast<double>(parts.count);
+    for (std::size_t k = 0; k < parts.count; ++k) parts.compute(k);
+  };
+  const StabilityMapSearch search = stability_map_search(coupled_map(0.06), x, y, options);
+  const auto left = [&](const char* kind) {
+    for (const auto& [name, count] : search.left())
+      if (name == kind) return count;
+    return -1.0;
+  };
+  const double first = left("edge");
+  search.sample();
+  ASSERT_EQ(kinds.size(), 2u);
+  EXPECT_EQ(kinds[1], "edge");
+  EXPECT_LT(edges, first / 4);
+  EXPECT_GT(left("edge"), first);  // what its crossings will take is in it
+  search.begin();
+  search.finish();
+  for (const auto& [kind, count] : search.left()) EXPECT_EQ(count, 0) << kind;
+  const StabilityMap sampled = search.result();
+  EXPECT_EQ(sampled.samples, plain.samples);
+  ASSERT_EQ(sampled.boundaries.size(), plain.boundaries.size());
+  for (std::size_t c = 0; c < plain.boundaries.size(); ++c) {
+    ASSERT_EQ(sampled.boundaries[c].points.size(), plain.boundaries[c].points.size());
+    for (std::size_t k = 0; k < plain.boundaries[c].points.size(); ++k) {
+      EXPECT_EQ(sampled.boundaries[c].points[k].x, plain.boundaries[c].points[k].x);
+      EXPECT_EQ(sampled.boundaries[c].points[k].y, plain.boundaries[c].points[k].y);
+    }
+  }
+  for (std::size_t p = 0; p < plain.points.size(); ++p)
+    EXPECT_EQ(sampled.points[p].growth_rate, plain.points[p].growth_rate);
+}
+
 // The same map, from an eighth of the places.
 TEST(StabilityMap, OneLineServesAllAlongAnAxisOnWhichTheSystemDoesNotDepend) {
   const std::vector<double> speeds = spaced(0.8, 3.8, 15), others = spaced(0, 1, 10);

@@ -333,19 +333,19 @@ TEST(SceneErrors, OverridesAreNamedInPlaceOfTheLine) {
   };
   expect("AB.J", "-3", "AB.J=-3: AB.elastic.J: found -3");
   expect("AB.J", "nan", "AB.J=nan: AB.elastic.J: found nan");
-  expect("AB.J", "", "AB.J=: AB.J: found nothing");
-  expect("AB.J", "1 2", "AB.J=1 2: AB.J: found \"1 2\"");
-  expect("AB.J", "1\nx = 2", "AB.J=1?x = 2: AB.J: found");
-  expect("AB.j", "1", "AB.j=1: AB.j: found no such number (AB.J meant?)");
-  expect("CD.J", "1", "CD.J=1: CD.J: found no such number");  // rigid
-  expect("*.gravity", "1", "*.gravity=1: *.gravity: found no such number");
-  expect("OB.pivot.2", "1", "OB.pivot.2=1: OB.pivot.2: found no such number (OB.pivot.0 meant?)");
-  expect("OB.pivot.-1", "1", "OB.pivot.-1=1: OB.pivot.-1: found no such number");
-  expect("OB.pivot.x", "1", "OB.pivot.x=1: OB.pivot.x: found no such number");
-  expect("", "1", "=1: : found no such number");
-  expect("...", "1", "...=1: ...: found no such number");
-  expect("AB", "1", "AB=1: AB: found no such number");
-  expect("dyad.7.branch", "1", "dyad.7.branch=1: dyad.7.branch: found no such number");
+  expect("AB.J", "", "AB.J=: found nothing");
+  expect("AB.J", "1 2", "AB.J=1 2: found \"1 2\"");
+  expect("AB.J", "1\nx = 2", "AB.J=1?x = 2: found");
+  expect("AB.j", "1", "AB.j=1: found no such number (AB.J meant?)");
+  expect("CD.J", "1", "CD.J=1: found no such number");  // rigid
+  expect("*.gravity", "1", "*.gravity=1: found no such number");
+  expect("OB.pivot.2", "1", "OB.pivot.2=1: found no such number (OB.pivot.0 meant?)");
+  expect("OB.pivot.-1", "1", "OB.pivot.-1=1: found no such number");
+  expect("OB.pivot.x", "1", "OB.pivot.x=1: found no such number");
+  expect("", "1", "=1: found no such number");
+  expect("...", "1", "...=1: found no such number");
+  expect("AB", "1", "AB=1: found no such number");
+  expect("dyad.7.branch", "1", "dyad.7.branch=1: found no such number");
   expect("analysis.modes", "2.5", "analysis.modes=2.5: analysis.modes: found 2.5");
   expect("units.length", "furlong", "units.length=furlong: units.length: found \"furlong\"");
 

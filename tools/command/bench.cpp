@@ -18,6 +18,7 @@
 #include "tools/output/json_output.hpp"
 #include "tools/output/output_folder.hpp"
 #include "tools/pictures/bench_figures.hpp"
+#include "tools/work/forecast.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/progress.hpp"
 
@@ -52,7 +53,8 @@ int run_bench(const BenchFlags& flags) {
   request.told = [&](std::size_t, std::size_t total) {
     if (!progress) {
       progress.emplace("cases", total);
-      forecast.emplace("the benchmark", total, 1);
+      forecast.emplace("the benchmark", 1);
+      forecast->begin(total);
     }
     progress->advance();
     forecast->advance();

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "hb/engine/time/time_integration.hpp"
-#include "tools/work/progress.hpp"
+#include "tools/work/forecast.hpp"
 
 namespace hb::tools {
 

@@ -7,6 +7,7 @@
 #include "tools/command/command.hpp"
 #include "tools/command/flag_values.hpp"
 #include "tools/command/scene_input.hpp"
+#include "tools/output/speaker.hpp"
 #include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
@@ -23,7 +24,7 @@ void start_time_limit(const CommonFlags& flags) {
   if (flags.time_limit.empty()) return;
   const double seconds = seconds_flag("--time-limit", flags.time_limit, 1e8);
   const std::string note = fmt::format("the time limit of {:g} s was reached before there was an answer", seconds);
-  end_after(seconds, exit_not_reached, fmt::format("hb: {}\n", note),
+  end_after(seconds, exit_not_reached, fmt::format("{}: {}\n", speaker(), note),
             flags.json ? fmt::format("{{\"status\":\"tolerance not reached\",\"notes\":[\"{}\"]}}\n", note) : "");
 }
 

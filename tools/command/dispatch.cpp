@@ -22,6 +22,7 @@
 #include "tools/command/compare.hpp"
 #include "tools/command/version.hpp"
 #include "tools/output/printable.hpp"
+#include "tools/output/speaker.hpp"
 #include "tools/work/ranks.hpp"
 
 namespace hb::tools {
@@ -73,10 +74,11 @@ constexpr Command commands[] = {
     {"compare", add_compare_command}, {"fit", add_fit_command},
 };
 
-// The one that is asked for; the flags of all others would take longer to set up than many an answer. All where none
-// of them is.
-void add_commands(CLI::App& app, std::string_view asked, int& status) {
+// The one that is asked for, which speaks from here on; the flags of all others would take longer to set up than many
+// an answer. All where none of them is.
+void add_commands(CLI::App& app, const std::string& asked, int& status) {
   const bool known = std::ranges::find(commands, asked, &Command::name) != std::end(commands);
+  speak_as(known ? asked : "");
   for (const Command& command : commands)
     if (!known || command.name == asked) command.add(app, status);
 }
@@ -84,7 +86,7 @@ void add_commands(CLI::App& app, std::string_view asked, int& status) {
 }  // namespace
 
 int say(int status, const std::string& what) {
-  fmt::print(stderr, "hb: {}\n", printable(what));
+  fmt::print(stderr, "{}: {}\n", speaker(), printable(what));
   return status;
 }
 

@@ -5,7 +5,7 @@
 
 namespace hb::tools {
 
-// "hb: WHAT" on standard error; gives `status`.
+// "hb steady: WHAT" on standard error, see speaker.hpp; gives `status`.
 int say(int status, const std::string& what);
 
 // The exit code of the subcommand, or that of what is wrong.

@@ -18,8 +18,8 @@
 #include "tools/output/output_folder.hpp"
 #include "tools/output/table_output.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/work/forecast.hpp"
 #include "tools/work/map_key.hpp"
-#include "tools/work/progress.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
 

@@ -78,7 +78,7 @@ int run_report(const ReportFlags& flags) {
 
   // A page whose file is not there yet: Ctrl-C leaves nothing, the end of the time what there is.
   std::optional<InterruptGuard> guard(std::in_place, false);
-  SharedWork work(out.threads, nullptr, {}, time_is_up);
+  SharedWork work(out.threads, nullptr, {}, time_is_up, "the page");
   const SweepResult result = run_sweep(*along, work);
   std::optional<NonlinearSweep> found;
   if (nonlinear) found = nonlinear_sweep(*along, branches_asked);

@@ -24,7 +24,7 @@
 #include "tools/output/table_output.hpp"
 #include "tools/pictures/band_figures.hpp"
 #include "tools/report/report_data.hpp"
-#include "tools/work/progress.hpp"
+#include "tools/work/forecast.hpp"
 
 namespace hb::tools {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "hb/analysis/expected_memory.hpp"
 #include "hb/analysis/expected_time.hpp"
-#include "tools/work/progress.hpp"
+#include "tools/work/forecast.hpp"
 
 namespace hb::tools {
 namespace {

@@ -20,8 +20,8 @@
 #include "tools/output/tune_output.hpp"
 #include "tools/pictures/tune_pictures.hpp"
 #include "tools/report/design_page.hpp"
+#include "tools/work/forecast.hpp"
 #include "tools/work/interrupts.hpp"
-#include "tools/work/progress.hpp"
 #include "tools/work/shared_work.hpp"
 
 namespace hb::tools {
@@ -31,7 +31,8 @@ namespace {
 std::function<void(int, bool, double)> progress_of(const TuneFlags& flags, int most, int threads) {
   const double sign = flags.maximise.empty() ? 1 : -1;
   const bool shown = isatty(STDERR_FILENO) != 0;
-  const auto forecast = std::make_shared<Forecast>("the search", static_cast<std::size_t>(most), threads, true);
+  const auto forecast = std::make_shared<Forecast>("the search", threads, true);
+  forecast->begin(static_cast<std::size_t>(most));
   return [sign, shown, forecast, done = 0](int evaluations, bool feasible, double goal) mutable {
     forecast->advance(static_cast<std::size_t>(std::max(0, evaluations - done)));
     done = evaluations;

@@ -11,6 +11,7 @@
 #include <ctime>
 #include <sstream>
 
+#include "tools/output/speaker.hpp"
 #include "tools/work/errors.hpp"
 
 namespace hb::tools {
@@ -108,7 +109,7 @@ void FolderLock::take_over(const fs::path& folder) {
   if (text.empty()) return;
   const std::optional<Holder> killed = holder(text);
   if (!killed) refuse_output(folder, fmt::format("{} was not written by hb; allowed: to move it away", file_.string()));
-  fmt::print(stderr, "hb: {} (process {}, started {}) did not end by itself; its lock on {} is taken\n",
+  fmt::print(stderr, "{}: {} (process {}, started {}) did not end by itself; its lock on {} is taken\n", speaker(),
              killed->command, killed->process, killed->start, folder.string());
   // Only what this run would have made itself, whatever the file says.
   const fs::path scratch = killed->scratch;

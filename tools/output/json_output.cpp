@@ -41,7 +41,8 @@ void add_resonance(Json& json, const RodModel& model, const RodResult& rod, doub
     json["nearest_resonance"] = {{"order", nearest->order},
                                  {"rpm", rpm_from_speed(nearest->speed, units)},
                                  {"omega", nearest->speed},
-                                 {"frequency", nearest->frequency}};
+                                 {"frequency", nearest->frequency},
+                                 {"in_response", nearest->order <= highest_harmonic(*rod.steady)}};
   const std::optional<double> slow = quasi_static_response(model.system, model.num_modes, speed);
   double largest = 0;
   for (const Extremum& peak : rod.max_abs) largest = std::max(largest, peak.value);

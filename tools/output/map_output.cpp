@@ -408,7 +408,11 @@ std::string map_verdict(const MapDocument& document) {
                            : "");
   if (n.undecided > 0)
     return fmt::format("undecided at {:.3g} % of the points", 100 * static_cast<double>(n.undecided) / all);
-  const std::string which = n.missing == 0 ? "" : document.complete ? " that have a system" : " that were computed";
+  const std::string which = (n.missing == 0      ? ""
+                             : document.complete ? " that have a system"
+                                                 : " that were computed") +
+                            std::string(r.boundaries.empty() ? "" : ", UNSTABLE in between") +
+                            (document.complete ? "" : "; unfinished");
   return (n.bounded == 0  ? "stable at all points"
           : n.stable == 0 ? "bounded at all points"
                           : "stable or bounded at all points") +

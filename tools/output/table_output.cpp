@@ -27,7 +27,12 @@ constexpr std::size_t max_modes_shown = 10;
 // How far the speed is from where a natural frequency is met, and what that does to the response.
 void add_resonance(Text& text, const SceneModel& model, const RodModel& rod_model, const RodResult& rod, double speed) {
   const std::optional<NearestResonance> nearest = nearest_resonance(rod_model.system, speed);
-  if (nearest)
+  const int highest = highest_harmonic(*rod.steady);
+  if (nearest && nearest->order > highest)
+    add(text, "  resonance         none: omega_1 is about {} Omega, the response has {}\n", nearest->order,
+        highest == 0 ? "no harmonics"
+                     : fmt::format("harmonics up to {}Omega", highest == 1 ? "" : fmt::format("{} ", highest)));
+  else if (nearest)
     add(text, "  resonance         nearest {}Omega = omega_1 at {}, {:.2g} % {}\n",
         nearest->order == 1 ? "" : fmt::format("{} ", nearest->order), speed_text(nearest->speed, model.scene, 6),
         100 * std::abs(nearest->speed / speed - 1), nearest->speed > speed ? "faster" : "slower");

@@ -13,6 +13,7 @@
 #include <iterator>
 
 #include "tools/command/version.hpp"
+#include "tools/output/speaker.hpp"
 #include "tools/work/errors.hpp"
 
 namespace hb::tools {
@@ -216,7 +217,7 @@ void Checkpoint::store(std::uint64_t index, const std::vector<double>& numbers) 
   const bool back =
       ftruncate(descriptor_, static_cast<off_t>(good_bytes_)) == 0 && lseek(descriptor_, 0, SEEK_END) >= 0;
   if (!complained_) {
-    fmt::print(stderr, "hb: {} cannot be written: {}; the work goes on, parts from here on are not kept\n",
+    fmt::print(stderr, "{}: {} cannot be written: {}; the work goes on, parts from here on are not kept\n", speaker(),
                file_.string(), std::strerror(reason));
   }
   complained_ = true;

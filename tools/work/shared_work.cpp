@@ -3,13 +3,16 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <numeric>
 #include <span>
 #include <stdexcept>
 
 #include "lib/stop_wish.hpp"
 #include "tools/command/command.hpp"
 #include "tools/output/folder_lock.hpp"
+#include "tools/output/speaker.hpp"
 #include "tools/work/parallel_for.hpp"
 #include "tools/work/progress.hpp"
 #include "tools/work/ranks.hpp"
@@ -66,6 +69,21 @@ void SharedWork::compute_or_leave(const std::function<void(std::size_t)>& comput
   }
 }
 
+// Chunks in an order in which those that are done are spread over all, whenever one looks: 0, s, 2s, .. modulo the
+// count, with s its golden section, made prime to it.
+class SpreadOrder {
+ public:
+  explicit SpreadOrder(std::size_t count) : count_(count) {
+    constexpr double golden = 0.6180339887498949;
+    stride_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(golden * static_cast<double>(count))));
+    while (std::gcd(stride_, count) > 1) ++stride_;
+  }
+  std::size_t operator()(std::size_t k) const { return k * stride_ % count_; }
+
+ private:
+  std::size_t count_, stride_ = 1;
+};
+
 // A step in chunks of parts: what is kept or sent at once.
 class SharedWork::Chunks {
  public:
@@ -79,13 +97,14 @@ class SharedWork::Chunks {
         progress_(what, parts.count, work.begun_) {}
 
   void run_alone() {
-    Forecast forecast(what_, parts_.count, work_.num_threads_);
+    Forecast& forecast = begun_forecast();
+    const SpreadOrder order(count_);
     const bool complete = parallel_for(
         count_, work_.num_threads_,
-        [&](std::size_t chunk) {
+        [&](std::size_t k) {
+          const std::size_t chunk = order(k);
           if (const Part* earlier = kept(chunk)) {
             split(*earlier, parts_, from(chunk), to(chunk));
-            forecast.advance(to(chunk) - from(chunk));
           } else {
             forecast.advance(compute(chunk));
             if (!work_.ends_early()) keep(chunk);
@@ -117,6 +136,14 @@ class SharedWork::Chunks {
   [[nodiscard]] std::size_t from(std::size_t chunk) const { return chunk * size_; }
   [[nodiscard]] std::size_t to(std::size_t chunk) const { return std::min(from(chunk) + size_, parts_.count); }
 
+  Forecast& begun_forecast() const {
+    if (!work_.forecast_) work_.forecast_.emplace(work_.what_.empty() ? what_ : work_.what_, work_.num_threads_);
+    std::size_t known = 0;
+    for (std::size_t chunk = 0; chunk < count_; ++chunk)
+      if (kept(chunk) != nullptr) known += to(chunk) - from(chunk);
+    work_.forecast_->begin(parts_.count, known, parts_.kind, parts_.ahead);
+    return *work_.forecast_;
+  }
   // How many parts were not left because the work ends early.
   std::size_t compute(std::size_t chunk) const {
     std::size_t in_time = 0;
@@ -253,7 +280,7 @@ bool KeptRun::run(const std::function<void(SharedWork&)>& work) {
                     alone && !checkpoint_ ? std::function<bool()>()
                     : alone               ? interrupted
                                           : asked_to_end,
-                    alone ? early_end(checkpoint_.has_value()) : std::function<bool()>());
+                    alone ? early_end(checkpoint_.has_value()) : std::function<bool()>(), "the " + command_);
   try {
     work(shared);
   } catch (const WorkStopped&) {
@@ -275,7 +302,7 @@ std::function<bool()> early_end(bool folder) { return folder ? time_is_up : aske
 
 int stopped_status() {
   if (interrupted()) return exit_interrupted;
-  fmt::print(stderr, "hb: the time limit was reached before there was an answer\n");
+  fmt::print(stderr, "{}: the time limit was reached before there was an answer\n", speaker());
   return exit_not_reached;
 }
 

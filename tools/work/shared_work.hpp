@@ -13,6 +13,7 @@
 
 #include "hb/analysis/work.hpp"
 #include "tools/work/checkpoint.hpp"
+#include "tools/work/forecast.hpp"
 #include "tools/work/interrupts.hpp"
 
 namespace hb::tools {
@@ -23,10 +24,15 @@ struct WorkStopped {};
 class SharedWork : public Work {
  public:
   // `kept`, if given, holds what an earlier run finished of the same steps in the same order. `stop` ends a step with
-  // WorkStopped; `early` lets it go on to its end without computing what is left, of which nothing is kept.
+  // WorkStopped; `early` lets it go on to its end without computing what is left, of which nothing is kept. `what`
+  // names all steps together where a sentence says how long they take; empty: by the first of them.
   explicit SharedWork(int num_threads, Checkpoint* kept = nullptr, std::function<bool()> stop = {},
-                      std::function<bool()> early = {})
-      : num_threads_(num_threads), kept_(kept), stop_(std::move(stop)), early_(std::move(early)) {}
+                      std::function<bool()> early = {}, std::string what = {})
+      : num_threads_(num_threads),
+        kept_(kept),
+        stop_(std::move(stop)),
+        early_(std::move(early)),
+        what_(std::move(what)) {}
 
   void for_each(std::size_t count, const std::function<void(std::size_t)>& task) const override;
   void step(const std::string& what, const Parts& parts) override;
@@ -39,6 +45,8 @@ class SharedWork : public Work {
   int num_threads_;
   Checkpoint* kept_;
   std::function<bool()> stop_, early_;
+  std::string what_;
+  std::optional<Forecast> forecast_;
   std::uint64_t step_ = 0;
   std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
 };

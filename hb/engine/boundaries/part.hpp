@@ -7,7 +7,9 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "hb/engine/boundaries/interval_search.hpp"
@@ -16,6 +18,9 @@ namespace hb {
 
 using Part = std::vector<double>;
 
+// Parts to come, by their kind and about how many: those of one kind take alike.
+using PartsAhead = std::vector<std::pair<std::string, double>>;
+
 // The parts of one step. They may be computed in any order and by several threads, each once, or be taken from
 // elsewhere: each depends on its index alone.
 struct Parts {
@@ -23,6 +28,8 @@ struct Parts {
   std::function<void(std::size_t)> compute;
   std::function<Part(std::size_t)> numbers;  // of a part that is there
   std::function<void(std::size_t, const Part&)> take;  // instead of computing it; throws std::out_of_range
+  std::string kind = {};  // for who says beforehand how long it takes; empty: like no others
+  PartsAhead ahead = {};  // after this step
 };
 
 // Has all parts computed or taken.
@@ -140,7 +147,8 @@ void visit_interval(Visit& visit, SearchedInterval& interval) {
 // reads as numbers.
 template <class Result, class Visit>
 std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
-                                   const std::function<Result(std::size_t)>& compute, const Visit& visit) {
+                                   const std::function<Result(std::size_t)>& compute, const Visit& visit,
+                                   const std::string& kind = {}) {
   static_assert(!std::is_same_v<Result, bool>, "elements of a vector of bool share bytes");
   std::vector<Result> found(count);
   const auto result = [&](std::size_t k) { found[k] = compute(k); };
@@ -159,14 +167,14 @@ std::vector<Result> computed_parts(const PartsOf& parts, std::size_t count,
     visit(reader, read);
     found[k] = std::move(read);
   };
-  parts({count, result, numbers, take});
+  parts({count, result, numbers, take, kind, {}});
   return found;
 }
 
 // Results of things, in their order; of those with one key one is computed.
 template <class Result, class Key, class Compute, class Visit>
 std::vector<Result> shared_parts(const PartsOf& parts, const std::vector<std::size_t>& things, const Key& key_of,
-                                 const Compute& compute, const Visit& visit) {
+                                 const Compute& compute, const Visit& visit, const std::string& kind = {}) {
   std::map<decltype(key_of(std::size_t{})), std::size_t> number_of_key;
   std::vector<std::size_t> computed, number;
   for (const std::size_t thing : things) {
@@ -175,7 +183,7 @@ std::vector<Result> shared_parts(const PartsOf& parts, const std::vector<std::si
     number.push_back(place->second);
   }
   const std::vector<Result> found = computed_parts<Result>(
-      parts, computed.size(), [&](std::size_t k) { return compute(computed[k]); }, visit);
+      parts, computed.size(), [&](std::size_t k) { return compute(computed[k]); }, visit, kind);
   std::vector<Result> all;
   for (const std::size_t k : number) all.push_back(found[k]);
   return all;

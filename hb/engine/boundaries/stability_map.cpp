@@ -4,6 +4,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
@@ -48,12 +49,35 @@ class MapSearch {
     at_nodes_.verdict_only = grid_alone_ && options.verdict_only;
     along_curves_ = along_edges_;
     along_curves_.stability.leading_only = true;
+    left_.nodes = distinct(mesh_.nodes().size(), [&](std::size_t n) { return place_of(mesh_.nodes()[n]); });
+    if (!grid_alone_) left_.edges = distinct(mesh_.num_edges(), [&](std::size_t e) { return line_of(e); });
+  }
+
+  void sample() {
+    find_surface();
+    constexpr std::size_t one_of = 16, least = 12, most = 48;
+    const std::size_t all = mesh_.num_edges(), count = std::min(all, std::clamp(all / one_of, least, most));
+    if (grid_alone_ || surface_ || count == all) return;
+    std::vector<std::size_t> edges;
+    for (std::size_t k = 0; k < count; ++k) edges.push_back((2 * k + 1) * all / (2 * count));
+    std::set<std::size_t> nodes;
+    for (const std::size_t e : edges) {
+      const MapEdge& edge = mesh_.edge(e);
+      nodes.insert({edge.a, edge.b, edge.before, edge.after});
+      for (const std::size_t n : mesh_.farther(e)) nodes.insert(n);
+    }
+    nodes.erase(no_node);
+    evaluate_nodes({nodes.begin(), nodes.end()});
+    std::erase_if(edges, [this](std::size_t e) { return !may_be_crossed(e); });
+    std::vector<SearchedInterval> found = searched(edges, "edge");
+    for (std::size_t k = 0; k < edges.size(); ++k) sampled_[edges[k]] = std::move(found[k]);
+    foresee_by_sample();
   }
 
   void begin() {
-    if (!grid_alone_ && at_nodes_.method == StabilityMethod::automatic) find_surface();
+    find_surface();
     if (surface_alone()) return;
-    evaluate_nodes();
+    evaluate_all_nodes();
   }
 
   void finish() {
@@ -63,6 +87,14 @@ class MapSearch {
     growth_range();
     do refine();
     while (options_.boundaries && refine_curves());
+    left_ = {};
+  }
+
+  PartsAhead left() const {
+    return {{"node", left_.nodes},
+            {"edge", left_.edges + left_.after_edges},
+            {"halved edge", left_.halved},
+            {"curve point", left_.points}};
   }
 
   StabilityMap result() {
@@ -85,18 +117,51 @@ class MapSearch {
 
  private:
   template <class Result, class Visit>
-  std::vector<Result> results(std::size_t count, const std::function<Result(std::size_t)>& compute,
-                              const Visit& visit) const {
-    return computed_parts<Result>(options_.parts, count, compute, visit);
+  std::vector<Result> results(std::size_t count, const std::function<Result(std::size_t)>& compute, const Visit& visit,
+                              const std::string& kind = {}) const {
+    return computed_parts<Result>(options_.parts, count, compute, visit, kind);
   }
 
   // Results of nodes or edges; along an axis on which the system does not depend those of one key have one.
   template <class Result, class Key, class Compute, class Visit>
   std::vector<Result> results_of(const std::vector<std::size_t>& things, const Key& key_of, const Compute& compute,
-                                 const Visit& visit) const {
-    if (!curves_bend()) return shared_parts<Result>(options_.parts, things, key_of, compute, visit);
+                                 const Visit& visit, const std::string& kind) const {
+    if (!curves_bend()) return shared_parts<Result>(options_.parts, things, key_of, compute, visit, kind);
     return results<Result>(
-        things.size(), [&](std::size_t k) { return compute(things[k]); }, visit);
+        things.size(), [&](std::size_t k) { return compute(things[k]); }, visit, kind);
+  }
+
+  template <class Key>
+  double distinct(std::size_t things, const Key& key_of) const {
+    if (curves_bend()) return static_cast<double>(things);
+    std::set<decltype(key_of(std::size_t{}))> keys;
+    for (std::size_t k = 0; k < things; ++k) keys.insert(key_of(k));
+    return static_cast<double>(keys.size());
+  }
+
+  // --- What is left, about: between what was measured of smooth and of chaotic maps, for forecasts alone ---
+
+  static constexpr double edges_of_a_halving = 13;
+  // In times that an edge of the grid takes: the stretch of curve at a crossing, and all halvings around an edge that
+  // is crossed twice.
+  static constexpr double edges_of_a_crossing = 1.5, edges_of_two_crossings = 8;
+
+  void foresee_by_sample() {
+    if (sampled_.empty()) return;
+    double crossings = 0, twice = 0;
+    for (const auto& [edge, found] : sampled_) {
+      crossings += static_cast<double>(found.boundaries.size());
+      twice += found.boundaries.size() > 1;
+    }
+    const double each = left_.edges / static_cast<double>(sampled_.size());
+    left_.after_edges =
+        each * (edges_of_two_crossings * twice + (options_.boundaries ? edges_of_a_crossing * crossings : 0));
+  }
+
+  // Of cells that are being halved, should each hand its wish on to one of its quarters for so many times.
+  void foresee(double halvings) {
+    left_.halved = edges_of_a_halving * halvings;
+    left_.after_edges = options_.boundaries ? edges_of_a_crossing * static_cast<double>(mesh_.crossings().size()) : 0;
   }
 
   // Error within ten times what was asked, or within what searches promise.
@@ -108,6 +173,8 @@ class MapSearch {
   // --- One mode: the surface of its discriminant ---
 
   void find_surface() {
+    if (surface_sought_ || grid_alone_ || at_nodes_.method != StabilityMethod::automatic) return;
+    surface_sought_ = true;
     const std::vector<double>&x = mesh_.x().values, &y = mesh_.y().values;
     constexpr std::size_t least_evaluations = 4000, points_for_one = 16;
     const DiscriminantSurface::Request request{
@@ -199,14 +266,21 @@ class MapSearch {
 
   // What is new after cells were halved.
   void evaluate() {
-    evaluate_nodes();
+    evaluate_all_nodes();
     search_edges();
   }
 
-  void evaluate_nodes() {
-    using Sample = std::optional<StabilitySample>;
+  void evaluate_all_nodes() {
+    evaluated_.resize(mesh_.nodes().size());
     std::vector<std::size_t> nodes;
-    for (std::size_t node = samples_.size(); node < mesh_.nodes().size(); ++node) nodes.push_back(node);
+    for (std::size_t node = 0; node < evaluated_.size(); ++node)
+      if (!evaluated_[node]) nodes.push_back(node);
+    evaluate_nodes(nodes);
+  }
+
+  void evaluate_nodes(const std::vector<std::size_t>& nodes) {
+    using Sample = std::optional<StabilitySample>;
+    left_.nodes = std::max(0.0, left_.nodes - static_cast<double>(nodes.size()));
     std::vector<Sample> samples = results_of<Sample>(
         nodes, [&](std::size_t node) { return place_of(mesh_.nodes()[node]); },
         [&](std::size_t node) {
@@ -216,8 +290,14 @@ class MapSearch {
         },
         [](auto& visit, Sample& sample) {
           visit_if_there(visit, sample, [&](StabilitySample& there) { visit_sample(visit, there); });
-        });
-    std::ranges::move(samples, std::back_inserter(samples_));
+        },
+        "node");
+    samples_.resize(mesh_.nodes().size());
+    evaluated_.resize(mesh_.nodes().size());
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      samples_[nodes[k]] = std::move(samples[k]);
+      evaluated_[nodes[k]] = true;
+    }
   }
 
   // Nodes of one place have one system.
@@ -239,14 +319,24 @@ class MapSearch {
     std::vector<std::size_t> edges;
     for (std::size_t e = searched_edges_; e < mesh_.num_edges(); ++e)
       if (may_be_crossed(e)) edges.push_back(e);
+    const bool first = searched_edges_ == 0;
     searched_edges_ = mesh_.num_edges();
-    const std::vector<SearchedInterval> found = results_of<SearchedInterval>(
-        edges, [&](std::size_t e) { return line_of(e); }, [&](std::size_t e) { return crossings_of(e); },
-        [](auto& visit, SearchedInterval& crossings) { visit_interval(visit, crossings); });
+    left_.edges = 0;
+    const std::vector<SearchedInterval> found = searched(edges, first ? "edge" : "halved edge");
     for (std::size_t k = 0; k < found.size(); ++k) {
       mesh_.set_crossings(edges[k], found[k].boundaries);
       for (const auto& [from, to] : found[k].not_excluded) not_excluded_.push_back(piece_of(edges[k], from, to));
     }
+  }
+
+  std::vector<SearchedInterval> searched(const std::vector<std::size_t>& edges, const std::string& kind) const {
+    return results_of<SearchedInterval>(
+        edges, [&](std::size_t e) { return line_of(e); },
+        [&](std::size_t e) {
+          const auto sampled = sampled_.find(e);
+          return sampled == sampled_.end() ? crossings_of(e) : sampled->second;
+        },
+        [](auto& visit, SearchedInterval& crossings) { visit_interval(visit, crossings); }, kind);
   }
 
   // Not where the crossings that the edge has from its parent agree with the verdicts at its ends.
@@ -366,13 +456,18 @@ class MapSearch {
   void refine() {
     for (bool changed = true; changed;) {
       changed = false;
+      double halvings = 0;
       const std::size_t count = mesh_.cells().size();
       for (std::size_t c = 0; c < count; ++c) {
-        if (mesh_.cells()[c].halved || !wants_halving(c)) continue;
+        const MapCell& cell = mesh_.cells()[c];
+        if (cell.halved || !wants_halving(c)) continue;
+        constexpr double most = 3;
+        halvings += std::min(most, std::log2(std::min(mesh_.width(cell), mesh_.height(cell))) - 1);
         mesh_.halve(c);
         changed = true;
       }
       islands_sought_ = count;
+      foresee(halvings);
       evaluate();
     }
   }
@@ -392,6 +487,8 @@ class MapSearch {
       if (halve(curves_.cells_with_turns())) return true;
       const std::vector<WantedPoint> wanted = curves_.coarse_stretches();
       if (wanted.empty()) return false;
+      left_.points = 0.5 * static_cast<double>(wanted.size());  // of chords that are not straight yet
+      left_.after_edges = 0;
       using Found = std::optional<CurvePoint>;
       const std::vector<Found> found = results<Found>(
           wanted.size(),
@@ -402,7 +499,9 @@ class MapSearch {
           },
           [](auto& visit, Found& point) {
             visit_if_there(visit, point, [&](CurvePoint& there) { visit_curve_point(visit, there); });
-          });
+          },
+          "curve point");
+      left_.points = 0;
       if (halve(curves_.insert(wanted, found))) return true;
     }
   }
@@ -436,6 +535,14 @@ class MapSearch {
   MapMesh mesh_;
   MapCurves curves_{mesh_, options_.sag, curves_bend()};
   std::vector<std::optional<StabilitySample>> samples_;  // by node
+  std::vector<bool> evaluated_;  // by node
+  std::map<std::size_t, SearchedInterval> sampled_;  // by edge: those of sample()
+  struct {
+    double nodes = 0, edges = 0;
+    double after_edges = 0;  // in times that an edge takes
+    double halved = 0, points = 0;
+  } left_;
+  bool surface_sought_ = false;
   std::optional<DiscriminantSurface> surface_;
   std::vector<MapPoint> points_;  // of the grid, by the surface
   std::size_t searched_edges_ = 0, islands_sought_ = 0;
@@ -454,7 +561,8 @@ StabilityMapSearch stability_map_search(const MapSystemAt& system, std::vector<d
   if (every_value && !options.boundaries)
     for (MapAxis* axis : {&along_x, &along_y}) axis->base = axis->units;
   const auto search = std::make_shared<MapSearch>(system, std::move(along_x), std::move(along_y), every_value, options);
-  return {[search] { search->begin(); }, [search] { search->finish(); }, [search] { return search->result(); }};
+  return {[search] { search->sample(); }, [search] { search->begin(); }, [search] { search->finish(); },
+          [search] { return search->result(); }, [search] { return search->left(); }};
 }
 
 StabilityMap stability_map(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,

@@ -62,13 +62,19 @@ struct StabilityMap {
   const MapPoint& at(std::size_t i, std::size_t j) const { return points[i + x.size() * j]; }
 };
 
-// A map in two steps, so that several systems over one plane have their grids before any curve is followed. `system`
-// and options.parts are called until the end.
+// A map in steps, so that several systems over one plane have their grids before any curve is followed. `system` and
+// options.parts are called until the end.
 struct StabilityMapSearch {
+  // A few edges spread over the map, and the nodes that they need, before all others: where parts have a kind, what
+  // these take tells what the whole will. May be left out.
+  std::function<void()> sample;
   std::function<void()> begin;  // the grid
   std::function<void()>
       finish;  // crossings along the cells' edges, cells halved where they leave something open, curves
   std::function<StabilityMap()> result;
+  // What is to come after the step under way, "node", "edge", "halved edge", "curve point": an estimate, of edges to be
+  // halved and of curves by the crossings so far.
+  std::function<PartsAhead()> left;
 };
 // x and y ascending, at least two values each; throws std::invalid_argument otherwise.
 [[nodiscard]] StabilityMapSearch stability_map_search(const MapSystemAt& system, std::vector<double> x,

@@ -35,6 +35,18 @@ bool usable(const std::optional<DesignValues>& values) {
   return values && std::isfinite(values->goal) && values->conditions.allFinite() && values->parts.allFinite();
 }
 
+// What is evaluated while this is there counts as for slopes alone, however it ends.
+class Differencing {
+ public:
+  explicit Differencing(bool& flag) : flag_(flag) { flag_ = true; }
+  ~Differencing() { flag_ = false; }
+  Differencing(const Differencing&) = delete;
+  Differencing& operator=(const Differencing&) = delete;
+
+ private:
+  bool& flag_;
+};
+
 // Feasible before infeasible, then the lower goal; among infeasible the smaller violation.
 bool better(const DesignValues& a, const DesignValues& b) {
   const double va = violation(a), vb = violation(b);
@@ -168,10 +180,9 @@ const MatrixXd& DesignSearch::slopes(const std::vector<double>& u) {
       for (Index k = 0; k < p; ++k) all(1 + m + k) = part(place, static_cast<std::size_t>(k));
       return all;
     };
-    differencing_ = true;
+    const Differencing differencing(differencing_);
     result = *difference_jacobian(values, Eigen::Map<const VectorXd>(u.data(), n), VectorXd::Zero(n), VectorXd::Ones(n),
                                   VectorXd::Constant(n, difference_step));
-    differencing_ = false;
   }
   return slopes_.emplace(u, std::move(result)).first->second;
 }

@@ -103,6 +103,8 @@ class NearestResonance:
     omega: float
     frequency: float
     """The natural frequency there, rad per unit time."""
+    in_response: bool
+    """Whether the response has a harmonic of this order, or a higher one, above its error bound."""
 
 
 @dataclass(frozen=True)
