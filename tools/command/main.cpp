@@ -50,6 +50,8 @@ void prepare_process() {
   constexpr int kept = 256 << 20;
   mallopt(M_MMAP_THRESHOLD, kept);
   mallopt(M_TRIM_THRESHOLD, kept);
+  constexpr int at_once = 1 << 20;
+  mallopt(M_TOP_PAD, at_once);
 #endif
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
   std::signal(SIGPIPE, SIG_IGN);  // files come first, see flush_output

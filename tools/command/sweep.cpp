@@ -28,6 +28,7 @@
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/report_data.hpp"
 #include "tools/work/interrupts.hpp"
+#include "tools/work/keep.hpp"
 #include "tools/work/ranks.hpp"
 #include "tools/work/shared_work.hpp"
 #include "tools/work/sweep_key.hpp"
@@ -42,6 +43,11 @@ void add_bands(const nlohmann::ordered_json& document, const SweepScene& swept, 
     figures.push_back(band_figure(swept.scene(), curves, false));
     figures.back().x_label = quoted(axis_label(swept));
   }
+}
+
+void say_stages(const SweepScene& swept, const SweepResult& result, const std::optional<NonlinearSweep>& branches) {
+  fmt::print(stderr, "\n{}{}{}", stages_table(result.stages), branches ? stages_table(branches->stages) : "",
+             accuracy_table(swept.settings()));
 }
 
 int run_sweep_command(const SweepFlags& flags) {
@@ -119,9 +125,9 @@ int run_sweep_command(const SweepFlags& flags) {
   const bool reached = result.shortfalls.empty() && (!branches || branches->shortfalls.empty());
   const int status =
       deliver(folder ? &*folder : nullptr, out.pictures, ended_status(reached ? exit_ok : exit_not_reached), delivery);
-  if (out.stats && !out.json)
-    fmt::print(stderr, "\n{}{}{}", stages_table(result.stages), branches ? stages_table(branches->stages) : "",
-               accuracy_table(swept.settings()));
+  if (out.stats && !out.json) say_stages(swept, result, branches);
+  keep_until_exit(std::move(document));
+  keep_until_exit(std::move(result));
   return status;
 }
 

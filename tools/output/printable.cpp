@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
 
 namespace hb::tools {
@@ -18,6 +20,23 @@ constexpr CodeRange hidden[] = {{0x00, 0x09},     {0x0b, 0x1f},     {0x7f, 0x9f}
                                 {0xfff9, 0xfffb}, {0xd800, 0xdfff}, {0xe0000, 0xe007f}};
 
 constexpr char32_t least_of_length[] = {0, 0, 0x80, 0x800, 0x10000};
+
+bool needs_no_escape(char c) { return (c >= 0x20 && c < 0x7f) || c == '\n'; }
+
+// Eight bytes at once where none of them is below 0x20 or above 0x7e: x - 0x20 borrows, x + 1 carries into the eighth
+// bit.
+bool needs_no_escapes(const std::string& text) {
+  constexpr std::uint64_t ones = 0x0101010101010101, eighth_bits = 0x80 * ones;
+  std::size_t at = 0;
+  for (; at + 8 <= text.size(); at += 8) {
+    std::uint64_t x = 0;
+    std::memcpy(&x, text.data() + at, 8);
+    if (((x | (x - 0x20 * ones) | (x + ones)) & eighth_bits) == 0) continue;
+    for (std::size_t k = at; k < at + 8; ++k)
+      if (!needs_no_escape(text[k])) return false;
+  }
+  return std::all_of(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), needs_no_escape);
+}
 
 }  // namespace
 
@@ -38,13 +57,13 @@ CodePoint code_point_at(const std::string& text, std::size_t at) {
   return {value, length, !is_hidden};
 }
 
-std::string printable(const std::string& text) {
+std::string printable(std::string text) {
+  if (needs_no_escapes(text)) return text;
   std::string result;
   result.reserve(text.size());
-  const auto is_plain = [](char c) { return (c >= 0x20 && c < 0x7f) || c == '\n'; };
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t plain = at;
-    while (at < text.size() && is_plain(text[at])) ++at;
+    while (at < text.size() && needs_no_escape(text[at])) ++at;
     result.append(text, plain, at - plain);
     if (at == text.size()) break;
     const CodePoint point = code_point_at(text, at);

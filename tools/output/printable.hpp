@@ -17,6 +17,6 @@ struct CodePoint {
 
 // With \uXXXX for what is not visible and U+FFFD for broken UTF-8: what a terminal shows is what is there. JSON stays
 // the same JSON.
-[[nodiscard]] std::string printable(const std::string& text);
+[[nodiscard]] std::string printable(std::string text);
 
 }  // namespace hb::tools

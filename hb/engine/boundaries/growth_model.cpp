@@ -26,6 +26,7 @@ std::vector<double> probes(double from, double to) {
   std::vector<double> x;
   const double width = to - from;
   constexpr int middle = 12;
+  x.reserve(40);
   for (int k = 1; k < middle; ++k) x.push_back(from + width * k / middle);
   for (double t = 0.05; t > 1e-6; t *= 0.3) {
     x.push_back(from + t * width);

@@ -21,12 +21,14 @@ struct Known {
 // Real part descending; empty if one of them has no error.
 std::vector<Known> all_of(const StabilitySample& sample) {
   std::vector<Known> all;
+  all.reserve(sample.stability.exponents.size() + sample.stability.uncertain.size());
   for (const std::vector<Exponent>* list : {&sample.stability.exponents, &sample.stability.uncertain})
     for (const Exponent& e : *list) {
       if (!std::isfinite(e.error)) return {};
       all.push_back({folded(e.value / sample.speed), e.error / sample.speed});
     }
-  std::ranges::stable_sort(all, [](const Known& a, const Known& b) { return a.s.real() > b.s.real(); });
+  const auto faster = [](const Known& a, const Known& b) { return a.s.real() > b.s.real(); };
+  if (!std::ranges::is_sorted(all, faster)) std::ranges::stable_sort(all, faster);
   return all;
 }
 

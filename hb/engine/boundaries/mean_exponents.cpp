@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
@@ -51,20 +50,18 @@ bool is_symmetric(const MatrixXd& A) {
   return (A - A.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * A.cwiseAbs().maxCoeff();
 }
 
+// Imaginary part ascending, then real part; one by one, since there are few.
 void sort(MeanModes& modes) {
-  std::vector<Index> order(static_cast<std::size_t>(modes.mu.size()));
-  std::iota(order.begin(), order.end(), Index(0));
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+  const auto before = [&](Index a, Index b) {
     const cplx p = modes.mu(a), q = modes.mu(b);
-    return p.imag() != q.imag() ? p.imag() < q.imag() : p.real() != q.real() ? p.real() < q.real() : a < b;
-  });
-  const MeanModes given = modes;
-  for (std::size_t n = 0; n < order.size(); ++n) {
-    const auto to = static_cast<Index>(n);
-    modes.mu(to) = given.mu(order[n]);
-    modes.X.col(to) = given.X.col(order[n]);
-    modes.Y.row(to) = given.Y.row(order[n]);
-  }
+    return p.imag() != q.imag() ? p.imag() < q.imag() : p.real() < q.real();
+  };
+  for (Index sorted = 1; sorted < modes.mu.size(); ++sorted)
+    for (Index n = sorted; n > 0 && before(n, n - 1); --n) {
+      std::swap(modes.mu(n), modes.mu(n - 1));
+      modes.X.col(n).swap(modes.X.col(n - 1));
+      modes.Y.row(n).swap(modes.Y.row(n - 1));
+    }
 }
 
 // Real modes q of the mean stiffness, their own damping: s^2 + b s + w^2 = 0 each.

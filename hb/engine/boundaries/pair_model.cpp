@@ -51,13 +51,15 @@ PairModel::PairModel(std::vector<PairNode> nodes)
 
 PairModel::Terms PairModel::terms(double LeadingPair::*of) const {
   Terms d;
+  d.reserve(nodes_.size());
   for (const PairNode& node : nodes_) d.push_back(node.pair.*of);
   for (std::size_t order = 1; order < d.size(); ++order)
     for (std::size_t k = d.size() - 1; k >= order; --k) d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
   return d;
 }
 
-PairModel::Value PairModel::at(double x, const Terms& terms) const {
+// Not inlined: the same bits whether the error is asked for or not.
+[[gnu::noinline]] PairModel::Value PairModel::at(double x, const Terms& terms) const {
   double sum = terms[0], product = 1, last = HUGE_VAL, before = HUGE_VAL;
   for (std::size_t k = 1; k < terms.size(); ++k) {
     product *= x - nodes_[k - 1].x;
@@ -88,11 +90,11 @@ GrowthBounds PairModel::leading(double x) const {
 }
 
 double PairModel::predicted(double x) const {
-  return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(half_trace_at(x).value))) / two_pi;
+  return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
 }
 
 double PairModel::lower(double x) const {
-  return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(half_trace_at(x).value))) / two_pi;
+  return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
 }
 
 double PairModel::lowest(double x) const {
@@ -105,16 +107,18 @@ std::vector<double> PairModel::telling() const {
   std::vector<double> found = probes(nodes_[0].x, nodes_[1].x), places = found;
   places.insert(places.end(), {nodes_[0].x, nodes_[1].x});
   std::ranges::sort(places);
-  const auto c = [&](double x) { return half_trace_at(x).value; };
+  const auto c = [&](double x) { return at(x, half_trace_).value; };
   const auto size = [&](double x) { return std::abs(c(x)); };
+  std::vector<double> values(places.size());
+  std::ranges::transform(places, values.begin(), c);
   for (std::size_t k = 0; k + 1 < places.size(); ++k) {
-    const double here = places[k], next = places[k + 1];
-    if ((c(here) > 0) != (c(next) > 0)) found.push_back(root(c, here, next));
+    const double here = std::abs(values[k]), next = std::abs(values[k + 1]);
+    if ((values[k] > 0) != (values[k + 1] > 0)) found.push_back(root(c, places[k], places[k + 1]));
     if (k == 0) continue;
-    const double before = places[k - 1];
-    if (size(here) >= size(before) && size(here) >= size(next)) found.push_back(largest(size, before, next));
-    if (size(here) <= size(before) && size(here) <= size(next))
-      found.push_back(largest([&](double x) { return -size(x); }, before, next));
+    const double before = std::abs(values[k - 1]);
+    if (here >= before && here >= next) found.push_back(largest(size, places[k - 1], places[k + 1]));
+    if (here <= before && here <= next)
+      found.push_back(largest([&](double x) { return -size(x); }, places[k - 1], places[k + 1]));
   }
   return found;
 }

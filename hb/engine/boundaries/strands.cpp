@@ -1,8 +1,11 @@
 #include "hb/engine/boundaries/strands.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
+#include <memory_resource>
 
 namespace hb {
 
@@ -16,17 +19,28 @@ constexpr double doubt = 0.15;
 // group of coupled modes it is a guess.
 constexpr double unlike_decay = 3;
 
+// Short lists that are needed for a moment: on the stack unless they are long.
+template <class Element>
+using ShortList = std::pmr::vector<Element>;
+class ShortMemory : public std::pmr::monotonic_buffer_resource {
+ public:
+  ShortMemory() : std::pmr::monotonic_buffer_resource(bytes_.data(), bytes_.size()) {}
+
+ private:
+  std::array<std::byte, 2048> bytes_;
+};
+
 // Lines Re = const that part exponents and mean ones alike: as many of either beyond, and those next to the line moved
 // by no more than a part of its distance from them. What locks two exponents moves both; their mean counts.
-std::vector<double> parting_lines(const Strands& strands, const std::vector<MeanExponent>& mean) {
+ShortList<double> parting_lines(const Strands& strands, const std::vector<MeanExponent>& mean, ShortMemory& memory) {
   constexpr double most_moved = 0.25;
   struct Seen {
     double growth, error;
     auto operator<=>(const Seen&) const = default;
   };
-  std::vector<double> lines, means;
+  ShortList<double> lines(&memory), means(&memory);
   if (strands.all.size() != mean.size()) return lines;
-  std::vector<Seen> seen;
+  ShortList<Seen> seen(&memory);
   seen.reserve(mean.size());
   means.reserve(mean.size());
   for (std::size_t k = 0; k < mean.size(); ++k) {
@@ -44,11 +58,12 @@ std::vector<double> parting_lines(const Strands& strands, const std::vector<Mean
 }
 
 // s: its real part as it would be without what locks it.
-std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mean, const std::vector<double>& lines) {
+std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mean, const ShortList<double>& lines,
+                                    ShortMemory& memory) {
   const auto parted = [&](double x, double y) {
     return std::ranges::any_of(lines, [&](double line) { return (x < line) != (y < line); });
   };
-  std::vector<std::pair<double, std::size_t>> distances;
+  ShortList<std::pair<double, std::size_t>> distances(&memory);
   distances.reserve(mean.size());
   for (std::size_t n = 0; n < mean.size(); ++n) {
     if (parted(s.real(), mean[n].value.real())) continue;
@@ -58,19 +73,19 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
   }
   std::sort(distances.begin(), distances.end());
   std::vector<std::size_t> found;
+  found.reserve(distances.size());
   for (const auto& [distance, n] : distances)
     if (distance <= distances.front().first + std::max(doubt, shift_by_modulation(mean[n]))) found.push_back(n);
   return found;
 }
 
 // Names by frozen frequencies, the nearest first. They are taken where all strands but one pair have frozen ones of
-// their own that near: then the others' are no chance. Empty lists: as before.
+// their own that near: then the others' are no chance. Empty: none are taken.
 std::vector<std::vector<std::size_t>> frozen_names(const std::vector<Strand>& all,
                                                    const std::vector<MeanExponent>& mean) {
   constexpr double near = 0.02;
   constexpr std::size_t most_left_out = 2;
-  std::vector<std::vector<std::size_t>> names(all.size());
-  if (all.size() != mean.size() || std::ranges::any_of(mean, [](const auto& m) { return m.frozen == 0; })) return names;
+  if (all.size() != mean.size() || std::ranges::any_of(mean, [](const auto& m) { return m.frozen == 0; })) return {};
   struct Match {
     double distance;
     std::size_t strand, mean;
@@ -89,7 +104,8 @@ std::vector<std::vector<std::size_t>> frozen_names(const std::vector<Strand>& al
     named[m.strand] = taken[m.mean] = true;
     ++found;
   }
-  if (found + most_left_out < all.size()) return names;
+  if (found + most_left_out < all.size()) return {};
+  std::vector<std::vector<std::size_t>> names(all.size());
   for (const Match& m : matches)
     if (named[m.strand] && m.distance <= 2 * near) names[m.strand].push_back(m.mean);
   return names;
@@ -145,12 +161,14 @@ Strands strands_of(const StabilitySample& sample, const std::vector<MeanExponent
   const auto faster = [](const Strand& a, const Strand& b) { return a.s.real() > b.s.real(); };
   if (!std::ranges::is_sorted(strands.all, faster)) std::ranges::stable_sort(strands.all, faster);
   find_partners(strands.all);
-  const std::vector<double> lines = parting_lines(strands, mean);
+  ShortMemory memory;
+  const ShortList<double> lines = parting_lines(strands, mean, memory);
   const std::vector<std::vector<std::size_t>> frozen = frozen_names(strands.all, mean);
   for (std::size_t k = 0; k < strands.all.size(); ++k)
-    strands.all[k].mean = !frozen[k].empty()
-                              ? frozen[k]
-                              : candidates({growth_by_itself(strands, k), strands.all[k].s.imag()}, mean, lines);
+    strands.all[k].mean =
+        !frozen.empty() && !frozen[k].empty()
+            ? frozen[k]
+            : candidates({growth_by_itself(strands, k), strands.all[k].s.imag()}, mean, lines, memory);
   return strands;
 }
 

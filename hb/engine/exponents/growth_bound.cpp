@@ -1,7 +1,6 @@
 #include "hb/engine/exponents/growth_bound.hpp"
 
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "lib/dense.hpp"
@@ -39,7 +38,17 @@ VectorXd perron_vector(const MatrixXd& M) {
 struct Amplitudes {
   MatrixXd own, in, out, slope;  // N x n; own: its growth by itself
 
-  Amplitudes(Index N, Index n) : own(N, n), in(N, n), out(N, n), slope(N, n) {}
+  void resize(Index N, Index n) {
+    for (MatrixXd* each : {&own, &in, &out, &slope}) each->resize(N, n);
+  }
+};
+
+// Kept by each thread from one bound to the next.
+struct Memory {
+  Amplitudes amplitudes;
+  std::vector<Index> vibrate;
+  MatrixXd W2, L, pulls, mean;
+  ArrayXd largest, row;
 };
 
 // Of a mode that vibrates throughout, from samples of W^2 and of L' and L'', L = ln W.
@@ -87,11 +96,12 @@ Eigen::Map<MatrixXd> derivatives(const MatrixXd& samples) {
   return both.samples();
 }
 
-// Empty where W^2 comes near zero.
-std::optional<Amplitudes> amplitudes_of(const SampledSystem& system) {
+// False where W^2 comes near zero.
+bool find_amplitudes(const SampledSystem& system, Memory& memory) {
   const Index N = system.stiffness.rows(), n = system.damping.size();
-  Amplitudes found(N, n);
-  std::vector<Index> vibrate;
+  auto& [found, vibrate, W2, L, pulls, mean_pulls, largest, row] = memory;
+  found.resize(N, n);
+  vibrate.clear();
   for (Index j = 0; j < n; ++j) {
     const auto k = system.stiffness.col(j + n * j).array();
     const double b = system.damping(j), mean = k.mean() - b * b / 4;
@@ -100,11 +110,12 @@ std::optional<Amplitudes> amplitudes_of(const SampledSystem& system) {
     else if (mean < 0)
       overdamped(found, j, b, k);
     else
-      return std::nullopt;
+      return false;
   }
-  if (vibrate.empty()) return found;
+  if (vibrate.empty()) return true;
   const Index count = Index(vibrate.size());
-  MatrixXd W2(N, count), L(N, count);
+  W2.resize(N, count);
+  L.resize(N, count);
   for (Index c = 0; c < count; ++c) {
     const Index j = vibrate[std::size_t(c)];
     const double b = system.damping(j);
@@ -116,18 +127,19 @@ std::optional<Amplitudes> amplitudes_of(const SampledSystem& system) {
     const Index j = vibrate[std::size_t(c)];
     vibrating(found, j, system.damping(j), W2.col(c).array(), slopes.col(c).array(), slopes.col(count + c).array());
   }
-  return found;
+  return true;
 }
 
 }  // namespace
 
 double growth_bound(const SampledSystem& system) {
   const Index N = system.stiffness.rows(), n = system.damping.size();
-  const std::optional<Amplitudes> amplitudes = amplitudes_of(system);
-  if (!amplitudes) return HUGE_VAL;
-  const auto& [own, in, out, slope] = *amplitudes;
-  MatrixXd pulls(N, n * n);
-  MatrixXd mean(n, n);
+  thread_local Memory memory;
+  if (!find_amplitudes(system, memory)) return HUGE_VAL;
+  const auto& [own, in, out, slope] = memory.amplitudes;
+  MatrixXd &pulls = memory.pulls, &mean = memory.mean;
+  pulls.resize(N, n * n);
+  mean.resize(n, n);
   for (Index i = 0; i < n; ++i)
     for (Index j = 0; j < n; ++j) {
       auto pull = pulls.col(j + n * i).array();
@@ -142,7 +154,8 @@ double growth_bound(const SampledSystem& system) {
   const VectorXd perron = perron_vector(mean);
   // The largest row varies over the turn; powers of the weights leave it more room.
   double best = HUGE_VAL;
-  ArrayXd largest(N), row(N);
+  ArrayXd &largest = memory.largest, &row = memory.row;
+  largest.resize(N);
   for (const double power : {0.0, 0.25, 0.5, 0.75, 1.0}) {
     if (power > 0 && n == 1) break;  // weights of one mode cancel
     const VectorXd v = perron.array().pow(power);

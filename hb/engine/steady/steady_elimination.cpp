@@ -38,17 +38,16 @@ bool EliminatedInverse::solve(const Spectrum& rhs, double relative, Spectrum& z)
   };
   substitute(rhs, z);
   const double aim = relative * size(rhs);
-  Spectrum product, correction;
   double last = HUGE_VAL;
   for (int refinement = 0; refinement < 6; ++refinement) {
-    A_.couple(z, H, product);
-    const Spectrum r = rhs.topRows(H + 1) - A_.D().cwiseProduct(z) - product;
-    const double now = size(r);
+    A_.couple(z, H, product_);
+    residual_ = rhs.topRows(H + 1) - A_.D().cwiseProduct(z) - product_;
+    const double now = size(residual_);
     if (now <= aim && (refinement > 0 || relative >= rough)) return true;
     if (!(now < 0.5 * last)) return now <= aim;
     last = now;
-    substitute(r, correction);
-    z += correction;
+    substitute(residual_, correction_);
+    z += correction_;
   }
   return last <= aim;
 }

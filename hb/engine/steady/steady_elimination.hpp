@@ -24,6 +24,9 @@ class EliminatedInverse : public Inverse {
 
   Operator& A_;
   bool regular_ = true;
+
+ private:
+  Spectrum product_, correction_, residual_;  // of solve(), kept from one to the next
 };
 
 // Whichever suits the operator.

@@ -44,11 +44,13 @@ std::vector<std::vector<int>> classes(const Reach& same) {
 }  // namespace
 
 std::vector<std::vector<int>> independent_groups(const ScaledSystem& system) {
+  if (system.num_modes() == 1) return {{0}};
   const Reach coupled = couplings(system);
   return classes(closure(coupled || coupled.transpose()));
 }
 
 std::vector<std::vector<int>> one_way_groups(const ScaledSystem& system) {
+  if (system.num_modes() == 1) return {{0}};
   const Reach reach = closure(couplings(system));
   return classes(reach && reach.transpose());
 }

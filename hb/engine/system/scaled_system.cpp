@@ -23,8 +23,7 @@ bool is_diagonal(const Eigen::MatrixXd& A) {
 bool is_symmetric(const Eigen::MatrixXd& A) { return (A - A.transpose()).norm() <= 8 * eps * A.norm(); }
 
 Eigen::MatrixXd mean_of(const FourierSeries& matrices, Eigen::Index I) {
-  const Eigen::VectorXd mean = matrices.c.col(0).real();
-  return Eigen::Map<const Eigen::MatrixXd>(mean.data(), I, I);
+  return matrices.c.col(0).real().reshaped(I, I);
 }
 
 // Off-diagonal part relative to the diagonal, sqrt(|a_ik a_ki| / |a_ii a_kk|), largest.
