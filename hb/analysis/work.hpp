@@ -34,11 +34,17 @@ class Work {
   }
 
   // A step by its results, which visit(visitor, result) writes and reads as numbers where they have to leave the
-  // process.
+  // process. `kind`, `ahead`: as of Parts.
   template <class Result, class Visit>
   std::vector<Result> results(const std::string& what, std::size_t count,
-                              const std::function<Result(std::size_t)>& compute, const Visit& visit) {
-    return computed_parts<Result>(of(what), count, compute, visit);
+                              const std::function<Result(std::size_t)>& compute, const Visit& visit,
+                              const std::string& kind = {}, const PartsAhead& ahead = {}) {
+    const PartsOf parts = [&](const Parts& given) {
+      Parts all = given;
+      all.ahead = ahead;
+      step(what, all);
+    };
+    return computed_parts<Result>(parts, count, compute, visit, kind);
   }
 
   // For those who only know steps.

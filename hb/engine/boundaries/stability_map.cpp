@@ -461,7 +461,7 @@ class MapSearch {
       for (std::size_t c = 0; c < count; ++c) {
         const MapCell& cell = mesh_.cells()[c];
         if (cell.halved || !wants_halving(c)) continue;
-        constexpr double most = 3;
+        constexpr double most = 1.5;
         halvings += std::min(most, std::log2(std::min(mesh_.width(cell), mesh_.height(cell))) - 1);
         mesh_.halve(c);
         changed = true;
