@@ -64,7 +64,7 @@ int highest_harmonic(const SteadyState& response) {
 std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Index num_modes, double speed) {
   const FourierSeries C = stiffness_at(system, speed), h = load_at(system, speed);
   const Index I = system.num_modes();
-  if (h.c.size() == 0 || I > most_unknowns) return std::nullopt;
+  if (h.c.size() == 0) return std::nullopt;
   const Index H = std::max(C.num_harmonics(), h.num_harmonics());
   const Index N = fourier::fast_length(std::max<Index>(4 * H + 2, 32));
   const Eigen::MatrixXd matrices = fourier::synthesise(C, N), loads = fourier::synthesise(h, N);
@@ -86,6 +86,7 @@ std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Ind
 }
 
 std::optional<double> quasi_static_response(const HillSystem& system, Index num_modes, double speed) {
+  if (system.num_modes() > most_unknowns) return std::nullopt;
   const std::optional<Eigen::MatrixXd> motion = quasi_static_motion(system, num_modes, speed);
   if (!motion || !(motion->cwiseAbs().maxCoeff() > 0)) return std::nullopt;
   return motion->cwiseAbs().maxCoeff();

@@ -27,11 +27,11 @@ struct NearestResonance {
 [[nodiscard]] int highest_harmonic(const SteadyState& response);
 
 // q_1..q_num_modes at equally spaced crank angles (columns) of the solution of C(tau; Omega) u = h(tau; Omega) at each
-// crank angle by itself; u is q, or with shear its two parts (lib/rod/shear.hpp). Empty without a load, where C is
-// singular or indefinite at some angle, and for more than 60 unknowns.
+// crank angle by itself; u is q, or with shear its two parts (lib/rod/shear.hpp). Empty without a load and where C is
+// singular or indefinite at some angle.
 [[nodiscard]] std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Eigen::Index num_modes,
                                                                  double speed);
-// max over i and tau of its |q_i|; empty where that is 0, too.
+// max over i and tau of its |q_i|; empty where that is 0, and for more than 60 unknowns, too.
 [[nodiscard]] std::optional<double> quasi_static_response(const HillSystem& system, Eigen::Index num_modes,
                                                           double speed);
 

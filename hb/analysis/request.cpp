@@ -71,6 +71,7 @@ Settings settings_of(const Request& request, const Scene& scene) {
   settings.tolerance = request.tolerance.value_or(scene.analysis.tolerance);
   if (!(settings.tolerance >= 1e-14 && settings.tolerance <= 0.1))
     throw RequestError("tolerance", fmt::format("\"{}\"", settings.tolerance), "a number from 1e-14 to 0.1");
+  settings.tolerance_asked = request.tolerance.has_value();
   settings.boundary_tolerance = request.boundary_tolerance.value_or(default_boundary_tolerance(settings.tolerance));
   if (!(settings.boundary_tolerance >= 1e-14 && settings.boundary_tolerance <= 1e-2))
     throw RequestError("boundary_tolerance", fmt::format("\"{}\"", settings.boundary_tolerance),

@@ -71,6 +71,7 @@ struct Request {
 struct Settings {
   Modes modes = 5;
   double tolerance = 1e-10;
+  bool tolerance_asked = false;  // by the request, not the scene
   std::vector<std::string> rods;
   Only only;
   SteadyMethod steady_method = SteadyMethod::automatic;

@@ -12,6 +12,7 @@
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/request.hpp"
 #include "lib/chebyshev.hpp"
+#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 
 namespace hb {
@@ -46,12 +47,20 @@ struct Box {
   bool contains(double u, double v) const { return u >= low[0] && u <= high[0] && v >= low[1] && v <= high[1]; }
 };
 
+// What the interpolated numbers of a system may be wrong by, I x I each; those of stiffness summed over the harmonics,
+// per power, and beside them their largest sizes.
+struct NumberErrors {
+  MatrixXd mass, damping;
+  std::array<MatrixXd, num_powers> stiffness, stiffness_sizes;
+};
+
 // Part of the plane of scene numbers: interpolated, divided further, or (neither) computed place by place.
 struct Patch {
   Box box;
   std::array<Index, 2> degree{};
   std::vector<Layout> layouts;  // per rod
   std::vector<MatrixXd> coefficients;  // per rod: numbers x products of Chebyshev polynomials, first axis fastest
+  std::vector<NumberErrors> errors;  // per rod
   std::vector<std::array<bool, 2>> varies;  // per rod: not the same bits at all nodes along the axis
   std::vector<Patch> parts;
 
@@ -62,6 +71,7 @@ struct Patch {
 
 using scene_plane::Box;
 using scene_plane::Layout;
+using scene_plane::NumberErrors;
 using scene_plane::Patch;
 
 namespace {
@@ -135,6 +145,43 @@ VectorXd scales(const VectorXd& v, const Layout& layout) {
     start += 2 * n * columns;
   }
   return scale;
+}
+
+// From the largest differences at a few places; rounding where the sums of products of Chebyshev polynomials, of at
+// most 1 each, cancel. None where all coefficients but the first are zero.
+NumberErrors errors_of(const VectorXd& differences, const MatrixXd& coefficients, const Layout& layout) {
+  constexpr double margin = 4;
+  const VectorXd others = coefficients.rightCols(coefficients.cols() - 1).cwiseAbs().rowwise().sum();
+  const VectorXd sums = others + coefficients.col(0).cwiseAbs();
+  const VectorXd errors = (others.array() > 0).select(margin * differences.cwiseMax(eps * sums), 0.0);
+  const Index I = layout.num_modes, n = layout.matrix();
+  NumberErrors found{errors.head(n).reshaped(I, I), errors.segment(n, n).reshaped(I, I), {}, {}};
+  Index start = 2 * n;
+  for (std::size_t p = 0; p < num_powers; ++p) {
+    const Index columns = layout.columns[p];
+    found.stiffness[p] = found.stiffness_sizes[p] = MatrixXd::Zero(I, I);
+    for (Index k = 0; k < 2 * columns; ++k, start += n) {  // real parts, then imaginary ones
+      const double both_signs = k % columns == 0 ? 1 : 2;
+      found.stiffness[p] += both_signs * errors.segment(start, n).reshaped(I, I);
+      found.stiffness_sizes[p] += both_signs * sums.segment(start, n).reshaped(I, I);
+    }
+  }
+  return found;
+}
+
+// At one speed; relative errors of the mass are taken to be errors of both.
+GivenErrors given_errors(const HillSystem& system, const NumberErrors& errors, double speed) {
+  const Index I = system.num_modes();
+  double relative = 0;
+  for (Index k = 0; k < I; ++k)
+    for (Index i = 0; i < I; ++i)
+      if (errors.mass(i, k) > 0)
+        relative = std::max(relative, errors.mass(i, k) / std::sqrt(std::abs(system.mass(i, i) * system.mass(k, k))));
+  GivenErrors given{errors.damping + relative * system.damping.cwiseAbs(), MatrixXd::Zero(I, I)};
+  double power = 1;
+  for (std::size_t p = 0; p < num_powers; ++p, power *= speed)
+    given.stiffness += power * (errors.stiffness[p] + relative * errors.stiffness_sizes[p]);
+  return given;
 }
 
 // Whether values at (n[0]+1) x (n[1]+1) nodes, one a column, first axis fastest, change along each axis.
@@ -267,11 +314,19 @@ struct ScenePlane::Implementation {
           coefficients.middleCols(rows * l, rows) += Dy(j, l) * (values.middleCols(rows * j, rows) * Dx);
         }
       }
+      for (Index number = 0; number < values.rows(); ++number)
+        if ((values.row(number).array() == values(number, 0)).all()) {
+          coefficients.row(number).setZero();
+          coefficients(number, 0) = values(number, 0);
+        }
+      VectorXd errors = VectorXd::Zero(values.rows());
       for (std::size_t k = num_nodes; k < places.size(); ++k) {
         const VectorXd truth = packed((*samples[k])[r], layout);
         const VectorXd error = (coefficients * products(patch, places[k][0], places[k][1]) - truth).cwiseAbs();
+        errors = errors.cwiseMax(error);
         if (!(error.array() <= interpolation_tolerance * scales(truth, layout).array()).all()) {
           patch.coefficients.clear();
+          patch.errors.clear();
           patch.layouts.clear();
           patch.varies.clear();
           return false;
@@ -279,6 +334,7 @@ struct ScenePlane::Implementation {
       }
       patch.layouts.push_back(layout);
       patch.varies.push_back(varies);
+      patch.errors.push_back(errors_of(errors, coefficients, layout));
       patch.coefficients.push_back(std::move(coefficients));
     }
     ++patches;
@@ -446,7 +502,9 @@ std::optional<ScaledSystem> ScenePlane::system(std::size_t rod, double x, double
   try {
     if (patch->interpolates() && patch->box.contains(u, v)) {
       const VectorXd numbers = patch->coefficients[rod] * Implementation::products(*patch, u, v);
-      return scale_system(unpacked(numbers, patch->layouts[rod]), s.speed_at(x, y));
+      const HillSystem system = unpacked(numbers, patch->layouts[rod]);
+      const double speed = s.speed_at(x, y);
+      return scale_system(system, speed, given_errors(system, patch->errors[rod], speed));
     }
     const std::vector<HillSystem>* systems = s.systems_directly(u, v);
     if (!systems) return std::nullopt;

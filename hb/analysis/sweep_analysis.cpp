@@ -68,6 +68,8 @@ class SweepRun {
   }
 
  private:
+  static constexpr double near_pole = 1e-3;  // of the way to what is next to it
+
   std::size_t intervals() const { return values_.size() - 1; }
 
   std::string counted(const std::string& what) {
@@ -147,6 +149,8 @@ class SweepRun {
         return {point.x, point.speed, rod.num_harmonics, rod.max_abs, modes_[r][at]};
       };
       found.peaks = resonances_between(along_[r], place(a, k), place(b, k + 1));
+      if (k == 0 || k + 1 == intervals())
+        for (ResponseSample& sample : inside(along_[r], a.x, b.x)) found.peaks.push_back(std::move(sample));
     }
     return found;
   }
@@ -229,20 +233,51 @@ class SweepRun {
     const std::size_t r = reported_[i];
     std::vector<ResponseSample> run;
     const auto finish = [&] {
+      std::ranges::sort(run, {}, &ResponseSample::x);
       for (const Maximum& maximum : local_maxima(run, result_.rods[r].num_modes)) tasks.push_back({r, maximum});
       run.clear();
     };
+    const auto add = [&](const std::vector<ResponseSample>& samples) {
+      run.insert(run.end(), samples.begin(), samples.end());
+    };
     for (std::size_t k = 0; k < values_.size(); ++k) {
       const SweepPoint& point = result_.points[k];
-      if (point.rods.empty() || point.rods[r].max_abs.empty()) {
-        finish();
-      } else {
+      if (!point.rods.empty() && !point.rods[r].max_abs.empty()) {
         run.push_back({point.x, point.rods[r].max_abs});
+      } else {
+        const std::vector<ResponseSample> sides = beside_point(r, k);
+        if (sides.empty()) finish();
+        add(sides);
       }
-      if (k < intervals() && !run.empty())
-        for (const ResponseSample& sample : between_[i * intervals() + k].peaks) run.push_back(sample);
+      if (k == intervals() || run.empty()) continue;
+      add(between_[i * intervals() + k].peaks);
+      add(beside_boundaries(r, k));
     }
     finish();
+  }
+
+  // Of a point on a resonance without damping.
+  std::vector<ResponseSample> beside_point(std::size_t r, std::size_t k) const {
+    const SweepPoint& point = result_.points[k];
+    if (k == 0 || k == intervals() || point.rods.empty() || point.rods[r].steady != SteadyStatus::singular) return {};
+    return beside_pole(along_[r], point.x, near_pole * std::min(point.x - values_[k - 1], values_[k + 1] - point.x));
+  }
+
+  // Where a multiplier passes +1 the response is unbounded: of boundaries in the interval from point k.
+  std::vector<ResponseSample> beside_boundaries(std::size_t r, std::size_t k) const {
+    constexpr double one_pole = 1e-8;  // relative: nearer ones are found as one
+    std::vector<ResponseSample> samples;
+    const std::vector<StabilityBoundary>& boundaries = result_.rods[r].boundaries;
+    for (const StabilityBoundary& boundary : boundaries) {
+      if (boundary.kind != BoundaryKind::plus_one || boundary.x <= values_[k] || boundary.x >= values_[k + 1]) continue;
+      double free = std::min(boundary.x - values_[k], values_[k + 1] - boundary.x);
+      for (const StabilityBoundary& other : boundaries)
+        if (std::abs(other.x - boundary.x) > one_pole * boundary.x)
+          free = std::min(free, std::abs(other.x - boundary.x));
+      for (ResponseSample& sample : beside_pole(along_[r], boundary.x, near_pole * free))
+        samples.push_back(std::move(sample));
+    }
+    return samples;
   }
 
   std::optional<CriticalPoint> located(const PeakTask& task) const {
@@ -338,7 +373,8 @@ class SweepRun {
       const std::string& name = result_.rods[r].name;
       if (singular > 0) {
         result_.shortfalls.push_back(
-            fmt::format("{}: no unique periodic solution at {} points (resonance without damping)", name, singular));
+            fmt::format("{}: no unique periodic solution at {} point{} (resonance without damping)", name, singular,
+                        singular == 1 ? "" : "s"));
       }
       if (steady > 0) {
         result_.shortfalls.push_back(

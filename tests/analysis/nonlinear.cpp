@@ -41,6 +41,17 @@ TEST(NonlinearFromCpp, SteadyIsTheReferencesMotion) {
   EXPECT_NEAR(found.rods[1].max_abs[0].value, 0.9390832626, 3e-7 * 0.9390832626);
 }
 
+// Motions are solved to 1e-9.
+TEST(NonlinearFromCpp, AToleranceThatIsAskedForAndNotReachedIsSaid) {
+  Request request = at(900, 2, motion_alone);
+  const Scene scene = read_scene(nonlinear_scenes + "six_link.toml");
+  EXPECT_TRUE(nonlinear_steady(scene, request).shortfalls.empty());
+  request.tolerance = 1e-14;
+  const NonlinearSteady found = nonlinear_steady(scene, request);
+  ASSERT_EQ(found.shortfalls.size(), 1u);
+  EXPECT_NE(found.shortfalls[0].find("exceeds the tolerance 1.0e-14"), std::string::npos) << found.shortfalls[0];
+}
+
 TEST(NonlinearFromCpp, SweepOfAFunctionIsThatOfTheText) {
   const Linkage linkage = std::get<Linkage>(read_scene(nonlinear_scenes + "six_link.toml").model);
   const SceneFamily by_function(

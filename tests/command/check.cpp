@@ -138,6 +138,12 @@ TEST_F(Check, TooLittleTimeIsSaidInWordsWithStatus3) {
   EXPECT_EQ(result.status, 3) << result.out << result.err;
   EXPECT_NE(result.out.find("more than the limit for a case"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("harmonic balance"), std::string::npos);
+  const CommandResult json =
+      hb("check " + scene("six_link_4500") + " --rpm 300 --integrator bdf --case-limit 0.01 --json");
+  EXPECT_EQ(json.status, 3);
+  const Json document = Json::parse(json.out);
+  EXPECT_EQ(document["status"], "tolerance not reached");
+  EXPECT_NE(document["notes"].dump().find("more than the limit for a case"), std::string::npos) << document["notes"];
 }
 
 TEST_F(Check, WrongFlagsEndWithStatus2) {

@@ -230,6 +230,48 @@ TEST_F(Sweep, CriticalSpeedOfADampedOscillatorIsTheClosedForm) {
   EXPECT_EQ(third["critical"][0]["order"], 3);
 }
 
+// On a point of the sweep, between two, at its end.
+TEST_F(Sweep, ResonanceWithoutDampingIsFoundWhereverThePointsLie) {
+  write("undamped.toml",
+        "[hill]\nmass = [[1.0]]\nstiffness = [{ harmonic = 0, cos = [[1.0]] }]\nload = [{ harmonic = 1, cos = [1.0] "
+        "}]\n");
+  for (const auto& [range, status] : {std::pair("0.7:1.5:0.1", 3), {"0.5:1.5:0.01", 3}, {"0.55:1.53:0.1", 0}}) {
+    const CommandResult result = hb(std::string("sweep undamped.toml --json --omega ") + range);
+    EXPECT_EQ(result.status, status) << range;
+    const Json critical = Json::parse(result.out)["critical"];
+    ASSERT_EQ(critical.size(), 1u) << range;
+    EXPECT_NEAR(critical[0]["omega"], 1, 1e-10) << range;
+    EXPECT_TRUE(critical[0]["max_abs"].is_null()) << range;
+  }
+  const std::string text = hb("sweep undamped.toml --omega 0.7:1.5:0.1").out;
+  EXPECT_EQ(text.find(" nan"), std::string::npos) << text;
+  EXPECT_NE(text.find("unbounded"), std::string::npos) << text;
+}
+
+// In the first or the last interval, wide or narrow; and between points that climb on beyond.
+TEST_F(Sweep, PeaksAreFoundWhereThePointsHaveNoMaximum) {
+  const auto critical = [&](const std::string& arguments) {
+    const Json swept = document(arguments);
+    std::vector<double> found;
+    for (const Json& peak : swept["critical"]) found.push_back(peak["rpm"]);
+    return found;
+  };
+  const std::string six = scene("six_link") + " --only steady,stability --rods CD --rpm ";
+  const std::vector<double> last = critical(six + "1060:1100:20"), first = critical(six + "1090:1150:20");
+  ASSERT_EQ(last.size(), 1u);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_NEAR(last[0], 1095.60471, 1e-4);
+  EXPECT_NEAR(first[0], 1095.60471, 1e-4);
+
+  write("band.toml",
+        "[hill]\nmass = [[1.0]]\nstiffness = [{ harmonic = 0, cos = [[8.85]] }, { harmonic = 1, cos = [[0.0146]] }]\n"
+        "load = [{ harmonic = 1, cos = [0.5] }]\n");
+  const Json undamped = document("band.toml --omega 0.5:3:0.1");
+  ASSERT_GE(undamped["critical"].size(), 2u);
+  EXPECT_NEAR(undamped["critical"].back()["omega"], std::sqrt(8.85), 1e-3);
+  EXPECT_TRUE(undamped["critical"].back()["max_abs"].is_null());
+}
+
 TEST_F(Sweep, AnyNumberOfTheSceneMayBeSwept) {
   const Json found = document(scene("six_link") + " --rpm 1500 --x AB.J=40:60:5 --only steady,stability");
   ASSERT_EQ(found["x"]["values"].size(), 5u);

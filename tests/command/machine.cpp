@@ -66,6 +66,10 @@ TEST_F(Machine, TheDocumentHasBearingsFrameDriveAndSliders) {
   EXPECT_LE(std::abs(many["flywheel"]["energy_fluctuation"].get<double>() - energy),
             found["flywheel"]["energy_fluctuation_error"].get<double>());
   EXPECT_LT(found["flywheel"]["energy_fluctuation_error"], 0.1 * energy);
+  const Json most = document(scene("slider_crank") + " --rpm 100 --modes 60 --only shape");
+  EXPECT_NEAR(most["rods"]["rod"]["static_deflection"]["max_abs"].get<double>(),
+              many["rods"]["rod"]["static_deflection"]["max_abs"].get<double>(),
+              many["rods"]["rod"]["static_deflection"]["error"].get<double>());
   const Json heavy = document(scene("slider_crank") + crank_with_flywheel + " --set crank.inertia=5000");
   EXPECT_NEAR(heavy["flywheel"]["inertia"].get<double>(), 5076.8, 1e-6);
   EXPECT_NEAR(heavy["flywheel"]["energy_fluctuation"].get<double>(), energy, 1e-9 * energy);

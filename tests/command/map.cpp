@@ -93,6 +93,26 @@ TEST_F(Map, ARodThatANumberDoesNotMeetIsComputedOnOneLine) {
   EXPECT_EQ(places("3"), places("24"));
 }
 
+// Of the rods asked for: the first line says so.
+TEST_F(Map, OfSomeOfTheRodsItSaysOfWhich) {
+  const std::string range =
+      scene("six_link") + " --no-boundaries --only stability --x rpm=2000:2500:3 --y CD.J=40:50:2";
+  EXPECT_NE(hb("map " + range).out.find(": UNSTABLE at 100 % of the points because of AB\n"), std::string::npos);
+  EXPECT_NE(hb("map " + range + " --rods CD").out.find(": CD alone: stable at all points\n"), std::string::npos);
+}
+
+// Scene numbers are interpolated: near zero a stiffness is what is left of numbers ten times as large.
+TEST_F(Map, RoundingOfInterpolatedNumbersIsInTheErrors) {
+  std::ofstream(folder_ / "strutt.toml")
+      << "[hill]\nmass = [[1]]\nstiffness = [{ harmonic = 0, cos = [[1]], scale = 1 }, { harmonic = 2, cos = [[-2]], "
+         "scale = 0.1 }]\n[analysis]\nomega = 1\n";
+  const Json found =
+      document("strutt.toml --no-boundaries --x hill.stiffness.0.scale=-1:10:45 --y hill.stiffness.1.scale=0:5:21");
+  EXPECT_EQ(found["x"]["values"][4], 0.0);
+  EXPECT_EQ(found["verdict"][0][4], "undecided");  // q'' = 0
+  EXPECT_LE(std::abs(found["growth_rate"][0][4].get<double>()), found["growth_error"][0][4].get<double>());
+}
+
 // A map said nothing of the theory that its verdicts are by.
 TEST_F(Map, SaysWhereTheLinearTheoryHoldsAsOneSpeedDoes) {
   const std::string rod = scene("six_link") + " --modes 2 --no-boundaries ";

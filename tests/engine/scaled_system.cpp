@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "hb/engine/exponents/stability.hpp"
+
 namespace hb {
 namespace {
 
@@ -21,6 +23,30 @@ HillSystem full_system() {
   s.load[1] = FourierSeries(2, 2);
   s.load[1].c.col(2) << 3, std::complex<double>(0, 1);
   return s;
+}
+
+// What the coefficients are given wrong by is in the errors of constant ones, too.
+TEST(ScaledSystem, ErrorsOfGivenCoefficientsAreInThoseOfExponents) {
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Constant(1, 1, 4);
+  system.damping = Eigen::MatrixXd::Constant(1, 1, 0.4);
+  system.stiffness[0] = FourierSeries(1, 0);
+  system.stiffness[0].c(0, 0) = 9;
+  const double speed = 0.7, wrong_b = 1e-6, wrong_c = 1e-5;
+  const GivenErrors given{Eigen::MatrixXd::Constant(1, 1, wrong_b), Eigen::MatrixXd::Constant(1, 1, wrong_c)};
+  const Stability exact = analyse_stability(scale_system(system, speed), {});
+  const Stability found = analyse_stability(scale_system(system, speed, given), {});
+  EXPECT_EQ(found.growth_rate, exact.growth_rate);
+  system.damping(0, 0) += wrong_b;
+  system.stiffness[0].c(0, 0) += wrong_c;
+  const Stability moved = analyse_stability(scale_system(system, speed), {});
+  ASSERT_EQ(found.exponents.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double change = std::abs(moved.exponents[i].value - exact.exponents[i].value);
+    EXPECT_LT(exact.exponents[i].error, 0.1 * change);
+    EXPECT_GE(found.exponents[i].error, change);
+    EXPECT_LT(found.exponents[i].error, 3 * change);
+  }
 }
 
 // M q'' + B q' + C q - h with q = load_scale T x must be Omega^2 load_scale M T (x'' + G x' + K x - f) for any x.

@@ -335,6 +335,19 @@ TEST(ResponsePeak, IsToldFromAPole) {
   EXPECT_LE(pole->error, 1e-10 * x0);
 }
 
+// Near a pole the rough values are off by tenths: its place was told to a hundredth of the last step all the same.
+TEST(ResponsePeak, APoleIsLocatedByTheFineValues) {
+  const double x0 = 0.92899074664;
+  const auto value = [&](double x) { return std::optional(1.0 + 0.016 / std::abs(x - x0)); };
+  const auto rough = [&](double x) { return std::optional(*value(x) * (x > x0 ? 1.2 : 0.9)); };
+  const std::optional<ResponsePeak> peak = locate_peak(rough, value, 0.9, 0.93, 1);
+  ASSERT_TRUE(peak);
+  EXPECT_EQ(peak->value, HUGE_VAL);
+  EXPECT_LE(std::abs(peak->x - x0), peak->error);
+  EXPECT_LT(peak->error, 1e-10);
+  EXPECT_TRUE(peak->converged);
+}
+
 TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {
   const auto value = [](double x) -> std::optional<double> {
     if (x > 1.1) return std::nullopt;

@@ -9,7 +9,9 @@
 #include <exception>
 #include <iterator>
 #include <new>
+#include <nlohmann/json.hpp>
 #include <regex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,6 +23,7 @@
 #include "tools/command/command.hpp"
 #include "tools/command/compare.hpp"
 #include "tools/command/version.hpp"
+#include "tools/output/json_output.hpp"
 #include "tools/output/printable.hpp"
 #include "tools/output/speaker.hpp"
 #include "tools/work/ranks.hpp"
@@ -129,6 +132,10 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "{}: {} (`{} --help` lists what is allowed)\n", command, printable(what), command);
     return exit_wrong_input;
   } catch (const UnresolvedLinkage& error) {
+    const bool as_json = std::ranges::any_of(std::span(argv, static_cast<std::size_t>(argc)),
+                                             [](const char* word) { return std::string_view(word) == "--json"; });
+    if (as_json)
+      fmt::print("{}\n", json_text({{"status", "tolerance not reached"}, {"notes", {printable(error.what())}}}));
     return say(exit_not_reached, error.what());
   } catch (const SceneError& error) {
     return say(exit_wrong_input, error.what());

@@ -310,7 +310,8 @@ std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep)
     add(text, "  {:>16}  {}\n", "growth" + bracketed(units.rate), "verdict");
     constexpr std::size_t rows = 24;
     const std::size_t every = (branch.points.size() + rows - 1) / rows;
-    for (std::size_t k = 0; k < branch.points.size(); k += every) {
+    const std::size_t last = branch.points.size() - 1;  // a branch has a point
+    for (std::size_t k = 0; k <= last; k = k < last ? std::min(k + every, last) : last + 1) {
       const NonlinearPoint& point = branch.points[k];
       add(text, "  {:>14.8g}", point.x);
       for (std::size_t r = 0; r < sweep.rods.size(); ++r)
@@ -320,7 +321,7 @@ std::string branches_table(const SweepScene& scene, const NonlinearSweep& sweep)
             point.stability->verdict == Verdict::unstable ? "UNSTABLE" : to_string(point.stability->verdict));
       add(text, "\n");
     }
-    if (every > 1) add(text, "  (every {} point; --json and --out have all)\n", ordinal(every));
+    if (every > 1) add(text, "  (every {} point and the last; --json and --out have all)\n", ordinal(every));
     add(text, "{}", bent_stress_rows(scene, sweep, branch));
   }
   add(text, "\n{}\n", sweep.folds.empty() ? "no fold" : "folds: the branch turns back");

@@ -176,7 +176,19 @@ Json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks, 
     json["warnings"] = std::move(warnings);
   json["seconds"] = {{"harmonic_balance", series}, {"shooting", shooting}};
   if (marching > 0) json["seconds"]["marching"] = marching;
+  std::vector<ShortfallsAt> shortfalls;
+  for (const SpeedCheck& check : checks) shortfalls.push_back({check.speed, check.shortfalls});
+  add_shortfalls(json, model.scene, shortfalls);
   return json;
+}
+
+void add_shortfalls(Json& json, const Scene& scene, const std::vector<ShortfallsAt>& all) {
+  Json notes = Json::array();
+  for (const auto& [speed, sentences] : all)
+    for (const std::string& sentence : sentences)
+      notes.push_back(all.size() > 1 ? speed_text(speed, scene) + ": " + sentence : sentence);
+  json["status"] = notes.empty() ? "reached" : "tolerance not reached";
+  if (!notes.empty()) json["notes"] = std::move(notes);
 }
 
 }  // namespace hb::tools

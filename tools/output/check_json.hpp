@@ -12,4 +12,12 @@ namespace hb::tools {
 [[nodiscard]] nlohmann::ordered_json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks,
                                                 const Settings& settings);
 
+// What missed its tolerance or could not be compared at one speed.
+struct ShortfallsAt {
+  double speed = 0;  // rad per unit time
+  std::vector<std::string> sentences;
+};
+// `status` and, where there are some, `notes`, with the speed where there are several.
+void add_shortfalls(nlohmann::ordered_json& json, const Scene& scene, const std::vector<ShortfallsAt>& all);
+
 }  // namespace hb::tools

@@ -389,7 +389,17 @@ CsvFile map_resonance_csv(const MapDocument& document) {
   return file;
 }
 
-std::string map_verdict(const MapDocument& document) {
+namespace {
+
+// Empty where all elastic links are looked at.
+std::string alone(const MapDocument& document) {
+  const std::vector<std::string>& rods = document.result.rods;
+  const auto* linkage = std::get_if<Linkage>(&document.scene.model);
+  if (!linkage || rods.size() == elastic_links(*linkage).size()) return "";
+  return fmt::format("{} alone: ", fmt::join(rods, ", "));
+}
+
+std::string verdict_of_points(const MapDocument& document) {
   const MapResult& r = document.result;
   const NodeCounts n = counts(r.worst());
   const double all = static_cast<double>(r.worst().size() - n.missing);
@@ -419,8 +429,6 @@ std::string map_verdict(const MapDocument& document) {
          which;
 }
 
-namespace {
-
 std::string boundary_rows(const MapDocument& document) {
   const MapResult& r = document.result;
   const Units& units = document.scene.units;
@@ -445,6 +453,8 @@ std::string boundary_rows(const MapDocument& document) {
 }
 
 }  // namespace
+
+std::string map_verdict(const MapDocument& document) { return alone(document) + verdict_of_points(document); }
 
 std::string map_summary(const MapDocument& document) {
   const MapResult& r = document.result;

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "tools/output/check_json.hpp"
 #include "tools/output/json.hpp"
 #include "tools/output/json_parts.hpp"
 #include "tools/output/output_units.hpp"
@@ -159,6 +160,9 @@ Json nonlinear_check_json(const SceneModel& model, const std::vector<NonlinearCh
   }
   if (!model.scene.warnings.empty()) json["warnings"] = model.scene.warnings;
   json["seconds"] = {{"harmonic_balance", series}, {"shooting", shooting}};
+  std::vector<ShortfallsAt> shortfalls;
+  for (const NonlinearCheck& check : checks) shortfalls.push_back({check.speed, check.shortfalls});
+  add_shortfalls(json, model.scene, shortfalls);
   return json;
 }
 

@@ -353,8 +353,16 @@ void require_nonlinear(const SceneModel& model, int turns) {
 NonlinearResult nonlinear_steady(const SceneModel& model, double speed, const Settings& settings,
                                  const NonlinearOptions& options) {
   require_nonlinear(model, options.turns);
-  if (is_auto(settings.modes)) return with_automatic_modes(model, speed, settings, options);
-  return at_given_modes(model, speed, settings, options, nullptr);
+  NonlinearResult result = is_auto(settings.modes) ? with_automatic_modes(model, speed, settings, options)
+                                                   : at_given_modes(model, speed, settings, options, nullptr);
+  // Motions are not solved to less than least_motion_tolerance, whatever is asked.
+  const double error = result.motion.error_bound;
+  if (settings.tolerance_asked && result.search == MotionSearch::found && error <= result.tolerance &&
+      error > settings.tolerance)
+    result.shortfalls.push_back(
+        fmt::format("the motion's error {:.1e} exceeds the tolerance {:.1e}: motions are solved to {:.0e}", error,
+                    settings.tolerance, least_motion_tolerance));
+  return result;
 }
 
 NonlinearResult nonlinear_answer(const SceneModel& model, const PeriodicMotion& motion,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "hb/analysis/accuracy.hpp"
 
@@ -22,15 +23,56 @@ std::optional<ResponseSample> sample_at(const RodAlong& rod, double x) {
   return sample;
 }
 
-// Samples on both flanks and on top, or none where no linkage or no response is.
-std::vector<ResponseSample> flanks_and_top(const RodAlong& rod, double x, double flank) {
+// Samples on both flanks and on top of q_j, about x and, where it still climbs there, a few steps beyond; none where no
+// linkage, no response or no top is.
+std::vector<ResponseSample> round_top(const RodAlong& rod, double x, double flank, double low, double high,
+                                      std::size_t j) {
+  constexpr int most_steps = 3;
   std::vector<ResponseSample> samples;
-  for (const double place : {x - flank, x, x + flank}) {
+  const auto add = [&](double place) {
     std::optional<ResponseSample> sample = sample_at(rod, place);
-    if (!sample) return {};
-    samples.push_back(std::move(*sample));
+    if (!sample) return false;
+    samples.insert(std::ranges::lower_bound(samples, place, {}, &ResponseSample::x), std::move(*sample));
+    return true;
+  };
+  if (!add(x - flank) || !add(x) || !add(x + flank)) return {};
+  const auto height = [j](const ResponseSample& sample) { return sample.max_abs[j]; };
+  for (int step = 0; step <= most_steps; ++step) {
+    const auto top = std::ranges::max_element(samples, {}, height);
+    const bool first = top == samples.begin(), last = top + 1 == samples.end();
+    if (!first && !last) return samples;
+    const double next = first ? samples.front().x - flank : samples.back().x + flank;
+    if (!(next > low && next < high) || !add(next)) return {};
   }
-  return samples;
+  return {};
+}
+
+// Frequency of mode j of the averaged system over the speed; NaN where there is none.
+double mean_ratio(const RodAlong& rod, double x, std::size_t j) {
+  const std::optional<ScaledSystem> system = rod.system(x);
+  if (!system) return std::numeric_limits<double>::quiet_NaN();
+  return std::sqrt(system->squared_frequencies()(static_cast<Eigen::Index>(j)));
+}
+
+// Where mode j is met by n Omega between two places, given that it is: by the averaged system's frequency, off by what
+// it is off at both ends in proportion; without it on a straight line.
+double crossing(const RodAlong& rod, const ResponsePlace& a, const ResponsePlace& b, std::size_t j, double n) {
+  constexpr int most_steps = 8;
+  constexpr double enough = 1e-3;  // of the interval
+  const double first = a.modes[j].frequency / a.speed - n, last = b.modes[j].frequency / b.speed - n;
+  const double off_a = first + n - mean_ratio(rod, a.x, j), off_b = last + n - mean_ratio(rod, b.x, j);
+  double low = 0, high = 1, f_low = first, f_high = last, t = first / (first - last);
+  for (int step = 0; step < most_steps; ++step) {
+    const double x = a.x + t * (b.x - a.x), f = mean_ratio(rod, x, j) + off_a + t * (off_b - off_a) - n;
+    if (!std::isfinite(f)) break;
+    (f * f_low > 0 ? low : high) = t;
+    (f * f_low > 0 ? f_low : f_high) = f;
+    const double next = low + (high - low) * f_low / (f_low - f_high);
+    const bool settled = std::abs(next - t) < enough;
+    t = next;
+    if (settled) break;
+  }
+  return a.x + t * (b.x - a.x);
 }
 
 int largest_component(const std::vector<double>& values) {
@@ -55,25 +97,43 @@ void add_maxima(const std::vector<ResponseSample>& samples, int component, std::
 }  // namespace
 
 std::vector<ResponseSample> resonances_between(const RodAlong& rod, const ResponsePlace& a, const ResponsePlace& b) {
+  constexpr double least_flank = 0.02;  // of the interval: crossings are foretold better than that
   std::vector<ResponseSample> found;
   const int most = std::max(a.num_harmonics, b.num_harmonics);
-  for (std::size_t j = 0; j < a.modes.size() && j < std::min(a.max_abs.size(), b.max_abs.size()); ++j) {
+  for (std::size_t j = 0; j < a.modes.size() && j < std::max(a.max_abs.size(), b.max_abs.size()); ++j) {
     const double first = a.modes[j].frequency / a.speed, last = b.modes[j].frequency / b.speed;
     if (!std::isfinite(first) || !std::isfinite(last)) continue;
     const double low = std::min(first, last), high = std::max(first, last);
-    const double half_width = 0.5 * (a.modes[j].damping() / a.speed + b.modes[j].damping() / b.speed);
-    // Wide enough to show on the points themselves, or growing.
-    if (!(half_width > 0 && half_width < 2 * (high - low))) continue;
+    const double half_width = 0.5 * std::abs(a.modes[j].damping() / a.speed + b.modes[j].damping() / b.speed);
+    // Wide enough to show on the points themselves.
+    if (!(half_width < 2 * (high - low))) continue;
     for (double n = std::max(1.0, std::floor(low) + 1); n < high && n <= most; ++n) {
-      const double t = (n - first) / (last - first), x = a.x + t * (b.x - a.x);
-      const double flank = std::min({3 * half_width / (high - low) * (b.x - a.x), 0.5 * (x - a.x), 0.5 * (b.x - x)});
-      std::vector<ResponseSample> here = flanks_and_top(rod, x, flank);
-      if (!here.empty() && here[1].max_abs[j] > std::max(a.max_abs[j], b.max_abs[j]))
-        found.insert(found.end(), std::make_move_iterator(here.begin()), std::make_move_iterator(here.end()));
+      const double x = crossing(rod, a, b, j, n), width = b.x - a.x;
+      const double flank =
+          std::min({std::max(3 * half_width / (high - low), least_flank) * width, 0.5 * (x - a.x), 0.5 * (b.x - x)});
+      std::vector<ResponseSample> here = round_top(rod, x, flank, a.x, b.x, j);
+      found.insert(found.end(), std::make_move_iterator(here.begin()), std::make_move_iterator(here.end()));
     }
   }
   std::sort(found.begin(), found.end(), [](const auto& p, const auto& q) { return p.x < q.x; });
   return found;
+}
+
+std::vector<ResponseSample> inside(const RodAlong& rod, double a, double b) {
+  constexpr int parts = 5;
+  std::vector<ResponseSample> samples;
+  for (int part = 1; part < parts; ++part)
+    if (std::optional<ResponseSample> sample = sample_at(rod, a + (b - a) * part / parts))
+      samples.push_back(std::move(*sample));
+  return samples;
+}
+
+std::vector<ResponseSample> beside_pole(const RodAlong& rod, double x, double distance) {
+  std::vector<ResponseSample> samples;
+  constexpr double nearer = 0.7;
+  for (const double place : {x - distance, x + nearer * distance})
+    if (std::optional<ResponseSample> sample = sample_at(rod, place)) samples.push_back(std::move(*sample));
+  return samples.size() == 2 ? samples : std::vector<ResponseSample>();
 }
 
 std::vector<Maximum> local_maxima(const std::vector<ResponseSample>& samples, int num_components) {

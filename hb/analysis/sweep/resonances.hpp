@@ -30,6 +30,13 @@ struct ResponsePlace {
 [[nodiscard]] std::vector<ResponseSample> resonances_between(const RodAlong& rod, const ResponsePlace& a,
                                                              const ResponsePlace& b);
 
+// Inside an interval that has no other one beside it, where a maximum need not show on its ends. Ascending.
+[[nodiscard]] std::vector<ResponseSample> inside(const RodAlong& rod, double a, double b);
+
+// On both sides of a place without a response, not equally far: halving the way between them does not lead back to it.
+// Empty where there is none there either.
+[[nodiscard]] std::vector<ResponseSample> beside_pole(const RodAlong& rod, double x, double distance);
+
 // A maximum of |q_i|, i = component + 1, with a place on either side that is not higher.
 struct Maximum {
   int component;

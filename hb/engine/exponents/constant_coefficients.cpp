@@ -24,20 +24,23 @@ TurnExponents constant_exponents(const ScaledSystem& system) {
   if (diagonal) {
     for (Index i = 0; i < I; ++i) {
       const double b = system.G(i, i), w2 = K(i, i), Q = w2 - b * b / 4;
-      const double rounding = 4 * eps * (std::abs(w2) + b * b / 2);
+      const double wrong_b = system.G_error(i, i), wrong_w2 = system.K_rounding(i, i);
+      const double given = wrong_w2 + std::abs(b) / 2 * wrong_b,
+                   rounding = 4 * eps * (std::abs(w2) + b * b / 2) + given;
       const double root = std::sqrt(std::abs(Q));
-      const double root_error = Q == 0 ? 0 : std::min(rounding / (2 * root), std::sqrt(rounding));
+      const double root_error = Q == 0 && given == 0 ? 0 : std::min(rounding / (2 * root), std::sqrt(rounding));
       if (Q > 0) {
-        const double bar = 2 * eps * std::abs(b) + root_error;
+        const double bar = 2 * eps * std::abs(b) + wrong_b / 2 + root_error;
         add({-b / 2, root}, bar);
         add({-b / 2, -root}, bar);
       } else {
         // The root that nearly cancels from the product of both.
         const double far = b >= 0 ? -b / 2 - root : -b / 2 + root;
         const double near = far == 0 ? 0 : w2 / far;
-        const double relative = far == 0 ? 0 : (root_error / std::abs(far) + 4 * eps);
-        add(near, relative * std::abs(near) + (rounding >= -Q ? root_error : 0));
-        add(far, relative * std::abs(far) + (rounding >= -Q ? root_error : 0));
+        const double relative = far == 0 ? 0 : ((root_error + wrong_b / 2) / std::abs(far) + 4 * eps);
+        const double pair = rounding >= -Q ? root_error : 0;
+        add(near, relative * std::abs(near) + (far == 0 ? 0 : wrong_w2 / std::abs(far)) + pair);
+        add(far, relative * std::abs(far) + pair);
       }
     }
     return result;
@@ -50,7 +53,8 @@ TurnExponents constant_exponents(const ScaledSystem& system) {
   A.bottomLeftCorner(I, I) = -K * W.cwiseInverse().asDiagonal();
   A.bottomRightCorner(I, I) = -system.G;
   // Backward error of the eigenvalues, and of the coefficients themselves.
-  const double change = 8 * eps * double(2 * I) * A.norm();
+  const double change = 8 * eps * double(2 * I) * A.norm() +
+                        (system.K_rounding * W.cwiseInverse().asDiagonal()).norm() + system.G_error.norm();
   const InexactEigenvalues s = inexact_eigenvalues(A, change);
   for (Index i = 0; i < 2 * I; ++i) add(s.value(i), s.radius(i));
   return result;

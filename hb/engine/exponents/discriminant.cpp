@@ -24,7 +24,7 @@ Discriminant from_exponent(cplx s, double s_error, const ScaledSystem& system) {
   const double b = system.G(0, 0);
   Discriminant result;
   result.damping = b;
-  result.damping_error = 2 * eps * std::abs(b);
+  result.damping_error = 2 * eps * std::abs(b) + system.G_error(0, 0);
   result.speed = system.speed;
   const cplx z = two_pi * (s + b / 2);
   const double d = two_pi * (s_error + result.damping_error) + 4 * eps * std::abs(z);

@@ -58,7 +58,7 @@ bool may_be_twice(const Exponents& found) {
 // sum_j s_j = -tr G (Liouville): not so if an exponent was found twice and another one not at all.
 bool add_up(const ScaledSystem& system, const Exponents& found) {
   if (Index(found.s.size()) != 2 * system.num_modes()) return true;
-  double sum = system.G.trace(), error = 8 * eps * system.G.diagonal().cwiseAbs().sum();
+  double sum = system.G.trace(), error = 8 * eps * system.G.diagonal().cwiseAbs().sum() + system.G_error.trace();
   for (std::size_t i = 0; i < found.s.size(); ++i) {
     sum += found.s[i].real();
     error += found.error[i];

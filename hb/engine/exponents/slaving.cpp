@@ -78,7 +78,7 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
         all.beta.c(s + I * l, 0) = system.G(p.S[s], p.S[l]);
       }
     all.alpha_error = slaving::given_rounding * system.K_rounding(p.S, p.S);
-    all.beta_error = 2 * eps * system.G(p.S, p.S).cwiseAbs();
+    all.beta_error = 2 * eps * system.G(p.S, p.S).cwiseAbs() + system.G_error(p.S, p.S);
     slaving::drop_tail(all.alpha, all.alpha_error);
     return all;
   }

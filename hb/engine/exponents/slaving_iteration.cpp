@@ -51,6 +51,7 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       H_((num_samples - 1) / 2),
       G_(system.G),
       rounding_(system.K_rounding),
+      G_error_(system.G_error),
       given_(system.K),
       diagonal_damping_(system.diagonal_damping),
       I_(system.num_modes()),
@@ -228,7 +229,10 @@ ReducedSystem Iteration::result(bool bounds_others) {
       iteration / weight_max() +
       2 * eps * (beta_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * C_.cwiseAbs().maxCoeff()).reshaped(m_, m_);
   for (Index l = 0; l < m_; ++l)
-    for (Index s = 0; s < m_; ++s) reduced.alpha_error(s, l) += given_rounding * rounding_(S_[s], S_[l]);
+    for (Index s = 0; s < m_; ++s) {
+      reduced.alpha_error(s, l) += given_rounding * rounding_(S_[s], S_[l]);
+      reduced.beta_error(s, l) += G_error_(S_[s], S_[l]);
+    }
   drop_tail(reduced.alpha, reduced.alpha_error);
   drop_tail(reduced.beta, reduced.beta_error);
   if (bounds_others) reduced.others_below = others_below();

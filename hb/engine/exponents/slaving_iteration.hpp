@@ -97,7 +97,7 @@ class Iteration {
 
   std::vector<Eigen::Index> S_, F_;
   Eigen::Index m_, n_, N_, H_;
-  const Eigen::MatrixXd &G_, &rounding_;
+  const Eigen::MatrixXd &G_, &rounding_, &G_error_;
   const FourierSeries& given_;  // K as it is given
   bool diagonal_damping_;
   Eigen::Index I_;

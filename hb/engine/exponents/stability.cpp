@@ -41,7 +41,8 @@ Stability finished(const ScaledSystem& system, const ExponentSearch& search, dou
 // Between the mean of all exponents, -tr G/(2I) (Liouville), and the logarithmic norm's bound.
 Stability by_bound(const ScaledSystem& system) {
   const double Omega = system.speed, high = growth_bound(system);
-  const double mean = -system.G.trace() / (2 * double(system.num_modes())), low = mean - 8 * eps * std::abs(mean);
+  const double mean = -system.G.trace() / (2 * double(system.num_modes())),
+               low = mean - 8 * eps * std::abs(mean) - system.G_error.trace() / 2;
   Stability result;
   result.method = StabilityMethod::bound;
   result.evidence = std::isfinite(high) ? "closed-form bounds on the growth rate; no exponent was computed"

@@ -68,6 +68,11 @@ double largest_at(const Eigen::VectorXd& a) {
   return best;
 }
 
+constexpr double pole_distance = 2e-7;  // relative: so near a pole has to show
+
+// Of a pole seen from two distances.
+bool same_residue(double a, double b) { return a >= 0.8 * b && a <= 1.25 * b; }
+
 // f = c/|x - x0| near x0: then (x0 - l)/(r - x0) = f(r)/f(l), and f(l) f(r)/(f(l) + f(r)) (r - l) = c whatever l, r.
 std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double a, double x, double b) {
   double distance = 0.25 * std::min(x - a, b - x), last = 0;
@@ -76,16 +81,35 @@ std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double a, doubl
     const std::optional<double> fl = value(l), fr = value(r);
     if (!fl || !fr) return std::nullopt;
     const double residue = *fl * *fr / (*fl + *fr) * (r - l);
-    const bool constant = step > 0 && residue >= 0.8 * last && residue <= 1.25 * last;
+    const bool constant = step > 0 && same_residue(residue, last);
     if (step > 1 && !constant) return std::nullopt;
     const double next = l + (r - l) * *fr / (*fl + *fr);
-    if (distance <= 2e-7 * std::abs(x) && constant)
-      return ResponsePeak{next, HUGE_VAL, std::abs(next - x) * 1e-2 + 4 * eps * std::abs(x), true};
+    if (distance <= pole_distance * std::abs(x) && constant) return ResponsePeak{next, HUGE_VAL, distance, false};
     x = next;
     last = residue;
     distance *= 0.03;
   }
   return std::nullopt;
+}
+
+// From ever smaller distances; what the last step changed is the error. Rough values so near a pole may be off by some
+// tenths.
+ResponsePeak refined_pole(const ResponseAt& value, ResponsePeak pole, double tolerance) {
+  constexpr int most_steps = 6;
+  constexpr double least = 1e4 * eps;  // relative
+  double distance = std::max(pole.error, least * std::abs(pole.x)), last = 0;
+  pole.error = distance;
+  for (int step = 0; step < most_steps && !pole.converged; ++step, distance *= 0.2) {
+    const double l = pole.x - distance, r = pole.x + distance;
+    const std::optional<double> fl = value(l), fr = value(r);
+    if (!fl || !fr) return pole;
+    const double residue = *fl * *fr / (*fl + *fr) * (r - l), next = l + (r - l) * *fr / (*fl + *fr);
+    const double error = std::abs(next - pole.x) + 4 * eps * std::abs(pole.x);
+    if (step > 0 && !(error < pole.error && same_residue(residue, last))) return pole;
+    pole = {next, HUGE_VAL, step > 0 ? error : distance, step > 0 && error <= tolerance * std::abs(next)};
+    last = residue;
+  }
+  return pole;
 }
 
 // The top at x lies between a and b.
@@ -190,7 +214,7 @@ std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseA
   if (!f_low || !f_inside || !f_high) return std::nullopt;
   Bracket top{low, inside, high, *f_low, *f_inside, *f_high, std::nullopt};
   if (!top.narrow(rough, tolerance)) return std::nullopt;
-  return top.pole ? top.pole : interpolate_top(value, top, low, high, tolerance);
+  return top.pole ? refined_pole(value, *top.pole, tolerance) : interpolate_top(value, top, low, high, tolerance);
 }
 
 }  // namespace hb

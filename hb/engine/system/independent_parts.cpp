@@ -63,6 +63,7 @@ ScaledSystem group_of(const ScaledSystem& system, const std::vector<int>& modes)
   part.T_inverse = system.T_inverse(modes, Eigen::all);
   part.G = system.G(modes, modes);
   part.K_rounding = system.K_rounding(modes, modes);
+  part.G_error = system.G_error(modes, modes);
   part.diagonal_damping = part.G.isDiagonal(0);
   part.conservative = system.conservative(modes);
   part.K = FourierSeries(m * m, system.K.num_harmonics());
@@ -92,6 +93,7 @@ ScaledSystem with_period_divided(const ScaledSystem& system, Index g) {
   shorter.T_inverse = system.T_inverse;
   shorter.G = system.G * factor;
   shorter.K_rounding = system.K_rounding * (factor * factor);
+  shorter.G_error = system.G_error * factor;
   shorter.diagonal_damping = system.diagonal_damping;
   shorter.conservative = system.conservative;
   shorter.K = FourierSeries(system.K.num_components(), system.K.num_harmonics() / g);

@@ -131,6 +131,17 @@ Eigen::Array<bool, Eigen::Dynamic, 1> conservative_modes(const HillSystem& syste
   return result;
 }
 
+// What B and C are given wrong by, in the errors of G and K.
+void add_given(const GivenErrors& given, const Eigen::MatrixXd& L, ScaledSystem& scaled) {
+  const double speed = scaled.speed;
+  const auto add = [&](const Eigen::MatrixXd& error, double scale, Eigen::MatrixXd& bound) {
+    if (error.size() > 0) bound += scale * L.cwiseAbs() * error * scaled.T.cwiseAbs();
+  };
+  scaled.G_error = Eigen::MatrixXd::Zero(L.rows(), L.rows());
+  add(given.damping, 1 / speed, scaled.G_error);
+  add(given.stiffness, 1 / (speed * speed), scaled.K_rounding);
+}
+
 }  // namespace
 
 Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
@@ -152,7 +163,7 @@ Eigen::VectorXd ScaledSystem::squared_frequencies() const {
 }
 
 // hb/engine/README.md (S2).
-ScaledSystem scale_system(const HillSystem& system, double speed) {
+ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
   const Eigen::Index I = system.num_modes();
@@ -211,6 +222,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed) {
   const double stiffness_steps = scaling ? scaling_steps(system, T.diagonal(), speed) : steps;
   scaled.K_rounding = stiffness_steps * eps / (speed * speed) * L.cwiseAbs() *
                       Eigen::Map<const Eigen::MatrixXd>(stiffness_size.data(), I, I) * T.cwiseAbs();
+  add_given(given, L, scaled);
   scaled.f_rounding = Eigen::VectorXd::Zero(I);
 
   FourierSeries h = load_at(system, speed);

@@ -16,6 +16,7 @@ struct ScaledSystem {
   FourierSeries K;  // T^-1 M^-1 C T / Omega^2: I*I components column-major; harmonics below rounding cut
   Eigen::MatrixXd K_rounding;  // bound on the rounding error of K, entry by entry: sum over all harmonics of |error|
   Eigen::VectorXd f_rounding;  // the same of f
+  Eigen::MatrixXd G_error;  // bound on what G is given wrong by, beside rounding
   FourierSeries f;  // T^-1 M^-1 h / (Omega^2 load_scale): I components, largest |coefficient| about 1
   double load_scale = 0;  // 0: no load; then f is empty
   bool diagonal_damping = true;
@@ -32,9 +33,14 @@ struct ScaledSystem {
   Eigen::VectorXd damping_diagonal() const { return G.diagonal(); }
 };
 
+// Bounds on what B and C are given wrong by, entry by entry, of C the sum over all harmonics. Empty: nothing.
+struct GivenErrors {
+  Eigen::MatrixXd damping, stiffness;  // I x I, those of C at the speed
+};
+
 // Symmetric M (positive definite): T = M^-1/2 (diagonal when M is), turned to the eigenvectors of the mean stiffness
 // if that leaves far less coupling in stiffness and damping. Otherwise T = 1 with M^-1 multiplied from the left.
 // Throws std::invalid_argument if the speed is not positive and finite.
-[[nodiscard]] ScaledSystem scale_system(const HillSystem& system, double speed);
+[[nodiscard]] ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given = {});
 
 }  // namespace hb

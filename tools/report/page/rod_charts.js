@@ -104,7 +104,7 @@ const campbellChart = (host, rod, along, x) => {
   const orders = criticalOf(rod.name).map((peak) => peak.order || 0);
   const lines = orderLines(top, Math.min(16, Math.max(6, 2 + Math.max(0, ...orders)))), marks = markCritical(rod.name, (peak) => (peak.frequency === undefined ? NaN : peak.frequency * units.frequency.factor));
   new SpeedChart(host, {
-    label: `Campbell diagram of ${rod.name}: frequencies of ${shown.length} modes, order lines, ${bandsOf(rod.name).length} unstable bands`,
+    label: `Campbell diagram of ${rod.name}: frequencies of ${shown.length} mode${shown.length === 1 ? "" : "s"}, order lines, ${bandsOf(rod.name).length} unstable band${bandsOf(rod.name).length === 1 ? "" : "s"}`,
     x: gappedX(x), columns, yLabel: `frequency [${units.frequency.name}]`, yRange: [0, top], bands: bandsOf(rod.name),
     under: (pen, area, chart) => { drawOrders(lines)(pen, area, chart); marks(pen, area, chart); }, labels: nameOrders(lines),
   });
