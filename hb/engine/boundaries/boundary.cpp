@@ -6,6 +6,7 @@
 #include "hb/engine/boundaries/boundary_location.hpp"
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/leading_pair.hpp"
+#include "hb/engine/boundaries/strands.hpp"
 #include "lib/constants.hpp"
 
 namespace hb {
@@ -80,13 +81,13 @@ class Location {
     constexpr double rough = 1e-9;
     rough_.tolerance = std::max(rough_.tolerance, rough);
     rough_.growth_suffices = rough_.as_found = true;
+    notice_kind(unstable);
     f_low_ = value(a);
     f_high_ = value(b);
     certain_low_ = low_;
     certain_high_ = high_;
     g_low_ = growth(a);
     g_high_ = growth(b);
-    notice_kind(unstable);
   }
 
   BoundaryLocation run(std::optional<std::array<double, 2>> expected) {
@@ -98,6 +99,8 @@ class Location {
     for (int step = 0; step <= most && high_ - low_ > 2 * wanted_; ++step)
       if (!look(next(wanted_ * std::exp2(most - step)))) break;
     set_error();
+    for (const double away : {wanted_, 0.5 * promised_})
+      if (!by_sign_ && found_.boundary.error > 2 * away) confirm(away);
     return found_;
   }
 
@@ -110,18 +113,40 @@ class Location {
     return by_sign_ || growth > 0.1 * s.stability.growth_error ? growth : std::min(growth, 0.0);
   }
 
-  // Of the growth's sign, and nearly linear in x where the unstable end is locked; hb/engine/README.md (B11).
+  // Of the growth's sign; where two lock or collide analytic in x, whether they are locked or apart: without damping Q
+  // of (B2), with damping |c| - cosh 2 pi m of (B11), hb/engine/README.md.
   double value(const StabilitySample& s) const {
     const double g = growth(s);
-    if (lock_ == 0 || !by_sign_) return g;
-    const std::optional<LeadingPair> pair = leading_pair(s);
-    if (!pair) return g;
-    const double beyond = lock_ * pair->half_trace - std::cosh(two_pi * pair->mean);
+    if (by_sign_ && lock_ == 0) return g;
+    if (!by_sign_ && g > 0) return std::pow(g / s.speed, 2);
+    const auto [apart, mean] = nearest_pair(s);
+    if (!by_sign_) return -0.25 * apart.imag() * apart.imag();
+    const double beyond = std::cosh(pi * apart.real()) * std::cos(pi * apart.imag()) - std::cosh(two_pi * mean);
     return std::isfinite(beyond) && (beyond > 0) == (g > 0) ? beyond : g;
   }
 
+  // The two that may lock are near each other, and their mean is near the lock: s_1 - s_2 and the mean of their growth.
+  std::pair<std::complex<double>, double> nearest_pair(const StabilitySample& s) const {
+    std::vector<std::complex<double>> away;
+    for (const std::vector<Exponent>* list : {&s.stability.exponents, &s.stability.uncertain})
+      for (const Exponent& e : *list)
+        away.emplace_back(e.value.real() / s.speed, folded((e.value - locked_) / s.speed).imag());
+    std::pair<std::complex<double>, double> pair = {0, 0};
+    double least = HUGE_VAL;
+    for (std::size_t a = 0; a < away.size(); ++a)
+      for (std::size_t b = 0; b < a; ++b) {
+        const double half = 0.5 * std::abs((away[a] - away[b]).imag()),
+                     off = 0.5 * std::abs((away[a] + away[b]).imag());
+        if (const double far = off + 0.25 * half; far < least) {
+          least = far;
+          pair = {away[a] - away[b], 0.5 * (away[a] + away[b]).real()};
+        }
+      }
+    return pair;
+  }
+
   // ITP: I. F. D. Oliveira, R. H. C. Takahashi, ACM Trans. Math. Softw. 47 (2020) 5, doi:10.1145/3423597.
-  double next(double reach) const {
+  double next(double reach) {
     const double middle = 0.5 * (low_ + high_), width = high_ - low_;
     const double radius = std::max(0.0, reach - 0.5 * width);
     double x = middle;
@@ -138,8 +163,9 @@ class Location {
 
   // Where the value is zero: x as a parabola of it through both ends and the one before, where they ascend or descend,
   // with its distance from the secant's zero; else that.
-  std::pair<double, double> interpolated() const {
+  std::pair<double, double> interpolated() {
     const double secant = (f_high_ * low_ - f_low_ * high_) / (f_high_ - f_low_);
+    if (!by_sign_ || lock_ != 0) return by_parabola(secant);
     const double before = (f_before_ - f_low_) / (f_high_ - f_low_);
     const bool monotonic = before_ < low_ ? before < 0 : before_ > high_ && before > 1;
     if (!monotonic) return {secant, HUGE_VAL};
@@ -147,6 +173,20 @@ class Location {
     const double x = low_ - a * f_low_ + (b - a) / (f_before_ - f_low_) * f_low_ * f_high_;
     if (!(x > low_ && x < high_)) return {secant, HUGE_VAL};
     return {x, std::abs(x - secant)};
+  }
+
+  // Q is nearly a parabola of x: its zero between the ends, with the distance from the one before.
+  std::pair<double, double> by_parabola(double secant) {
+    const double slope = (f_high_ - f_low_) / (high_ - low_);
+    const double bend = ((f_before_ - f_high_) / (before_ - high_) - slope) / (before_ - low_);
+    // f_low + (x - low) (slope + bend (x - high)) = 0, x = low + t
+    const double b = slope - bend * (high_ - low_), root = std::sqrt(b * b - 4 * bend * f_low_);
+    double zero = secant;
+    for (const double t : {-2 * f_low_ / (b + root), -2 * f_low_ / (b - root)})
+      if (t > 0 && t < high_ - low_) zero = low_ + t;
+    const double moved = std::abs(zero - (std::isnan(expected_zero_) ? secant : expected_zero_));
+    expected_zero_ = zero;
+    return {zero, moved};
   }
 
   // Growth per x between the nearest places on both sides where it is certain.
@@ -166,6 +206,7 @@ class Location {
   }
 
   void notice_kind(const StabilitySample& s) {
+    if (const Exponent* leading = leading_exponent(s.stability)) locked_ = leading->value;
     if (leading_resolved(s.stability)) found_.boundary.kind = boundary_kind(s.stability, s.speed);
   }
 
@@ -197,6 +238,24 @@ class Location {
     if (sample.stability.verdict == Verdict::bounded && above != found_.boundary.unstable_above) settled_ = sample.x;
   }
 
+  // Looks at both sides of the boundary for places with sure verdicts.
+  void confirm(double away) {
+    const double x = found_.boundary.x;
+    for (const double side : {-1.0, 1.0}) {
+      const bool unstable = found_.boundary.unstable_above == (side > 0);
+      const double sure = !unstable ? settled_ : side > 0 ? certain_high_ : certain_low_;
+      if (std::abs(sure - x) <= away) continue;
+      const std::optional<StabilitySample> sample = sample_at(x + side * away);
+      if (!sample || !std::isfinite(sample->stability.growth_rate)) return;
+      if (unstable && sample->stability.growth_rate > 4 * sample->stability.growth_error) {
+        (side > 0 ? certain_high_ : certain_low_) = sample->x;
+        (side > 0 ? g_high_ : g_low_) = growth(*sample);
+      }
+      if (!unstable && sample->stability.verdict == Verdict::bounded) settled_ = sample->x;
+    }
+    set_error();
+  }
+
   // Without damping growth begins like the root of the distance: what is below its error e reaches (e/g)^2 of the way
   // from the boundary to where it is g. An error as large as g leaves open all between places with sure verdicts.
   double beyond_growth() const {
@@ -204,8 +263,8 @@ class Location {
     const double g = above ? g_high_ : g_low_;
     if (!(g > 0)) return 0;
     const double x = found_.boundary.x, grown = std::abs((above ? certain_high_ : certain_low_) - x);
-    const double part = std::pow(5 * largest_error_ / g, 2);
-    return part < 0.5 ? part / (1 - part) * grown : std::max(grown, std::abs(settled_ - x));
+    const double part = std::pow(5 * largest_error_ / g, 2), between = std::max(grown, std::abs(settled_ - x));
+    return part < 0.5 ? std::min(part / (1 - part) * grown, between) : between;
   }
 
   void set_error() {
@@ -223,6 +282,8 @@ class Location {
   StabilityOptions sharp_, rough_;
   bool by_sign_ = false;
   double lock_ = 0;  // sign of the multipliers that leave, 0: complex ones
+  double expected_zero_ = nan;  // as Q foretold it last
+  std::complex<double> locked_;  // leading exponent of the nearest place where it grows
   double wanted_ = 0, promised_ = 0;  // half of the bracket; error of the boundary
   double kappa1_ = 0;
   // Nearest certain growth rates on both sides: how an error of the growth rate moves the boundary.

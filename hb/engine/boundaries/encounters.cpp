@@ -41,14 +41,15 @@ double meeting_point(const Strands& s, std::size_t a, std::size_t b) {
   return m - 0.5 * std::round(2 * m);
 }
 
-// What the leading strand is locked to, or nearly so: with unlike damping two go on exciting each other some way apart.
-std::size_t companion(const Strands& strands) {
+// What a strand is locked to, or nearly so: with unlike damping two go on exciting each other some way apart.
+std::size_t companion(const Strands& strands, std::size_t a) {
   constexpr double farthest = 0.05;
-  if (strands.all[0].partner != no_strand) return strands.all[0].partner;
+  if (strands.all[a].partner != no_strand) return strands.all[a].partner;
   std::size_t nearest = no_strand;
   double least = farthest;
-  for (std::size_t k = 1; k < strands.all.size(); ++k) {
-    if (const double distance = apart(strands, 0, k); distance < least) {
+  for (std::size_t k = 0; k < strands.all.size(); ++k) {
+    if (k == a) continue;
+    if (const double distance = apart(strands, a, k); distance < least) {
       least = distance;
       nearest = k;
     }
@@ -67,14 +68,14 @@ double highest_together(const Strands& strands, std::size_t a, std::size_t b, do
   return std::max(strands.all[a].s.real(), strands.all[b].s.real()) + 0.5 * most;
 }
 
-// The leading two are locked to each other and come from one mean exponent and its conjugate, which no other's decay or
+// Strand a is locked to one that comes, as itself, from one mean exponent and its conjugate, which no other's decay or
 // frequency is taken for.
-std::optional<std::array<std::size_t, 2>> own_lock(const Place& p) {
-  const Strand& leading = p.strands.all[0];
-  if (leading.partner == no_strand || leading.mean.size() != 2) return std::nullopt;
-  std::array<std::size_t, 2> names = {leading.mean[0], leading.mean[1]};
+std::optional<std::array<std::size_t, 2>> own_lock(const Place& p, std::size_t a_strand) {
+  const Strand& locked = p.strands.all[a_strand];
+  if (locked.partner == no_strand || locked.mean.size() != 2) return std::nullopt;
+  std::array<std::size_t, 2> names = {locked.mean[0], locked.mean[1]};
   std::ranges::sort(names);
-  const Strand& partner = p.strands.all[leading.partner];
+  const Strand& partner = p.strands.all[locked.partner];
   const cplx a = p.mean[names[0]].value, b = p.mean[names[1]].value;
   const bool conjugate = a.imag() != 0 && std::abs(a - std::conj(b)) <= 1e-9 * std::abs(a);
   if (!conjugate || !std::ranges::is_permutation(partner.mean, names)) return std::nullopt;
@@ -209,7 +210,9 @@ bool Encounters::resolved(Place& p, Place& q, double most) const {
       const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
       if (!(std::abs(at_p - at_q) > most)) continue;
       const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
-      if (p.unstable && (larger < 0 || grow_together(growth_p[i] + growth_p[j], growth_q[i] + growth_q[j]))) continue;
+      if (p.unstable &&
+          (larger < options_.least_growth || grow_together(growth_p[i] + growth_p[j], growth_q[i] + growth_q[j])))
+        continue;
       const double quenching = std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
       const double needed = p.unstable ? quenching : needed_coupling(larger, smaller);
       if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling), std::min(q.mean[i].coupling, q.mean[j].coupling)) <
@@ -326,30 +329,30 @@ double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b) cons
   return largest;
 }
 
-// The leading pair is the same at both places: of one kind, and no others that could take its place with half of
-// `growth` are about to lock or have just unlocked beside it.
-bool Encounters::same_lock(Place& p, Place& q, double growth) const {
+// The pair of strand k of p and that of strand l of q are the same: of one kind, and no others that could take its
+// place with half of what both grow are about to lock or have just unlocked beside it.
+bool Encounters::same_lock(Place& p, std::size_t k, Place& q, std::size_t l) const {
   const std::vector<Strand>& all = p.strands.all;
-  const BoundaryKind kind = kind_of(all[0]);
-  if (kind != kind_of(q.strands.all[0])) return false;
+  const Strand& other = q.strands.all[l];
+  const BoundaryKind kind = kind_of(all[k]);
+  if (kind != kind_of(other)) return false;
   // At +1 and -1 an exponent locks to its conjugate: one that decays faster than these grow does not take its place.
-  const auto names = own_lock(p);
-  const bool own = kind != BoundaryKind::complex && names && names == own_lock(q);
-  const double highest = std::max(all[0].s.real(), q.strands.all[0].s.real());
+  const auto names = own_lock(p, k);
+  const bool own = kind != BoundaryKind::complex && names && names == own_lock(q, l);
+  const double highest = std::max(all[k].s.real(), other.s.real());
   const std::vector<double> motion = motions(p, q);
-  const std::size_t b = companion(p.strands);
-  if (kind == BoundaryKind::complex &&
-      std::abs(std::abs(all[0].s.imag()) - std::abs(q.strands.all[0].s.imag())) > motion[0])
+  const std::size_t b = companion(p.strands, k);
+  if (kind == BoundaryKind::complex && std::abs(std::abs(all[k].s.imag()) - std::abs(other.s.imag())) > motion[k])
     return false;
-  const auto belongs = [&](std::size_t c, std::size_t k) {
-    return c == k || std::abs(folded(all[c].s - std::conj(all[k].s))) <= 1e-7 + 2 * (all[c].error + all[k].error);
+  const auto belongs = [&](std::size_t c, std::size_t to) {
+    return c == to || std::abs(folded(all[c].s - std::conj(all[to].s))) <= 1e-7 + 2 * (all[c].error + all[to].error);
   };
-  const double g = 0.5 * growth;
+  const double g = 0.5 * std::min(all[k].s.real(), other.s.real());
   for (std::size_t c = 0; c < all.size(); ++c) {
-    if (belongs(c, 0) || belongs(c, b) || locked(p, c) || apart(p.strands, 0, c) > motion[0] + motion[c]) continue;
+    if (belongs(c, k) || belongs(c, b) || locked(p, c) || apart(p.strands, k, c) > motion[k] + motion[c]) continue;
     for (std::size_t d = 0; d < all.size(); ++d) {
       if (d == c || apart(p.strands, c, d) > motion[c] + motion[d]) continue;
-      if (own && decay(p, c) > highest && (belongs(d, 0) || belongs(d, b))) continue;
+      if (own && decay(p, c) > highest && (belongs(d, k) || belongs(d, b))) continue;
       if (highest_together(p.strands, c, d, motion[c] + motion[d]) < g) continue;
       if (exciting_motion(p, q, c, d, std::sqrt((g + decay(p, c)) * (g + decay(p, d)))) >= 0) return false;
     }
@@ -357,24 +360,24 @@ bool Encounters::same_lock(Place& p, Place& q, double growth) const {
   return true;
 }
 
-// Q = kappa^2 - delta^2 of the leading pair, delta half of what the two would be apart, cannot fall to zero:
+// Q = kappa^2 - delta^2 of the pair of strand k, delta half of what the two would be apart, cannot fall to zero:
 // |dQ| <= 2 kappa |d delta|.
-bool Encounters::locked_throughout(Place& p, Place& q) const {
-  const std::size_t b = p.strands.all[0].partner;
+bool Encounters::locked_throughout(Place& p, std::size_t k, Place& q) const {
+  const std::size_t b = p.strands.all[k].partner;
   if (b == no_strand) return false;
   const std::vector<double> motion = motions(p, q);
-  const double half = 0.5 * (p.strands.all[0].s.real() - p.strands.all[b].s.real());
-  const double mean = 0.5 * (p.strands.all[0].s.real() + p.strands.all[b].s.real());
+  const double half = 0.5 * std::abs(p.strands.all[k].s.real() - p.strands.all[b].s.real());
+  const double mean = 0.5 * (p.strands.all[k].s.real() + p.strands.all[b].s.real());
   // What is left of Q has to exceed what the two decay.
   const double Q = half * half - std::min(mean, 0.0) * std::min(mean, 0.0);
-  const double moved = motion[0] + motion[b];
+  const double moved = motion[k] + motion[b];
   if (!(Q > moved * half)) return false;
-  return Q > moved * std::max(half, largest_coupling(p, 0, b));
+  return Q > moved * std::max(half, largest_coupling(p, k, b));
 }
 
-bool Encounters::lock_holds(Place& p, Place& q) const {
+bool Encounters::leading_lock_holds(Place& p, Place& q) const {
   for (Place* place : {&p, &q}) {
-    const std::size_t b = companion(place->strands);
+    const std::size_t b = companion(place->strands, 0);
     if (b == no_strand) return false;
     // One that grows by itself is not held by a neighbour that does not excite it, nor by one that may quench it.
     Place& other = place == &p ? q : p;
@@ -382,9 +385,30 @@ bool Encounters::lock_holds(Place& p, Place& q) const {
         (exciting_motion(*place, other, 0, b, options_.least_growth) < 0 || quenched(*place, other, 0, b)))
       return false;
   }
-  const double growth = std::min(p.growth(), q.growth());
-  if (same_lock(p, q, growth) && same_lock(q, p, growth)) return true;
-  return locked_throughout(p, q) || locked_throughout(q, p);
+  if (same_lock(p, 0, q, 0) && same_lock(q, 0, p, 0)) return true;
+  return locked_throughout(p, 0, q) || locked_throughout(q, 0, p);
+}
+
+// The faster strand of each lock that surely grows.
+std::vector<std::size_t> Encounters::growing_locks(const Place& p) const {
+  std::vector<std::size_t> growing;
+  for (std::size_t k = 0; k < p.strands.all.size(); ++k) {
+    const Strand& strand = p.strands.all[k];
+    if (strand.partner != no_strand && strand.partner > k &&
+        strand.s.real() > std::max(options_.least_growth, 4 * strand.error))
+      growing.push_back(k);
+  }
+  return growing;
+}
+
+bool Encounters::lock_holds(Place& p, Place& q) const {
+  if (leading_lock_holds(p, q)) return true;
+  // Where two locks grow alike each may lead at one of the places: it suffices that one of them holds.
+  const std::vector<std::size_t> at_p = growing_locks(p), at_q = growing_locks(q);
+  for (const std::size_t k : at_p)
+    for (const std::size_t l : at_q)
+      if ((k != 0 || l != 0) && same_lock(p, k, q, l) && same_lock(q, l, p, k)) return true;
+  return false;
 }
 
 bool Encounters::locked_alike(const Place& p, const Place& q) {

@@ -56,7 +56,8 @@ class Encounters {
   // Pairs of p's strands that may come together on the way to q and make each other grow by more than `least`.
   std::vector<Meeting> meetings(Place& p, Place& q, double least) const;
 
-  // The two exponents that give the growth at p are locked to each other and stay so to q, or those of q to p.
+  // Two exponents that give the growth at p are locked to each other and stay so to q, or those of q to p; or two
+  // others that grow at both places.
   bool lock_holds(Place& p, Place& q) const;
 
   // The exponents that give the growth are locked, to multipliers of one kind.
@@ -75,8 +76,10 @@ class Encounters {
   }
   bool quenched(Place& p, Place& q, std::size_t a, std::size_t b) const;
   double largest_coupling(Place& p, std::size_t a, std::size_t b) const;
-  bool same_lock(Place& p, Place& q, double growth) const;
-  bool locked_throughout(Place& p, Place& q) const;
+  bool same_lock(Place& p, std::size_t k, Place& q, std::size_t l) const;
+  bool locked_throughout(Place& p, std::size_t k, Place& q) const;
+  bool leading_lock_holds(Place& p, Place& q) const;
+  std::vector<std::size_t> growing_locks(const Place& p) const;
 
   const SystemAt& at_;
   const SweepOptions& options_;

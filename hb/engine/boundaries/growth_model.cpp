@@ -78,13 +78,10 @@ GrowthBounds GrowthModel::operator()(double x) const {
   const auto [growth, growth_change] = interpolated<double>(x, [](const GrowthNode& node) { return node.growth; });
   const auto [Q, Q_change] = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; });
   double growth_error = safety * growth_change, E = safety * Q_change;
-  double node_growth_error = 0, node_Q_error = 0;
-  for (std::size_t k = 0; k < 2; ++k) {
-    node_growth_error = std::max(node_growth_error, nodes_[k].growth_error);
-    node_Q_error = std::max(node_Q_error, nodes_[k].Q_error);
-  }
-  growth_error += node_growth_error;
-  E += node_Q_error;
+  // Errors at the two ends count in proportion; what they do to higher terms these show.
+  const double part = (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);
+  growth_error += (1 - part) * nodes_[0].growth_error + part * nodes_[1].growth_error;
+  E += (1 - part) * nodes_[0].Q_error + part * nodes_[1].Q_error;
   double low, high;
   if (real_) {
     low = std::sqrt(std::max(Q.real() - E, 0.0));

@@ -27,6 +27,8 @@ constexpr double most_unpredicted_motion = 0.05;
 // Intervals are not divided below this, relative to x: narrower bands are not looked for.
 constexpr double least_width = 2e-9;
 constexpr int most_divisions = 48;
+// Where two meet is not looked at again as near as this part of the interval to where it was, until more is known.
+constexpr double near_centre = 1e-3;
 // Growth beyond this is far from zero: so far it need not be known as well as near it.
 constexpr double far_from_zero = 1e-3, rough_tolerance = 1e-7;
 constexpr int most_evaluations = 200, most_evaluations_per_boundary = 50;
@@ -266,11 +268,14 @@ class Search {
       if (!model) return clamped(m.x, p, q, 0.2);
       worst = std::max(worst, 2 * model->error());
       const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
-      if (centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width && model->rise() > 0.25 * far * far)
+      const double known = std::min(centre - p.x(), q.x() - centre);  // how near the centre was looked for before
+      const bool inside = known > 1e-7 * width;
+      const auto [x, high] = highest(*model, p, q);
+      if (inside && model->rise() > 0.25 * far * far && (known > near_centre * width || (*model)(centre).low > worst))
         return centre;
-      if (const auto [x, high] = highest(*model, p, q); high > worst) {
+      if (high > worst) {
+        where = inside && known > near_centre * width ? centre : clamped(x, p, q, margin_towards(worst, high));
         worst = high;
-        where = central(*model, p, q, x);
       }
     }
     if (!std::isnan(where)) return where;
@@ -305,19 +310,7 @@ class Search {
         std::clamp(std::min(p.growth(), q.growth()), most_motion_while_unstable, most_motion_while_locked);
     if (!encounters_.resolved(p, q, most)) return middle;
     if (encounters_.lock_holds(p, q) || level_lock(p, q)) return nan;
-    // Exponents that grow by themselves, or with one other.
-    std::vector<GrowthModel> models;
-    for (Place* place : {&p, &q}) {
-      Place& other = place == &p ? q : p;
-      for (std::size_t k = 0; k < place->strands.all.size() && place->strands.all[k].s.real() > 0; ++k) {
-        if (place->strands.all[k].partner != no_strand) continue;
-        const std::vector<std::size_t> near = encounters_.neighbours(*place, other, k);
-        if (near.size() > 1) continue;
-        const std::optional<GrowthModel> model = near.empty() ? single_model(places_, *place, k, other)
-                                                              : pair_model(places_, *place, k, near.front(), other);
-        if (model) models.push_back(*model);
-      }
-    }
+    const std::vector<GrowthModel> models = models_of_growth(p, q);
     if (models.empty()) return middle;
     double worst = HUGE_VAL, where = middle;
     const auto look = [&](double x, double nearest) {
@@ -332,6 +325,30 @@ class Search {
     // A pair's growth has a notch where the two pass each other.
     for (const GrowthModel& model : models) look(model.centre(), 1e-6);
     return worst > 0 ? nan : where;
+  }
+
+  // Of exponents that grow by themselves, or with one other, locked to it or not.
+  std::vector<GrowthModel> models_of_growth(Place& p, Place& q) {
+    std::vector<GrowthModel> models;
+    for (Place* place : {&p, &q}) {
+      Place& other = place == &p ? q : p;
+      for (std::size_t k = 0; k < place->strands.all.size(); ++k) {
+        const Strand& strand = place->strands.all[k];
+        if (!(strand.s.real() > std::max(options_.least_growth, strand.error))) continue;
+        std::vector<std::size_t> near = encounters_.neighbours(*place, other, k);
+        if (strand.partner != no_strand) {
+          const std::vector<std::size_t> of_partner = encounters_.neighbours(*place, other, strand.partner);
+          near.insert(near.end(), of_partner.begin(), of_partner.end());
+          std::erase_if(near, [&](std::size_t n) { return n == k || n == strand.partner; });
+          near.push_back(strand.partner);
+        }
+        if (near.size() > 1) continue;
+        const std::optional<GrowthModel> model = near.empty() ? single_model(places_, *place, k, other)
+                                                              : pair_model(places_, *place, k, near.front(), other);
+        if (model) models.push_back(*model);
+      }
+    }
+    return models;
   }
 
   // A closed-form bound on the growth proves stability at both ends and between them with more to spare than it
@@ -403,10 +420,12 @@ class Search {
     return {where, worst};
   }
 
-  // The pair's centre if it is inside, or where its growth is least known.
-  static double central(const GrowthModel& model, const Place& p, const Place& q, double worst) {
-    const double width = q.x() - p.x(), centre = model.centre();
-    return centre > p.x() + 1e-7 * width && centre < q.x() - 1e-7 * width ? centre : clamped(worst, p, q);
+  // How near to an end, as a part of the interval, it is divided so that a bound there that is `high` falls to
+  // `wanted`: it is about in proportion to the width of what is left. Not so near that the places would be taken for
+  // one.
+  static double margin_towards(double wanted, double high) {
+    constexpr double least = 3e-4, most = 0.02;
+    return std::clamp(0.3 * wanted / high, least, most);
   }
 
   static double clamped(double x, const Place& p, const Place& q, double part = 0.02) {

@@ -225,8 +225,12 @@ ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order
     : symmetric_(symmetric_everywhere(system)), max_order_(max_order) {
   const MeanModes modes = mean_modes(system);
   mu_ = modes.mu;
-  for (Index k = 1; k <= system.K.num_harmonics(); ++k) E_.push_back(harmonic(system, modes, k));
-  while (!E_.empty() && E_.back().maxCoeff() < negligible_harmonic) E_.pop_back();
+  std::vector<MatrixXd> E;
+  for (Index k = 1; k <= system.K.num_harmonics(); ++k) E.push_back(harmonic(system, modes, k));
+  while (!E.empty() && E.back().maxCoeff() < negligible_harmonic) E.pop_back();
+  harmonics_ = static_cast<int>(E.size());
+  beside_.resize(mu_.size(), mu_.size() * harmonics_);
+  for (int k = 0; k < harmonics_; ++k) beside_.middleCols(k * mu_.size(), mu_.size()) = E[static_cast<std::size_t>(k)];
   for (Index n = 0; n < mu_.size(); ++n) {
     std::size_t nearest = 0;
     for (Index r = 0; r < mu_.size(); ++r)
@@ -239,7 +243,7 @@ ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order
   // exp(sum_m z_m y^m) = sum_j c_j y^j by c_j = sum_m m z_m c_(j-m)/j, down to where c_j is negligible.
   constexpr double negligible = 1e-10, most = 1e100;
   std::vector<double> slope;  // m z_m, z_m = 2 E_m,nn/m
-  for (const MatrixXd& E : E_) slope.push_back(2 * E.diagonal().maxCoeff());
+  for (const MatrixXd& E_k : E) slope.push_back(2 * E_k.diagonal().maxCoeff());
   std::vector<double> past = {1};
   turning_ = 1;
   for (std::size_t j = 1; j < static_cast<std::size_t>(max_order_); ++j) {
@@ -254,23 +258,26 @@ ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order
 
 const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
   MatrixXd& a = from_[n];
-  const auto H = static_cast<Index>(E_.size());
-  const Index known = a.rows();
+  const Index count = mu_.size(), H = harmonics_, known = a.rows();
   if (k <= known) return a;
   const Index wanted = std::min<Index>(std::max<Index>(k, 2 * known), max_order_);
-  a.conservativeResize(wanted, mu_.size());
-  MatrixXd relative(mu_.size(), wanted);  // a_m(l)/|mu_n + im - mu_l|
+  a.conservativeResize(wanted, count);
+  MatrixXd relative(count, wanted);  // a_m(l)/|mu_n + im - mu_l| in column wanted - m, so that sums run on in memory
   const cplx start = mu_(static_cast<Index>(n));
+  const VectorXd away = (start - mu_.array()).real().square(), turns = (start - mu_.array()).imag();
   for (Index m = 1; m <= wanted; ++m) {
     if (m > known) {
-      VectorXd sum = m <= H ? VectorXd(E_[static_cast<std::size_t>(m - 1)].col(static_cast<Index>(n)))
-                            : VectorXd(VectorXd::Zero(mu_.size()));
-      for (Index r = std::max<Index>(1, m - H); r < m; ++r)
-        sum.noalias() += E_[static_cast<std::size_t>(m - r - 1)] * relative.col(r - 1);
+      VectorXd sum =
+          m <= H ? VectorXd(beside_.col((m - 1) * count + static_cast<Index>(n))) : VectorXd(VectorXd::Zero(count));
+      const Index terms = count * std::min(H, m - 1);
+      const Eigen::Map<const VectorXd> before(relative.data() + count * (wanted - m + 1), terms);
+      sum.noalias() += beside_.leftCols(terms) * before;
       a.row(m - 1) = sum.transpose();
     }
-    for (Index l = 0; l < mu_.size(); ++l)
-      relative(l, m - 1) = on_the_way(a(m - 1, l), std::abs(start + cplx(0, static_cast<double>(m)) - mu_(l)));
+    for (Index l = 0; l < count; ++l) {
+      const double turned = turns(l) + static_cast<double>(m);
+      relative(l, wanted - m) = on_the_way(a(m - 1, l), std::sqrt(away(l) + turned * turned));
+    }
   }
   return a;
 }
@@ -278,7 +285,7 @@ const MatrixXd& ParametricCoupling::from(std::size_t n, int k) const {
 const MatrixXd& ParametricCoupling::back_to(std::size_t r) const {
   MatrixXd& b = back_[r];
   if (b.size() > 0) return b;
-  const int farthest = std::min(max_order_, static_cast<int>(E_.size()) + farthest_past);
+  const int farthest = std::min(max_order_, harmonics_ + farthest_past);
   b = MatrixXd::Zero(farthest, mu_.size());
   for (std::size_t l = 0; l < back_.size(); ++l) {
     if (l == r) continue;
@@ -292,7 +299,7 @@ const MatrixXd& ParametricCoupling::back_to(std::size_t r) const {
 
 // sum_j [c_j a_(k+j)(r) + sum_l (a_(k+j)(l) b_j(l, r) + b_j(n, l) a_(k+j)(l, r))], b_j(l, l) = 0.
 double ParametricCoupling::ways(std::size_t n, std::size_t r, int k) const {
-  const int H = static_cast<int>(E_.size()), farthest = std::min(max_order_, std::max(k, H) + farthest_past);
+  const int H = harmonics_, farthest = std::min(max_order_, std::max(k, H) + farthest_past);
   const Index past = std::min<Index>(max_order_ - k + 1, past_.size()), most = farthest - k;
   const auto to_n = static_cast<Index>(n), to_r = static_cast<Index>(r);
   double sum = from(n, k + static_cast<int>(past) - 1).col(to_r).segment(k - 1, past).dot(past_.head(past));
@@ -312,7 +319,7 @@ double ParametricCoupling::operator()(std::size_t n, std::size_t r, int k) const
 }
 
 double ParametricCoupling::either_way(std::size_t n, std::size_t r, int k) const {
-  if (E_.empty() || k > max_order_) return 0;
+  if (harmonics_ == 0 || k > max_order_) return 0;
   const auto [known, is_new] = strength_.try_emplace({n, r, k}, 0);
   if (is_new)
     known->second = margin * turning_ * std::sqrt(ways(n, r, k)) * std::sqrt(ways(conjugate_[r], conjugate_[n], k));

@@ -52,7 +52,8 @@ class ParametricCoupling {
 
   Eigen::VectorXcd mu_;
   std::vector<std::size_t> conjugate_;
-  std::vector<Eigen::MatrixXd> E_;  // k = 1, 2, ...
+  Eigen::MatrixXd beside_;  // E_k, k = 1, 2, .. harmonics_, one beside the other
+  int harmonics_ = 0;
   // What an exponent's own phase modulation does, y a harmonic: exp(sum_k (2 E_k,nn/k) y^k) = sum_j past_[j] y^j takes
   // a way past the order by j and back; turning_, the sum of all.
   Eigen::VectorXd past_;

@@ -49,11 +49,19 @@ std::vector<const Place*> window(const Places& places, const Place& p, const Pla
   }
   for (auto it = std::next(high); it != places.end() && right.size() < 2; ++it)
     if (it->first - high->first > room && usable(it->second, p)) right.push_back(&it->second);
+  // One far off tells less than a second one on the other side.
+  constexpr double far = 16;
+  const auto away = [&](const Place* place) { return std::max(low->first - place->x(), place->x() - high->first); };
+  const auto is_far = [&](const Place* place) { return away(place) > far * (high->first - low->first); };
   std::vector<const Place*> chosen = {&p, &q};
   std::size_t l = 0, r = 0;
+  const auto left_is_next = [&] {
+    if (l == left.size() || r == right.size()) return l < left.size();
+    if (is_far(left[l]) != is_far(right[r])) return is_far(right[r]);
+    return l < r || (l == r && away(left[l]) <= away(right[r]));
+  };
   while (chosen.size() < 4 && (l < left.size() || r < right.size())) {
-    const bool take_left = l < left.size() && (r == right.size() || l < r ||
-                                               (l == r && low->first - left[l]->x() <= right[r]->x() - high->first));
+    const bool take_left = left_is_next();
     chosen.push_back(take_left ? left[l++] : right[r++]);
   }
   return chosen;

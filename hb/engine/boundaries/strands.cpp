@@ -80,10 +80,12 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
 }
 
 // Names by frozen frequencies, the nearest first. They are taken where all strands but one pair have frozen ones of
-// their own that near: then the others' are no chance. Empty: none are taken.
+// their own that near: then the others' are no chance. Two that are mistaken for each other are as near to each other
+// as both are to the names of the other, so that all names in reach of the farthest one are listed. Empty: none are
+// taken.
 std::vector<std::vector<std::size_t>> frozen_names(const std::vector<Strand>& all,
                                                    const std::vector<MeanExponent>& mean) {
-  constexpr double near = 0.02;
+  constexpr double near = 0.02, nearest = 5e-4;
   constexpr std::size_t most_left_out = 2;
   if (all.size() != mean.size() || std::ranges::any_of(mean, [](const auto& m) { return m.frozen == 0; })) return {};
   struct Match {
@@ -98,16 +100,18 @@ std::vector<std::vector<std::size_t>> frozen_names(const std::vector<Strand>& al
   std::ranges::sort(matches);
   std::vector<bool> named(all.size(), false), taken(mean.size(), false);
   std::size_t found = 0;
+  double farthest = nearest;
   for (const Match& m : matches) {
     if (m.distance > near) break;
     if (named[m.strand] || taken[m.mean]) continue;
     named[m.strand] = taken[m.mean] = true;
+    farthest = std::max(farthest, m.distance);
     ++found;
   }
   if (found + most_left_out < all.size()) return {};
   std::vector<std::vector<std::size_t>> names(all.size());
   for (const Match& m : matches)
-    if (named[m.strand] && m.distance <= 2 * near) names[m.strand].push_back(m.mean);
+    if (named[m.strand] && m.distance <= std::min(4 * farthest, 2 * near)) names[m.strand].push_back(m.mean);
   return names;
 }
 

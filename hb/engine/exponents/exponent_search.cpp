@@ -107,9 +107,9 @@ bool too_many(const ScaledSystem& system, const std::vector<Index>& together) {
 constexpr double strong_resonance = 3e-4;
 
 // Slaves the others to `together` and to the modes that pull at these, which are added to it until that converges;
-// empty where too many would have to be kept.
+// empty where too many would have to be kept. `diverges`: it is known that it does not with `together` alone.
 std::optional<ReducedSystem> slave_to_resonant(SampledStiffness& stiffness, std::vector<Index>& together,
-                                               double tolerance, bool bounds_others) {
+                                               double tolerance, bool bounds_others, bool diverges) {
   const ScaledSystem& system = stiffness.system();
   Index next = 0;
   const auto with_next = [&] {
@@ -118,10 +118,13 @@ std::optional<ReducedSystem> slave_to_resonant(SampledStiffness& stiffness, std:
     return more;
   };
   while (resonance_strength(system, together).maxCoeff(&next) > strong_resonance && !too_many(system, with_next()))
-    together = with_next();
+    together = with_next(), diverges = false;
   while (!too_many(system, together)) {
-    ReducedSystem reduced = slave_to(stiffness, together, sufficient(system, together, tolerance), bounds_others);
-    if (reduced.converged) return reduced;
+    if (!diverges) {
+      ReducedSystem reduced = slave_to(stiffness, together, sufficient(system, together, tolerance), bounds_others);
+      if (reduced.converged) return reduced;
+    }
+    diverges = false;
     resonance_strength(system, together).maxCoeff(&next);
     together = with_next();
   }
@@ -203,6 +206,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   std::vector<MatrixXd> starts(std::size_t(I), MatrixXd{});  // of the subspaces, per mode alone
   MatrixXd start_together(2 * I, 0);
   SampledStiffness stiffness(system);
+  bool diverged = false;  // the last of `together`
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
     const ReducedSystem reduced = slave_to(stiffness, one, sufficient(system, one, tolerance), false);
@@ -210,12 +214,15 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
     name_modes(alone[std::size_t(g)], system, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty())
       starts[std::size_t(g)] = reduced.start;
-    else
+    else {
       together.push_back(g);
+      diverged = !reduced.converged;
+    }
   }
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
-    if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, false)) {
+    if (const auto reduced =
+            slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1)) {
       search.exponents = reduced_exponents(*reduced, tolerance);
       name_modes(search.exponents, system, together);
       start_together = reduced->start;
@@ -324,7 +331,7 @@ std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double 
     together.push_back(slowest);
   }
   SampledStiffness stiffness(system);
-  if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, true)) {
+  if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, true, false)) {
     ExponentSearch search;
     search.exponents = reduced_exponents(*reduced, tolerance, true);
     name_modes(search.exponents, system, together);

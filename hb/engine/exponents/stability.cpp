@@ -57,11 +57,21 @@ double propagated_cells(const ScaledSystem& system) {
   return 0.8 * std::sqrt(system.mean_diagonal().cwiseAbs().maxCoeff());
 }
 
+// Damping and gyroscopic forces of the scaled system that couple modes by less than this do not keep slaving from
+// converging (by experience).
+constexpr double weak_damping_coupling = 0.01;
+
+bool damping_couples(const ScaledSystem& system) {
+  if (system.diagonal_damping) return false;
+  const Eigen::MatrixXd own = system.G.diagonal().asDiagonal();
+  return (system.G - own).cwiseAbs().maxCoeff() > weak_damping_coupling;
+}
+
 // Where damping or gyroscopic forces couple the modes slaving goes in circles, and few slow modes are propagated in
 // less time than that; without such forces it takes as long, and slaving leaves more rounding.
 bool propagates_at_once(const ScaledSystem& system) {
   const double cells = propagated_cells(system);
-  if (!system.diagonal_damping) return system.num_modes() <= 4 && cells <= 64;
+  if (damping_couples(system)) return system.num_modes() <= 4 && cells <= 64;
   return system.num_modes() > 1 && system.num_modes() <= 6 && cells <= 16;
 }
 
