@@ -150,7 +150,8 @@ INSTANTIATE_TEST_SUITE_P(Random, Bands,
                          testing::Values(std::pair{Kind::nearly_conservative, "NearlyConservative"},
                                          std::pair{Kind::undamped, "Undamped"}, std::pair{Kind::one_way, "OneWay"},
                                          std::pair{Kind::gyroscopic, "Gyroscopic"},
-                                         std::pair{Kind::partly_driven, "PartlyDriven"}),
+                                         std::pair{Kind::partly_driven, "PartlyDriven"},
+                                         std::pair{Kind::circulatory, "Circulatory"}),
                          [](const auto& info) { return info.param.second; });
 
 TEST(Bands, OfTheFamiliesOfExponentsAreTheSameAtAnyStep) {

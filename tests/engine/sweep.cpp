@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "hb/engine/boundaries/interval_search.hpp"
 #include "hb/engine/boundaries/mode_tracks.hpp"
@@ -220,6 +221,29 @@ TEST(Sweep, FindsTheGapWhereAGrowingModeMeetsADampedOne) {
     EXPECT_NEAR(found.bands[0].to, 0.986820965, 1e-8) << intervals;
     EXPECT_TRUE(found.bands[1].to < 1 && found.bands[2].from > 1) << intervals;
     EXPECT_NEAR(found.bands[3].from, 1.01333527, 1e-8) << intervals;
+  }
+}
+
+// A band was settled as none because two modes were taken for each other: a stiffness without symmetry exchanges their
+// decays (4.0e-4 and 9.3e-4 for 9.0e-4 and 4.2e-4 of the mean stiffness), which looked like none that had moved.
+TEST(Sweep, FindsABandWhereAnUnsymmetricStiffnessExchangesDecays) {
+  HillSystem system;
+  system.mass = Eigen::Matrix2d{{1.0474749623943538, -0.12552078004576}, {-0.12552078004576, 1.435893686093542}};
+  system.damping = Eigen::Vector2d(0.0018797006307694477, 0.001208781171200574).asDiagonal();
+  system.stiffness[0] = FourierSeries(4, 4);
+  system.stiffness[0].c.col(0) << 11.99457957527957, 0, 0, 4.524855594461176;
+  const Eigen::Vector4d cosine(-0.07228911479692783, -0.21530283826632646, 0.13939056329008626, -0.4305272326845575),
+      sine(0.04975855183136788, 0.046425983257660876, -0.5950044921688663, -0.1338160266406884);
+  system.stiffness[0].c.col(4) = 0.5 * (cosine - std::complex<double>(0, 1) * sine);
+  const double from = bisected(system, 1.7, 1.704), to = bisected(system, 1.704, 1.71);
+  ASSERT_NEAR(from, 1.701035, 1e-6);
+  for (const auto& [low, high, intervals] :
+       {std::tuple{1.65, 1.75, 2}, std::tuple{1.69, 1.72, 3}, std::tuple{1.6, 1.8, 8}}) {
+    const Sweep found = sweep(system, low, high, intervals);
+    ASSERT_EQ(found.bands.size(), 1u) << intervals;
+    EXPECT_NEAR(found.bands[0].from, from, 1e-9) << intervals;
+    EXPECT_NEAR(found.bands[0].to, to, 1e-9) << intervals;
+    EXPECT_TRUE(found.not_excluded.empty()) << intervals;
   }
 }
 

@@ -10,13 +10,13 @@
 namespace hb::stress {
 
 // Modes w_i > 0 apart, modulated, weakly damped: symmetric; without damping; coupled one way; with antisymmetric
-// damping; some of them with negative damping.
-enum class BandKind { nearly_conservative, undamped, one_way, gyroscopic, partly_driven };
+// damping; some of them with negative damping; with unsymmetric harmonics, often of one order alone.
+enum class BandKind { nearly_conservative, undamped, one_way, gyroscopic, partly_driven, circulatory };
 
 inline HillSystem band_system(BandKind kind, Random& random) {
   using Eigen::Index;
-  const Index least = kind == BandKind::one_way || kind == BandKind::gyroscopic ? 2 : 1, I = random.integer(least, 4),
-              H = random.integer(1, 3);
+  const bool coupled = kind == BandKind::one_way || kind == BandKind::gyroscopic || kind == BandKind::circulatory;
+  const Index I = random.integer(coupled ? 2 : 1, 4), H = random.integer(1, 3);
   HillSystem system;
   system.mass = Eigen::MatrixXd::Identity(I, I);
   system.damping = Eigen::MatrixXd::Zero(I, I);
@@ -36,8 +36,11 @@ inline HillSystem band_system(BandKind kind, Random& random) {
         const double size = 0.5 * modulation * frequency(i) * frequency(j) * std::pow(0.5, k - 1);
         const std::complex<double> value(size * random(-1, 1), size * random(-1, 1));
         system.stiffness[0].c(i + I * j, k) = value;
-        if (i != j && kind != BandKind::one_way) system.stiffness[0].c(j + I * i, k) = value;
+        if (i != j && kind != BandKind::one_way)
+          system.stiffness[0].c(j + I * i, k) =
+              kind == BandKind::circulatory ? std::complex<double>{size * random(-1, 1), size * random(-1, 1)} : value;
       }
+  if (kind == BandKind::circulatory && random.chance(0.6)) system.stiffness[0].c.middleCols(1, H - 1).setZero();
   if (kind == BandKind::gyroscopic)
     for (Index i = 0; i < I; ++i)
       for (Index j = 0; j < i; ++j) {

@@ -34,7 +34,10 @@ constexpr std::array line_names = {"nearly-conservative",
                                    "alike",
                                    "sparse",
                                    "modulation",
-                                   "linkages"};
+                                   "linkages",
+                                   "circulatory"};
+// The number of a family is part of its lines' random numbers.
+constexpr std::size_t linkages = 14, circulatory = 15;
 static_assert(line_names.size() == num_line_families);
 
 Line along_the_speed(const HillSystem& system, double from, double to) {
@@ -100,7 +103,12 @@ Line random_line(int family, std::uint64_t number) {
       const double from = trial.speed * random(0.4, 0.9);
       return along_the_speed(trial.system, from, from * random(1.3, 3));
     }
-    if (f + 1 == num_line_families) return along_a_linkage(number);
+    if (f == linkages) return along_a_linkage(number);
+    if (f == circulatory) {
+      const HillSystem system = stress::band_system(BandKind::circulatory, random);
+      const double from = random(0.4, 1.5);
+      return along_the_speed(system, from, from * random(1.3, 4));
+    }
     const HillSystem system = stress::band_system(kinds[std::size_t(random.integer(0, 4))], random);
     return along_the_modulation(system, random(0.4, 3), random.power(0, 1));
   };

@@ -26,7 +26,7 @@ struct Line {
   std::vector<std::function<SystemOnLine(double x)>> rods;
 };
 
-inline constexpr int num_line_families = 15;
+inline constexpr int num_line_families = 16;
 [[nodiscard]] const char* line_family(int family);
 
 // The same line for the same family and number, on every machine.

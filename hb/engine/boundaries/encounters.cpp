@@ -11,22 +11,40 @@ namespace {
 
 using cplx = std::complex<double>;
 
-// Growth of the exponents that belong to each mean exponent at one place; -infinite: none.
-std::vector<double> growth_at(const Place& place) {
-  std::vector<double> growth(place.mean.size(), -HUGE_VAL);
-  for (const Strand& strand : place.strands.all)
-    if (!strand.mean.empty()) growth[strand.mean.front()] = std::max(growth[strand.mean.front()], strand.s.real());
+// Growth of the exponents that belong to a mean exponent, or may belong to it where decays do not tell; -infinite:
+// none.
+struct MeanGrowth {
+  double high = -HUGE_VAL;
+  double low = -HUGE_VAL;  // where several may belong to it, each without what locks it
+  double least = HUGE_VAL;  // of those that grow
+};
+
+std::vector<MeanGrowth> growth_at(const Place& place) {
+  std::vector<MeanGrowth> growth(place.mean.size());
+  for (std::size_t k = 0; k < place.strands.all.size(); ++k) {
+    const Strand& strand = place.strands.all[k];
+    const double s = strand.s.real(), alone = growth_by_itself(place.strands, k);
+    for (const std::size_t n : strand.mean) {
+      MeanGrowth& of = growth[n];
+      const bool drifts = place.mean[n].drift > 0;
+      if (n != strand.mean.front() && !drifts) continue;
+      of.high = std::max(of.high, s);
+      of.low = !drifts ? of.high : std::isinf(of.low) ? alone : std::min(of.low, alone);
+      if (s > 0) of.least = std::min(of.least, s);
+    }
+  }
   return growth;
 }
 
 // The larger one of both places. One that is locked to another belongs to either: while unstable those without any
 // count as its partners.
-std::vector<double> growth_by_mean(const Place& p, const Place& q) {
-  std::vector<double> growth = growth_at(p);
-  const std::vector<double> at_q = growth_at(q);
+std::vector<double> highest_by_mean(const Place& p, const std::vector<MeanGrowth>& at_p, const Place& q,
+                                    const std::vector<MeanGrowth>& at_q) {
+  std::vector<double> growth(at_p.size());
   for (std::size_t k = 0; k < growth.size(); ++k) {
-    growth[k] = std::max(growth[k], at_q[k]);
-    if (std::isinf(growth[k]) && !p.unstable) growth[k] = std::max(p.mean[k].value.real(), q.mean[k].value.real());
+    growth[k] = std::max(at_p[k].high, at_q[k].high);
+    if (std::isinf(growth[k]) && !p.unstable)
+      growth[k] = std::max(p.mean[k].value.real() + p.mean[k].drift, q.mean[k].value.real() + q.mean[k].drift);
   }
   return growth;
 }
@@ -34,6 +52,13 @@ std::vector<double> growth_by_mean(const Place& p, const Place& q) {
 // Two of which one grows leave a gap only if they decay together: not if the sum of both, at two places, is larger than
 // it changes.
 bool grow_together(double sum_p, double sum_q) { return std::min(sum_p, sum_q) > std::abs(sum_p - sum_q); }
+
+// Of two that may belong to several mean exponents the one that grows least is quenched soonest.
+double quenching_coupling(const std::vector<MeanGrowth>& growth, std::size_t i, std::size_t j, double larger,
+                          double smaller, bool drifts) {
+  if (drifts) return std::min({larger, growth[i].least, growth[j].least});
+  return std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
+}
 
 // Imaginary part modulo 1/2 of where two strands meet.
 double meeting_point(const Strands& s, std::size_t a, std::size_t b) {
@@ -59,6 +84,11 @@ std::size_t companion(const Strands& strands, std::size_t a) {
 
 bool locked(const Place& p, std::size_t k) { return p.strands.all[k].partner != no_strand; }
 
+// Modulation may make it grow off any resonance.
+bool may_drift(const Place& p, std::size_t k) {
+  return std::ranges::any_of(p.strands.all[k].mean, [&](std::size_t n) { return p.mean[n].drift > 0; });
+}
+
 // Without what it is locked to.
 double decay(const Place& p, std::size_t k) { return std::max(0.0, -growth_by_itself(p.strands, k)); }
 
@@ -76,9 +106,9 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p, std::size_t a
   std::array<std::size_t, 2> names = {locked.mean[0], locked.mean[1]};
   std::ranges::sort(names);
   const Strand& partner = p.strands.all[locked.partner];
-  const cplx a = p.mean[names[0]].value, b = p.mean[names[1]].value;
-  const bool conjugate = a.imag() != 0 && std::abs(a - std::conj(b)) <= 1e-9 * std::abs(a);
-  if (!conjugate || !std::ranges::is_permutation(partner.mean, names)) return std::nullopt;
+  if (!are_conjugate(p.mean[names[0]].value, p.mean[names[1]].value) ||
+      !std::ranges::is_permutation(partner.mean, names))
+    return std::nullopt;
   return names;
 }
 
@@ -203,18 +233,21 @@ double Encounters::needed_coupling(double growth, double other) const {
 bool Encounters::resolved(Place& p, Place& q, double most) const {
   if (p.mean.size() != q.mean.size()) return true;
   const std::size_t n = p.mean.size();
-  const std::vector<double> growth = growth_by_mean(p, q), growth_p = growth_at(p), growth_q = growth_at(q);
+  const std::vector<MeanGrowth> growth_p = growth_at(p), growth_q = growth_at(q);
+  const std::vector<double> growth = highest_by_mean(p, growth_p, q, growth_q);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
       const double at_p = p.mean[j].value.imag() - p.mean[i].value.imag();
       const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
       if (!(std::abs(at_p - at_q) > most)) continue;
       const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
-      if (p.unstable &&
-          (larger < options_.least_growth || grow_together(growth_p[i] + growth_p[j], growth_q[i] + growth_q[j])))
+      if (p.unstable && (larger < options_.least_growth ||
+                         grow_together(growth_p[i].low + growth_p[j].low, growth_q[i].low + growth_q[j].low)))
         continue;
-      const double quenching = std::sqrt(larger * std::max(larger, std::isinf(smaller) ? 0 : -smaller));
-      const double needed = p.unstable ? quenching : needed_coupling(larger, smaller);
+      const bool drifts = std::max(p.mean[i].drift, p.mean[j].drift) > 0;
+      const double needed = !p.unstable ? needed_coupling(larger, smaller)
+                                        : std::min(quenching_coupling(growth_p, i, j, larger, smaller, drifts),
+                                                   quenching_coupling(growth_q, i, j, larger, smaller, drifts));
       if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling), std::min(q.mean[i].coupling, q.mean[j].coupling)) <
           needed)
         continue;
@@ -382,7 +415,8 @@ bool Encounters::leading_lock_holds(Place& p, Place& q) const {
     // One that grows by itself is not held by a neighbour that does not excite it, nor by one that may quench it.
     Place& other = place == &p ? q : p;
     if (!locked(*place, 0) &&
-        (exciting_motion(*place, other, 0, b, options_.least_growth) < 0 || quenched(*place, other, 0, b)))
+        (may_drift(*place, 0) || exciting_motion(*place, other, 0, b, options_.least_growth) < 0 ||
+         quenched(*place, other, 0, b)))
       return false;
   }
   if (same_lock(p, 0, q, 0) && same_lock(q, 0, p, 0)) return true;

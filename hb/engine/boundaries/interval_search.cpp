@@ -6,6 +6,7 @@
 #include <queue>
 #include <set>
 #include <span>
+#include <utility>
 
 #include "hb/engine/boundaries/boundary_location.hpp"
 #include "hb/engine/boundaries/encounters.hpp"
@@ -313,18 +314,57 @@ class Search {
     const std::vector<GrowthModel> models = models_of_growth(p, q);
     if (models.empty()) return middle;
     double worst = HUGE_VAL, where = middle;
-    const auto look = [&](double x, double nearest) {
+    const auto lowest = [&](double x) {
       double low = -HUGE_VAL;
       for (const GrowthModel& model : models) low = std::max(low, model(x).low);
-      if (low < worst) {
+      return low;
+    };
+    const auto look = [&](double x, double nearest) {
+      if (const double low = lowest(x); low < worst) {
         worst = low;
         where = clamped(x, p, q, nearest);
       }
     };
-    for (const double x : probes(p.x(), q.x())) look(x, 0.02);
-    // A pair's growth has a notch where the two pass each other.
+    const std::vector<double> places = probes(p.x(), q.x());
+    for (const double x : places) look(x, 0.02);
+    // A pair's growth has a notch where the two pass each other, that of several one where another takes the lead.
     for (const GrowthModel& model : models) look(model.centre(), 1e-6);
+    // It is looked at closely where a change of verdict is foretold.
+    const auto foretold = [&](double x) {
+      return std::ranges::all_of(models, [&](const GrowthModel& model) { return model(x).low + model(x).high <= 0; });
+    };
+    for (const double x : notches(lowest, places)) look(x, foretold(x) ? 1e-6 : 0.02);
     return worst > 0 ? nan : where;
+  }
+
+  // The lowest places between neighbours of each place where f is lower than at both, by golden sections.
+  template <class Function>
+  static std::vector<double> notches(const Function& f, std::vector<double> places) {
+    constexpr double golden = 0.61803398874989485;
+    constexpr int steps = 36;
+    std::ranges::sort(places);
+    std::vector<double> values, found;
+    for (const double x : places) values.push_back(f(x));
+    for (std::size_t k = 1; k + 1 < places.size(); ++k) {
+      if (!(values[k] <= values[k - 1] && values[k] <= values[k + 1])) continue;
+      double low = places[k - 1], high = places[k + 1];
+      double a = high - golden * (high - low), b = low + golden * (high - low), f_a = f(a), f_b = f(b);
+      for (int step = 0; step < steps; ++step) {
+        if (f_a <= f_b) {
+          high = std::exchange(b, a);
+          f_b = f_a;
+          a = high - golden * (high - low);
+          f_a = f(a);
+        } else {
+          low = std::exchange(a, b);
+          f_a = f_b;
+          b = low + golden * (high - low);
+          f_b = f(b);
+        }
+      }
+      found.push_back(0.5 * (low + high));
+    }
+    return found;
   }
 
   // Of exponents that grow by themselves, or with one other, locked to it or not.

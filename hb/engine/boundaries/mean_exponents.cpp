@@ -158,13 +158,18 @@ VectorXd frozen_frequencies(const ScaledSystem& system, const VectorXd& b) {
   return sum + correction;
 }
 
-bool symmetric_everywhere(const ScaledSystem& system) {
+bool symmetric_stiffness(const ScaledSystem& system) {
   const Index I = system.num_modes();
   const double scale = system.K.c.cwiseAbs().maxCoeff();
   for (Index k = 0; k <= system.K.num_harmonics(); ++k) {
     const Eigen::Map<const MatrixXcd> K(system.K.c.col(k).data(), I, I);
     if (!((K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale)) return false;
   }
+  return true;
+}
+
+bool symmetric_everywhere(const ScaledSystem& system) {
+  if (!symmetric_stiffness(system)) return false;
   if (system.diagonal_damping) return true;
   return is_symmetric(system.G) && dense::symmetric_eigenpairs(system.G).values.minCoeff() >= 0;
 }
@@ -192,6 +197,8 @@ void add_frozen(std::vector<MeanExponent>& mean, const ScaledSystem& system) {
 
 }  // namespace
 
+bool are_conjugate(cplx a, cplx b) { return a.imag() != 0 && std::abs(a - std::conj(b)) <= 1e-9 * std::abs(a); }
+
 double shift_by_modulation(const MeanExponent& mean) {
   constexpr double detuning = 0.25;  // (coupling/margin)^2/detuning
   return mean.coupling * mean.coupling / (margin * margin * detuning);
@@ -211,11 +218,16 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
   const MatrixXd ways = dense::inverse(MatrixXd(MatrixXd::Identity(n, n) - C / least_detuning));
   const bool converges = ways.allFinite() && ways.minCoeff() >= 0;
   const MatrixXd all = converges ? MatrixXd(C * ways) : MatrixXd::Constant(n, n, HUGE_VAL);
+  const bool drifts = !symmetric_stiffness(system);
   for (Index i = 0; i < n; ++i) {
-    double& coupling = result[static_cast<std::size_t>(i)].coupling;
-    result[static_cast<std::size_t>(i)].modulation = C.row(i).maxCoeff();
-    for (Index j = 0; j < n; ++j)
-      if (j != i) coupling = std::max(coupling, margin * std::sqrt(all(i, j) * all(j, i)));
+    MeanExponent& mean = result[static_cast<std::size_t>(i)];
+    mean.modulation = C.row(i).maxCoeff();
+    for (Index j = 0; j < n; ++j) {
+      if (j == i) continue;
+      const double pulled = margin * std::sqrt(all(i, j) * all(j, i));
+      mean.coupling = std::max(mean.coupling, pulled);
+      if (drifts && !are_conjugate(modes.mu(i), modes.mu(j))) mean.drift = std::max(mean.drift, pulled);
+    }
   }
   add_frozen(result, system);
   return result;

@@ -17,11 +17,18 @@ struct MeanExponent {
   // Upper estimate of the growth that any resonance with another one can reach, whatever its order; per radian.
   double coupling = 0;
   double modulation = 0;  // the largest sum_k E_k,nr, of all r
+  // Upper estimate of how far modulation moves the real part of the exponent off Re mu otherwise than by sharing
+  // damping or locking, per radian: as `coupling`, without its conjugate; 0 where the stiffness is symmetric at all
+  // angles. hb/engine/README.md (B15).
+  double drift = 0;
   // Im mu with the stiffness of each angle in turn, to second order, hb/engine/README.md (B13): nearer to what slow
   // modulation makes of the exponent, however strong it is. Computed where modulation may shift one by half a turn; 0:
   // not known, or modulation is not slow.
   double frozen = 0;
 };
+
+// Of one mode that oscillates.
+[[nodiscard]] bool are_conjugate(std::complex<double> a, std::complex<double> b);
 
 // What modulation may shift an exponent by, of second order: hb/engine/README.md (B4).
 [[nodiscard]] double shift_by_modulation(const MeanExponent& mean);

@@ -111,6 +111,7 @@ void visit_sample(Visit& visit, StabilitySample& sample) {
     visit_complex(visit, exponent.value);
     visit(exponent.coupling);
     visit(exponent.modulation);
+    visit(exponent.drift);
     visit(exponent.frozen);
   });
   visit(sample.growth_bound);

@@ -69,7 +69,7 @@ PairModel model_of(const std::vector<const Place*>& places, Apart what) {
 }
 
 // Whether places are near enough to each other to show what happens between them: the pair moves by `most_turns` at
-// most, and no other exponent moves against it by more than it decays faster, both with what modulation may shift them.
+// most, and no other exponent moves against it by more than it decays faster, wherever modulation may shift them.
 enum class Motion { unknown, too_far, followed };
 Motion motion_between(const Place& p, const Place& q) {
   if (p.mean.size() != q.mean.size() || p.mean.size() < 2) return Motion::unknown;
@@ -78,12 +78,14 @@ Motion motion_between(const Place& p, const Place& q) {
   double pair = 0, growth = HUGE_VAL;
   for (const std::size_t n : slow) {
     pair = std::max(pair, moved(p, q, n));
-    growth = std::min({growth, p.mean[n].value.real(), q.mean[n].value.real()});
+    for (const MeanExponent* mean : {&p.mean[n], &q.mean[n]})
+      growth = std::min(growth, mean->value.real() - mean->drift);
   }
   bool followed = pair <= most_turns;
   for (std::size_t n = 0; n < p.mean.size(); ++n) {
     if (n == slow[0] || n == slow[1]) continue;
-    const double faster = growth - std::max(p.mean[n].value.real(), q.mean[n].value.real()),
+    const MeanExponent &a = p.mean[n], &b = q.mean[n];
+    const double faster = growth - std::max(a.value.real() + a.drift, b.value.real() + b.drift),
                  against = moved(p, q, n) + pair;
     if (against <= faster) continue;
     followed = false;

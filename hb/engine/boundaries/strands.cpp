@@ -30,8 +30,9 @@ class ShortMemory : public std::pmr::monotonic_buffer_resource {
   std::array<std::byte, 2048> bytes_;
 };
 
-// Lines Re = const that part exponents and mean ones alike: as many of either beyond, and those next to the line moved
-// by no more than a part of its distance from them. What locks two exponents moves both; their mean counts.
+// Lines Re = const that part exponents and mean ones alike: as many of either beyond, those next to the line moved by
+// no more than a part of its distance from them, and none that modulation may take across. What locks two exponents
+// moves both; their mean counts.
 ShortList<double> parting_lines(const Strands& strands, const std::vector<MeanExponent>& mean, ShortMemory& memory) {
   constexpr double most_moved = 0.25;
   struct Seen {
@@ -52,7 +53,10 @@ ShortList<double> parting_lines(const Strands& strands, const std::vector<MeanEx
   const auto moved = [&](std::size_t k) { return std::abs(seen[k].growth - means[k]) + seen[k].error; };
   for (std::size_t k = 0; k + 1 < means.size(); ++k) {
     const double low = std::max(means[k + 1], seen[k + 1].growth), high = std::min(means[k], seen[k].growth);
-    if (std::max(moved(k), moved(k + 1)) < most_moved * (high - low)) lines.push_back(0.5 * (low + high));
+    const double line = 0.5 * (low + high);
+    const auto stays = [&](const MeanExponent& m) { return m.drift < std::abs(m.value.real() - line); };
+    if (std::max(moved(k), moved(k + 1)) < most_moved * (high - low) && std::ranges::all_of(mean, stays))
+      lines.push_back(line);
   }
   return lines;
 }
@@ -68,7 +72,8 @@ std::vector<std::size_t> candidates(cplx s, const std::vector<MeanExponent>& mea
   for (std::size_t n = 0; n < mean.size(); ++n) {
     if (parted(s.real(), mean[n].value.real())) continue;
     const double decay = -mean[n].value.real(), seen = -s.real();
-    const bool alike = decay <= unlike_decay * seen && seen <= unlike_decay * decay;
+    const bool alike =
+        (decay <= unlike_decay * seen && seen <= unlike_decay * decay) || std::abs(decay - seen) <= mean[n].drift;
     distances.emplace_back(std::abs(folded(s - mean[n].value).imag()) + (alike ? 0 : 2 * doubt), n);
   }
   std::sort(distances.begin(), distances.end());
