@@ -434,6 +434,7 @@ Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scen
     json["verdict_before"] = to_string(*verdict);
   const std::string problem = shortfall(result);
   json["shortfall"] = problem.empty() ? Json() : Json(problem);
+  if (!problem.empty()) json["notes"] = Json::array({problem});
   json["goal"] = {{"before", number(result.goal_before)},
                   {"after", number(result.goal_after)},
                   {"error", number(result.goal_error)},
