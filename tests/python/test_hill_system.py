@@ -194,3 +194,13 @@ def test_shapes_are_answered_with_those_of_mass():
     with pytest.raises(hb.RequestError) as raised:
         hb.HillSystem(mass=np.eye(9) * 1j, stiffness={0: np.eye(9)})
     assert "\n" not in str(raised.value) and len(raised.value.found) < 90
+
+
+def test_what_missed_its_tolerance_is_said():
+    undamped = hb.HillSystem(mass=1, stiffness={0: 1}, load={1: (1, None)})
+    good = undamped.steady(omega=0.7)
+    assert good.converged and good.shortfalls == []
+    resonant = undamped.steady(omega=1.0)
+    assert not resonant.converged and "no unique periodic solution" in resonant.shortfalls[0]
+    stability = undamped.stability(omega=0.7)
+    assert stability.converged and stability.shortfalls == []

@@ -1,5 +1,7 @@
 #include "tools/python/stability.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "lib/constants.hpp"
@@ -78,6 +80,15 @@ void add_stability(py::module_& module) {
       .def_property_readonly(
           "converged", [](const StabilityView& v) { return v.stability->converged; },
           "Whether growth_error is within what was asked.")
+      .def_property_readonly(
+          "shortfalls",
+          [](const StabilityView& v) {
+            py::list sentences;
+            if (!v.stability->converged)
+              sentences.append(fmt::format("the growth rate is known to {:.1e} only", v.stability->growth_error));
+            return sentences;
+          },
+          "What missed the tolerance, a sentence each.")
       .def_property_readonly(
           "method", [](const StabilityView& v) { return to_string(v.stability->method); },
           "The method that gave the growth rate.")

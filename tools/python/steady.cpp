@@ -220,6 +220,14 @@ nlohmann::ordered_json document_of(const Answer& answer) {
   return document;
 }
 
+// Of the answer's, those that begin with the rod's name.
+std::vector<std::string> shortfalls_of(const RodView& rod) {
+  std::vector<std::string> own;
+  for (const std::string& sentence : rod.answer->result.shortfalls)
+    if (sentence.starts_with(rod.result().name + ":")) own.push_back(sentence);
+  return own;
+}
+
 // Exponents and verdict.
 void add_rod_stability(py::class_<RodView>& rod) {
   rod.def_property_readonly("stability", &stability_of, "Everything known of its stability; None: not computed.")
@@ -275,6 +283,12 @@ void add_rod(py::module_& module) {
          "name", [](const RodView& rod) { return decoded(rod.result().name); }, "Its name.")
       .def_property_readonly(
           "modes", [](const RodView& rod) { return rod.result().num_modes; }, "Number of Ritz terms I.")
+      .def_property_readonly(
+          "converged", [](const RodView& rod) { return shortfalls_of(rod).empty(); },
+          "Whether what was asked of it reached the tolerance; if not, `shortfalls` says what did not.")
+      .def_property_readonly(
+          "shortfalls", [](const RodView& rod) { return decoded(shortfalls_of(rod)); },
+          "What missed the tolerance, a sentence each.")
       .def_property_readonly(
           "harmonics",
           [](const RodView& rod) -> py::object {
