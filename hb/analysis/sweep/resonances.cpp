@@ -120,7 +120,7 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const Respon
 }
 
 std::vector<ResponseSample> inside(const RodAlong& rod, double a, double b) {
-  constexpr int parts = 5;
+  constexpr int parts = 3;
   std::vector<ResponseSample> samples;
   for (int part = 1; part < parts; ++part)
     if (std::optional<ResponseSample> sample = sample_at(rod, a + (b - a) * part / parts))

@@ -80,6 +80,9 @@ class Stability:
     def converged(self) -> bool:
         """Whether growth_error is within what was asked."""
     @property
+    def shortfalls(self) -> list[str]:
+        """What missed the tolerance, a sentence each."""
+    @property
     def method(self) -> str:
         """The method that gave the growth rate."""
     @property
@@ -95,6 +98,12 @@ class Rod:
     @property
     def modes(self) -> int:
         """Number of Ritz terms I."""
+    @property
+    def converged(self) -> bool:
+        """Whether what was asked of it reached the tolerance; if not, `shortfalls` says what did not."""
+    @property
+    def shortfalls(self) -> list[str]:
+        """What missed the tolerance, a sentence each."""
     @property
     def harmonics(self) -> Optional[int]:
         """Number of harmonics H; None without a steady state."""

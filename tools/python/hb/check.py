@@ -166,6 +166,11 @@ class Check(Result):
         return self._document.get("growth_theory_error")
 
     @property
+    def status(self) -> str:
+        """Whether everything reached its tolerance and was compared: "reached" or "tolerance not reached"."""
+        return str(self._document["status"])
+
+    @property
     def shortfalls(self) -> list[str]:
         """What missed its tolerance, or could not be compared."""
         return list(self._missed)
