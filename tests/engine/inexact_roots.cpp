@@ -55,11 +55,13 @@ void expect_covered(const VectorXd& a, double change, unsigned seed) {
     VectorXd e = VectorXd::NullaryExpr(a.size(), [&] { return uniform(generator); });
     e *= 0.999 * change / e.cwiseAbs().sum();
     const VectorXcd moved = roots_of(a + e);
-    for (Index j = 0; j < inexact.value.size(); ++j)
-      if (std::isfinite(inexact.radius(j)))
-        EXPECT_EQ(inside(moved, inexact.value(j), inexact.radius(j)),
-                  inside(inexact.value, inexact.value(j), inexact.radius(j)));
-    if (std::isfinite(inexact.rest)) EXPECT_EQ(inside(moved, 0, inexact.rest), inside(inexact.value, 0, inexact.rest));
+    for (Index j = 0; j < inexact.value.size(); ++j) {
+      if (!std::isfinite(inexact.radius(j))) continue;
+      const cplx centre = inexact.value(j);
+      EXPECT_EQ(inside(moved, centre, inexact.radius(j)), inside(inexact.value, centre, inexact.radius(j)));
+    }
+    if (!std::isfinite(inexact.rest)) continue;
+    EXPECT_EQ(inside(moved, 0, inexact.rest), inside(inexact.value, 0, inexact.rest));
   }
 }
 
