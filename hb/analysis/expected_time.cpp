@@ -31,9 +31,12 @@ double expected_seconds(const SceneModel& model, const Settings& settings) {
   }
   const Only& only = settings.only;
   if (only.stability && settings.stability_method == StabilityMethod::determinant) {
-    // Up to six circles and one for the winding, I + 2 values on each, of up to 0.3 s.
-    constexpr double per_value = 0.3;
-    for (const RodModel& rod : model.rods) seconds += per_value * 7 * static_cast<double>(rod.num_modes + 2);
+    // Three circles, more are rare, and one for the winding, I + 2 values on each; harmonics are limited (measured).
+    constexpr double circles = 4, per_value = 0.004, longest_value = 0.3;
+    for (const RodModel& rod : model.rods) {
+      const auto I = static_cast<double>(rod.system.num_modes());
+      seconds += circles * (I + 2) * std::min(per_value * I * I, longest_value);
+    }
     return seconds;
   }
   const bool response = only.steady || only.reactions || only.shape;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "hb/analysis/golden_section.hpp"
+#include "lib/golden_section.hpp"
 
 namespace hb {
 namespace {

@@ -10,9 +10,9 @@
 #include <numbers>
 
 #include "hb/analysis/linkage_analysis.hpp"
+#include "hb/analysis/plane_numbers.hpp"
 #include "hb/analysis/request.hpp"
 #include "lib/chebyshev.hpp"
-#include "lib/constants.hpp"
 #include "lib/rod/rod.hpp"
 
 namespace hb {
@@ -20,21 +20,6 @@ namespace scene_plane {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-constexpr std::size_t num_powers = 3;
-
-// The numbers of a Hill system in one vector: mass, damping, then per power the harmonics of the stiffness.
-struct Layout {
-  Index num_modes = 0;
-  std::array<Index, num_powers> columns{};  // harmonics + 1; 0: no such power
-
-  Index matrix() const { return num_modes * num_modes; }
-  Index size() const { return (2 + 2 * (columns[0] + columns[1] + columns[2])) * matrix(); }
-  void widen(const HillSystem& system) {
-    num_modes = system.num_modes();
-    for (std::size_t p = 0; p < num_powers; ++p) columns[p] = std::max(columns[p], system.stiffness[p].c.cols());
-  }
-};
 
 struct Box {
   std::array<double, 2> low{}, high{};
@@ -45,13 +30,6 @@ struct Box {
   }
   double value(std::size_t axis, double t) const { return 0.5 * ((1 - t) * low[axis] + (1 + t) * high[axis]); }
   bool contains(double u, double v) const { return u >= low[0] && u <= high[0] && v >= low[1] && v <= high[1]; }
-};
-
-// What the interpolated numbers of a system may be wrong by, I x I each; those of stiffness summed over the harmonics,
-// per power, and beside them their largest sizes.
-struct NumberErrors {
-  MatrixXd mass, damping;
-  std::array<MatrixXd, num_powers> stiffness, stiffness_sizes;
 };
 
 // Part of the plane of scene numbers: interpolated, divided further, or (neither) computed place by place.
@@ -79,110 +57,12 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using scene_plane::num_powers;
 
 // Relative to the entries of a matrix; the Fourier coefficients of a geometry carry rounding of a few 1e-14.
 constexpr double interpolation_tolerance = 1e-13;
 constexpr std::array<Index, 5> degrees_1d = {2, 4, 8, 16, 32};
 constexpr std::array<Index, 3> degrees_2d = {2, 4, 8};
 constexpr int max_depth_1d = 5, max_depth_2d = 2;
-
-VectorXd packed(const HillSystem& system, const Layout& layout) {
-  VectorXd v = VectorXd::Zero(layout.size());
-  const Index n = layout.matrix();
-  v.head(n) = system.mass.reshaped();
-  v.segment(n, n) = system.damping.reshaped();
-  Index start = 2 * n;
-  for (std::size_t p = 0; p < num_powers; ++p) {
-    const Eigen::MatrixXcd& c = system.stiffness[p].c;
-    v.segment(start, c.size()) = c.real().reshaped();
-    v.segment(start + n * layout.columns[p], c.size()) = c.imag().reshaped();
-    start += 2 * n * layout.columns[p];
-  }
-  return v;
-}
-
-HillSystem unpacked(const VectorXd& v, const Layout& layout) {
-  const Index I = layout.num_modes, n = layout.matrix();
-  HillSystem system;
-  system.mass = v.head(n).reshaped(I, I);
-  system.damping = v.segment(n, n).reshaped(I, I);
-  Index start = 2 * n;
-  for (std::size_t p = 0; p < num_powers; ++p) {
-    const Index columns = layout.columns[p];
-    if (columns == 0) continue;
-    Eigen::MatrixXcd c(n, columns);
-    c.real() = v.segment(start, n * columns).reshaped(n, columns);
-    c.imag() = v.segment(start + n * columns, n * columns).reshaped(n, columns);
-    system.stiffness[p] = FourierSeries(std::move(c));
-    start += 2 * n * columns;
-  }
-  return system;
-}
-
-// Per entry (i, k) of each matrix sqrt(d_i d_k) with d the largest of the diagonal, or its own largest value.
-VectorXd scales(const VectorXd& v, const Layout& layout) {
-  const Index I = layout.num_modes, n = layout.matrix();
-  VectorXd scale(v.size());
-  const auto block = [&](Index start, Index columns) {
-    if (columns == 0) return;
-    VectorXd own = v.segment(start, n * columns).reshaped(n, columns).cwiseAbs().rowwise().maxCoeff();
-    for (Index k = 0; k < I; ++k) {
-      for (Index i = 0; i < I; ++i) {
-        const double geometric = std::sqrt(own(i + I * i) * own(k + I * k));
-        scale.segment(start, n * columns)
-            .reshaped(n, columns)
-            .row(i + I * k)
-            .setConstant(std::max(geometric, own(i + I * k)));
-      }
-    }
-  };
-  block(0, 1);
-  block(n, 1);
-  Index start = 2 * n;
-  for (const Index columns : layout.columns) {
-    block(start, 2 * columns);
-    start += 2 * n * columns;
-  }
-  return scale;
-}
-
-// From the largest differences at a few places; rounding where the sums of products of Chebyshev polynomials, of at
-// most 1 each, cancel. None where all coefficients but the first are zero.
-NumberErrors errors_of(const VectorXd& differences, const MatrixXd& coefficients, const Layout& layout) {
-  constexpr double margin = 4;
-  const VectorXd others = coefficients.rightCols(coefficients.cols() - 1).cwiseAbs().rowwise().sum();
-  const VectorXd sums = others + coefficients.col(0).cwiseAbs();
-  const VectorXd errors = (others.array() > 0).select(margin * differences.cwiseMax(eps * sums), 0.0);
-  const Index I = layout.num_modes, n = layout.matrix();
-  NumberErrors found{errors.head(n).reshaped(I, I), errors.segment(n, n).reshaped(I, I), {}, {}};
-  Index start = 2 * n;
-  for (std::size_t p = 0; p < num_powers; ++p) {
-    const Index columns = layout.columns[p];
-    found.stiffness[p] = found.stiffness_sizes[p] = MatrixXd::Zero(I, I);
-    for (Index k = 0; k < 2 * columns; ++k, start += n) {  // real parts, then imaginary ones
-      const double both_signs = k % columns == 0 ? 1 : 2;
-      found.stiffness[p] += both_signs * errors.segment(start, n).reshaped(I, I);
-      found.stiffness_sizes[p] += both_signs * sums.segment(start, n).reshaped(I, I);
-    }
-  }
-  return found;
-}
-
-// At one speed; relative errors of the mass are taken to be errors of both.
-GivenErrors given_errors(const HillSystem& system, const NumberErrors& errors, double speed) {
-  const Index I = system.num_modes();
-  double relative = 0;
-  for (Index k = 0; k < I; ++k)
-    for (Index i = 0; i < I; ++i)
-      if (errors.mass(i, k) > 0)
-        relative = std::max(relative, errors.mass(i, k) / std::sqrt(std::abs(system.mass(i, i) * system.mass(k, k))));
-  GivenErrors given{errors.damping + relative * system.damping.cwiseAbs(), MatrixXd::Zero(I, I)};
-  double power = 1;
-  for (std::size_t p = 0; p < num_powers; ++p, power *= speed)
-    given.stiffness += power * (errors.stiffness[p] + relative * errors.stiffness_sizes[p]);
-  return given;
-}
 
 // Whether values at (n[0]+1) x (n[1]+1) nodes, one a column, first axis fastest, change along each axis.
 std::array<bool, 2> varying(const MatrixXd& values, const std::array<Index, 2>& n) {

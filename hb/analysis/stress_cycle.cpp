@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "hb/analysis/golden_section.hpp"
 #include "hb/analysis/rod_stress.hpp"
+#include "lib/golden_section.hpp"
 
 namespace hb {
 namespace {

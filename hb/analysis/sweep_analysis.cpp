@@ -150,7 +150,7 @@ class SweepRun {
       };
       found.peaks = resonances_between(along_[r], place(a, k), place(b, k + 1));
       if (k == 0 || k + 1 == intervals())
-        for (ResponseSample& sample : inside(along_[r], a.x, b.x)) found.peaks.push_back(std::move(sample));
+        for (ResponseSample& sample : samples_inside(along_[r], a.x, b.x)) found.peaks.push_back(std::move(sample));
     }
     return found;
   }
@@ -259,7 +259,9 @@ class SweepRun {
   // Of a point on a resonance without damping.
   std::vector<ResponseSample> beside_point(std::size_t r, std::size_t k) const {
     const SweepPoint& point = result_.points[k];
-    if (k == 0 || k == intervals() || point.rods.empty() || point.rods[r].steady != SteadyStatus::singular) return {};
+    if (work_.ends_early() || k == 0 || k == intervals() || point.rods.empty() ||
+        point.rods[r].steady != SteadyStatus::singular)
+      return {};
     return beside_pole(along_[r], point.x, near_pole * std::min(point.x - values_[k - 1], values_[k + 1] - point.x));
   }
 
@@ -269,6 +271,7 @@ class SweepRun {
     std::vector<ResponseSample> samples;
     const std::vector<StabilityBoundary>& boundaries = result_.rods[r].boundaries;
     for (const StabilityBoundary& boundary : boundaries) {
+      if (work_.ends_early()) return samples;
       if (boundary.kind != BoundaryKind::plus_one || boundary.x <= values_[k] || boundary.x >= values_[k + 1]) continue;
       double free = std::min(boundary.x - values_[k], values_[k + 1] - boundary.x);
       for (const StabilityBoundary& other : boundaries)

@@ -230,7 +230,7 @@ TEST_F(Sweep, CriticalSpeedOfADampedOscillatorIsTheClosedForm) {
   EXPECT_EQ(third["critical"][0]["order"], 3);
 }
 
-// On a point of the sweep, between two, at its end.
+// On a point of the sweep or between two.
 TEST_F(Sweep, ResonanceWithoutDampingIsFoundWhereverThePointsLie) {
   write("undamped.toml",
         "[hill]\nmass = [[1.0]]\nstiffness = [{ harmonic = 0, cos = [[1.0]] }]\nload = [{ harmonic = 1, cos = [1.0] "

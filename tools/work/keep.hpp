@@ -1,3 +1,4 @@
+// What a process that is about to end need not take apart.
 #pragma once
 
 #include <deque>

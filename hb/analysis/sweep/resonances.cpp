@@ -119,7 +119,7 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const Respon
   return found;
 }
 
-std::vector<ResponseSample> inside(const RodAlong& rod, double a, double b) {
+std::vector<ResponseSample> samples_inside(const RodAlong& rod, double a, double b) {
   constexpr int parts = 3;
   std::vector<ResponseSample> samples;
   for (int part = 1; part < parts; ++part)

@@ -31,7 +31,7 @@ struct ResponsePlace {
                                                              const ResponsePlace& b);
 
 // Inside an interval that has no other one beside it, where a maximum need not show on its ends. Ascending.
-[[nodiscard]] std::vector<ResponseSample> inside(const RodAlong& rod, double a, double b);
+[[nodiscard]] std::vector<ResponseSample> samples_inside(const RodAlong& rod, double a, double b);
 
 // On both sides of a place without a response, not equally far: halving the way between them does not lead back to it.
 // Empty where there is none there either.

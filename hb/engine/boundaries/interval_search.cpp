@@ -6,13 +6,13 @@
 #include <queue>
 #include <set>
 #include <span>
-#include <utility>
 
 #include "hb/engine/boundaries/boundary_location.hpp"
 #include "hb/engine/boundaries/encounters.hpp"
 #include "hb/engine/boundaries/place_models.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "lib/constants.hpp"
+#include "lib/golden_section.hpp"
 
 namespace hb {
 
@@ -337,33 +337,17 @@ class Search {
     return worst > 0 ? nan : where;
   }
 
-  // The lowest places between neighbours of each place where f is lower than at both, by golden sections.
+  // The lowest places between neighbours of each place where f is lower than at both.
   template <class Function>
   static std::vector<double> notches(const Function& f, std::vector<double> places) {
-    constexpr double golden = 0.61803398874989485;
     constexpr int steps = 36;
     std::ranges::sort(places);
     std::vector<double> values, found;
     for (const double x : places) values.push_back(f(x));
-    for (std::size_t k = 1; k + 1 < places.size(); ++k) {
-      if (!(values[k] <= values[k - 1] && values[k] <= values[k + 1])) continue;
-      double low = places[k - 1], high = places[k + 1];
-      double a = high - golden * (high - low), b = low + golden * (high - low), f_a = f(a), f_b = f(b);
-      for (int step = 0; step < steps; ++step) {
-        if (f_a <= f_b) {
-          high = std::exchange(b, a);
-          f_b = f_a;
-          a = high - golden * (high - low);
-          f_a = f(a);
-        } else {
-          low = std::exchange(a, b);
-          f_a = f_b;
-          b = low + golden * (high - low);
-          f_b = f(b);
-        }
-      }
-      found.push_back(0.5 * (low + high));
-    }
+    for (std::size_t k = 1; k + 1 < places.size(); ++k)
+      if (values[k] <= values[k - 1] && values[k] <= values[k + 1])
+        found.push_back(largest_between(
+            places[k - 1], places[k + 1], [&](double x) { return -f(x); }, steps));
     return found;
   }
 

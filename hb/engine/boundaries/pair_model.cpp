@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/constants.hpp"
+#include "lib/golden_section.hpp"
 
 namespace hb {
 
@@ -20,20 +21,6 @@ double root(const Function& f, double from, double to) {
   for (int step = 0; step < steps_inside; ++step) {
     const double middle = 0.5 * (from + to);
     ((f(middle) > 0) == positive ? from : to) = middle;
-  }
-  return 0.5 * (from + to);
-}
-
-// Golden sections.
-template <class Function>
-double largest(const Function& f, double from, double to) {
-  constexpr double golden = 0.61803398874989485;
-  for (int step = 0; step < steps_inside; ++step) {
-    const double a = to - golden * (to - from), b = from + golden * (to - from);
-    if (f(a) > f(b))
-      to = b;
-    else
-      from = a;
   }
   return 0.5 * (from + to);
 }
@@ -116,9 +103,11 @@ std::vector<double> PairModel::telling() const {
     if ((values[k] > 0) != (values[k + 1] > 0)) found.push_back(root(c, places[k], places[k + 1]));
     if (k == 0) continue;
     const double before = std::abs(values[k - 1]);
-    if (here >= before && here >= next) found.push_back(largest(size, places[k - 1], places[k + 1]));
+    if (here >= before && here >= next)
+      found.push_back(largest_between(places[k - 1], places[k + 1], size, steps_inside));
     if (here <= before && here <= next)
-      found.push_back(largest([&](double x) { return -size(x); }, places[k - 1], places[k + 1]));
+      found.push_back(largest_between(
+          places[k - 1], places[k + 1], [&](double x) { return -size(x); }, steps_inside));
   }
   return found;
 }

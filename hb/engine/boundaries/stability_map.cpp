@@ -11,6 +11,7 @@
 
 #include "hb/engine/boundaries/finite_growth.hpp"
 #include "hb/engine/boundaries/interval_search.hpp"
+#include "hb/engine/boundaries/map_ahead.hpp"
 #include "hb/engine/boundaries/map_curves.hpp"
 #include "hb/engine/boundaries/map_grid.hpp"
 #include "hb/engine/boundaries/map_mesh.hpp"
@@ -71,7 +72,7 @@ class MapSearch {
     std::erase_if(edges, [this](std::size_t e) { return !may_be_crossed(e); });
     std::vector<SearchedInterval> found = searched(edges, "edge");
     for (std::size_t k = 0; k < edges.size(); ++k) sampled_[edges[k]] = std::move(found[k]);
-    foresee_by_sample();
+    left_.foresee_by(sampled_, options_.boundaries);
   }
 
   void begin() {
@@ -90,12 +91,7 @@ class MapSearch {
     left_ = {};
   }
 
-  PartsAhead left() const {
-    return {{"node", left_.nodes},
-            {"edge", left_.edges + left_.after_edges},
-            {"halved edge", left_.halved},
-            {"curve point", left_.points}};
-  }
+  PartsAhead left() const { return left_.parts(); }
 
   StabilityMap result() {
     StabilityMap map;
@@ -137,31 +133,6 @@ class MapSearch {
     std::set<decltype(key_of(std::size_t{}))> keys;
     for (std::size_t k = 0; k < things; ++k) keys.insert(key_of(k));
     return static_cast<double>(keys.size());
-  }
-
-  // --- What is left, about: between what was measured of smooth and of chaotic maps, for forecasts alone ---
-
-  static constexpr double edges_of_a_halving = 13;
-  // In times that an edge of the grid takes: the stretch of curve at a crossing, and all halvings around an edge that
-  // is crossed twice.
-  static constexpr double edges_of_a_crossing = 1.5, edges_of_two_crossings = 8;
-
-  void foresee_by_sample() {
-    if (sampled_.empty()) return;
-    double crossings = 0, twice = 0;
-    for (const auto& [edge, found] : sampled_) {
-      crossings += static_cast<double>(found.boundaries.size());
-      twice += found.boundaries.size() > 1;
-    }
-    const double each = left_.edges / static_cast<double>(sampled_.size());
-    left_.after_edges =
-        each * (edges_of_two_crossings * twice + (options_.boundaries ? edges_of_a_crossing * crossings : 0));
-  }
-
-  // Of cells that are being halved, should each hand its wish on to one of its quarters for so many times.
-  void foresee(double halvings) {
-    left_.halved = edges_of_a_halving * halvings;
-    left_.after_edges = options_.boundaries ? edges_of_a_crossing * static_cast<double>(mesh_.crossings().size()) : 0;
   }
 
   // Error within ten times what was asked, or within what searches promise.
@@ -467,7 +438,7 @@ class MapSearch {
         changed = true;
       }
       islands_sought_ = count;
-      foresee(halvings);
+      left_.foresee_by(halvings, mesh_.crossings().size(), options_.boundaries);
       evaluate();
     }
   }
@@ -537,11 +508,7 @@ class MapSearch {
   std::vector<std::optional<StabilitySample>> samples_;  // by node
   std::vector<bool> evaluated_;  // by node
   std::map<std::size_t, SearchedInterval> sampled_;  // by edge: those of sample()
-  struct {
-    double nodes = 0, edges = 0;
-    double after_edges = 0;  // in times that an edge takes
-    double halved = 0, points = 0;
-  } left_;
+  MapAhead left_;
   bool surface_sought_ = false;
   std::optional<DiscriminantSurface> surface_;
   std::vector<MapPoint> points_;  // of the grid, by the surface

@@ -12,7 +12,8 @@ namespace hb {
 
 class HillDeterminant {
  public:
-  // A complex number e^log, and an estimate of its relative error: the last change, and the core's rounding.
+  // A complex number e^log, and an estimate of its relative error: what the last changes leave, and the core's
+  // rounding.
   struct Value {
     std::complex<double> log;
     double error = 0;
@@ -26,8 +27,9 @@ class HillDeterminant {
   // L(s)_kl = D(s + ik) delta_kl + E_(k-l); the sums of all s_j and of all p_j are both -tr G (Liouville). F has
   // period i up to its sign; F(0) and F(i/2) are real, change sign at the +1 and -1 boundaries and are negative only if
   // an odd number of real multipliers lies beyond +1 or -1 (I odd: F(i/2) after division by (2i)^2I).
-  // The infinite determinant is that of the harmonics up to H, those beyond to second order in closed sums; H doubles
-  // until the value settles, the last change is the error.
+  // The infinite determinant is that of the harmonics up to H, those beyond to second order, as far as four times the
+  // fastest mode's; H doubles until the value settles. The last change is the error, while resonances lie beyond H ten
+  // times the larger one of the last two.
   Value operator()(std::complex<double> s) const;
 
   // Exponents near the leading one: e^{2 pi I s} F(s) is a polynomial of degree 2I in e^{2 pi s}, interpolated on the
@@ -52,6 +54,7 @@ class HillDeterminant {
   };
   class Matrix;
   Value truncated(std::complex<double> s, Eigen::Index H) const;
+  // Error that is left after the last change and the one before it.
   double left_by(double change, double before, Eigen::Index H) const;
   Values settled_values(const Eigen::VectorXcd& s, bool but_for_a_factor) const;
   Polynomial on_circle(double c) const;
