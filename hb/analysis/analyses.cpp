@@ -77,6 +77,7 @@ Check check(const Scene& scene, const CheckRequest& request, const Work& work) {
     throw RequestError("only", result.settings.only.growth ? "\"growth\"" : "\"verdict\"",
                        "steady, stability, reactions, shape: the paths are compared in what both compute");
   const std::vector<double> speeds = speeds_of(request, scene);
+  result.over_range = speeds.size() > 1;
   if (!(request.case_limit > 0)) throw RequestError("case_limit", fmt::format("{}", request.case_limit), "seconds > 0");
   result.model = std::make_shared<const SceneModel>(make_model(scene, result.settings));
   if (request.expected) request.expected(expected_bytes(*result.model, result.settings));

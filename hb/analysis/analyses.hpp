@@ -55,6 +55,7 @@ struct Check {
   Settings settings;
   std::shared_ptr<const SceneModel> model;
   std::vector<SpeedCheck> speeds;
+  bool over_range = false;  // several were asked for
 
   [[nodiscard]] bool agrees() const;  // in everything that could be compared
   [[nodiscard]] bool reached() const;  // nothing missed its tolerance, all was compared

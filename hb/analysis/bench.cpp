@@ -51,9 +51,11 @@ Bench bench(const Scene& scene, const BenchRequest& request) {
                                         : time_domain_system(rod.system, speed);
     result.rods.push_back(bench_rod(rod, system, options));
   }
-  Settings growth = result.settings;
-  growth.only = {.steady = false, .stability = true, .reactions = false, .shape = false, .verdict = true};
-  for (const RodResult& rod : analyse(model, speed, growth).rods)
+  Settings judged = result.settings;
+  judged.only = {.steady = true, .stability = true, .reactions = false, .shape = false, .verdict = true};
+  const SpeedResult answer = analyse(model, speed, judged);
+  result.theory = answer.theory;
+  for (const RodResult& rod : answer.rods)
     result.verdicts.emplace_back(rod.name, rod.stability ? std::optional(rod.stability->verdict) : std::nullopt);
   return result;
 }

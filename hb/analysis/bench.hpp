@@ -12,6 +12,7 @@
 #include "hb/analysis/bench_rod.hpp"
 #include "hb/analysis/nonlinear/nonlinear_steady.hpp"
 #include "hb/analysis/request.hpp"
+#include "hb/analysis/theory_error.hpp"
 
 namespace hb {
 
@@ -31,6 +32,7 @@ struct Bench {
   // Of the linear theory, of all elastic links whichever are measured; without linearisation of all together by the
   // reference, empty where there was none.
   std::vector<std::pair<std::string, std::optional<Verdict>>> verdicts;
+  std::optional<TheoryErrors> theory;  // of the linear theory of a linkage, in the order of `verdicts`
 
   [[nodiscard]] bool complete() const;  // a reference was found for each
 };

@@ -63,8 +63,10 @@ std::optional<MachineLoads> machine_loads(const SceneModel& model, const SpeedRe
   if (!result.forces) return std::nullopt;
   std::vector<LinkResponse> responses;
   for (const RodResult& rod : result.rods) responses.push_back({rod.link, rod.steady->q});
-  return machine_loads(*model.linkage(), result.speed, *result.forces, responses,
-                       result.force_errors.value_or(ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0}));
+  MachineLoads loads = machine_loads(*model.linkage(), result.speed, *result.forces, responses,
+                                     result.force_errors.value_or(ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0}));
+  if (result.theory) loads.mean_theory_error = result.theory->mean_torque;
+  return loads;
 }
 
 }  // namespace hb

@@ -22,6 +22,7 @@ struct MachineLoads {
   double shaking_force_error = 0, shaking_moment_error = 0;
   double torque_error = 0, energy_error = 0;  // of all of Drive's torques, and of its energy
   Drive drive, drive_rigid;
+  std::optional<double> mean_theory_error;  // TheoryErrors::mean_torque, of the linear theory
   double inertia = 0;  // of the crank about its pivot
   std::optional<double> speed_fluctuation, speed_fluctuation_error;  // where the crank has inertia
 

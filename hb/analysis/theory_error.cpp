@@ -190,6 +190,7 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
   const Index last = size.rows() - 1;
   errors.force = ratio(dense::largest(change.topRows(last)), dense::largest(size.topRows(last)));
   errors.torque = ratio(dense::largest(change.row(last)), dense::largest(size.row(last)));
+  errors.mean_torque = std::abs(change.row(last).mean());
 }
 
 // What is asked, with what all corrections share.

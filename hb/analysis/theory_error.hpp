@@ -37,6 +37,9 @@ struct TheoryErrors {
   // Largest change over the turn of any joint force's component, and of the driving torque, over the largest of each;
   // only where linear forces are given. Empty also where q + dq breaks the exact model.
   std::optional<double> force, torque;
+  // Change of the driving torque's mean over the turn, as it is: the mean is small where little but damping takes
+  // power.
+  std::optional<double> mean_torque;
   // Change of the mechanism's growth rate, per unit time, where asked for: growth_theory_error().
   std::optional<double> growth;
   double steepest = 0;  // largest slope |w'| of the linear answer that the exact model met; 0: none

@@ -191,9 +191,12 @@ HillSystem read_hill(const TableView& hill, const SceneContext& context) {
   try {
     validate(system);
   } catch (const std::invalid_argument& error) {
-    const bool mass_is_wrong = std::string_view(error.what()).find("mass is singular") != std::string_view::npos;
+    std::string_view found = error.what();
+    constexpr std::string_view whose = "HillSystem: ";
+    if (found.starts_with(whose)) found.remove_prefix(whose.size());
+    const bool mass_is_wrong = found.find("mass is singular") != std::string_view::npos;
     hill.problem(mass_is_wrong ? "mass" : "",
-                 fmt::format("found {}, allowed an invertible mass and finite numbers", error.what()));
+                 fmt::format("found that the {}, allowed an invertible mass and finite numbers", found));
   }
   return system;
 }

@@ -64,7 +64,7 @@ struct Judged {
 };
 
 struct Quantities {
-  Judged q, deflection, force, torque, growth;
+  Judged q, deflection, force, torque, mean_torque, growth;
 };
 
 // Relative to the growth rate, or to a hundredth of the speed where that is larger.
@@ -92,6 +92,9 @@ void judge(RandomLinkage each, Without what, Growth growth, Quantities& found) {
   }
   if (errors.force) found.force.add(*errors.force, changes->force);
   if (errors.torque) found.torque.add(*errors.torque, changes->torque);
+  // Relative to the mean, or to a hundredth of the largest torque where that is larger.
+  const double size = std::max(std::abs(changes->linear_mean), 0.01 * changes->largest_torque);
+  if (errors.mean_torque) found.mean_torque.add(*errors.mean_torque / size, changes->mean_torque / size);
   if (growth == Growth::wanted) judge_growth(answer, each, errors, *changes, found.growth);
 }
 
@@ -107,11 +110,9 @@ TEST(TheoryErrorGate, IsWithinATenthOfTheTrueChangeWhereThatIsBelowTwoPercent) {
     const char* name;
     Judged judged;
     int least;
-  } quantities[] = {{"q", found.q, 60},
-                    {"deflection", found.deflection, 60},
-                    {"joint forces", found.force, 40},
-                    {"torque", found.torque, 40},
-                    {"growth rate", found.growth, 15}};
+  } quantities[] = {
+      {"q", found.q, 60},           {"deflection", found.deflection, 60},   {"joint forces", found.force, 40},
+      {"torque", found.torque, 40}, {"mean torque", found.mean_torque, 40}, {"growth rate", found.growth, 15}};
   for (const auto& quantity : quantities) {
     SCOPED_TRACE(quantity.name);
     EXPECT_GE(quantity.judged.count, quantity.least);

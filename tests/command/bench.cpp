@@ -47,6 +47,17 @@ TEST_F(Bench, EveryMethodConvergesOnTheForcedMathieuEquation) {
   EXPECT_EQ(found["ratios"].size(), 4u);
 }
 
+// What both paths leave out was told by all commands but this one.
+TEST_F(Bench, SaysWhatTheLinearTheoryLeavesOut) {
+  const std::string of = scene("six_link") + " --rpm 1500 --modes 1";
+  const CommandResult result = hb("bench " + of + " --rods AB --case-limit 0.01 --json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json found = Json::parse(result.out), steady = Json::parse(hb("steady " + of + " --json").out);
+  const double expected = steady["rods"]["AB"]["theory_error"];
+  EXPECT_NEAR(found["rods"]["AB"]["theory_error"], expected, 1e-6 * expected);
+  EXPECT_NE(found["warnings"].dump().find("AB: beyond the linear theory"), std::string::npos) << found["warnings"];
+}
+
 TEST_F(Bench, WritesTheTableAndAPicture) {
   const CommandResult result =
       hb("bench " + scene("six_link") + " --rpm 300 --modes 1 --rods AB --case-limit 0.05 --out out");

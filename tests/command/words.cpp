@@ -460,4 +460,66 @@ TEST_F(Words, CtrlCPrintsWhatIsThere) {
   expect(read(folder_ / "out.txt"), {"ended before the answer was complete", "AB: 5 modes"});
 }
 
+// The lower end of an interval without an upper one was told as the growth rate.
+TEST_F(Words, AGrowthRateWithoutAnUpperBoundHasNone) {
+  std::ofstream(folder_ / "two.toml")
+      << "[hill]\nmass = [[2.0, 0.1], [0.1, 1.0]]\ndamping = [[0.2, 0.05], [0.0, 0.3]]\n"
+         "stiffness = [{ harmonic = 0, cos = [[6.0, 0.5], [0.5, 9.0]] }, { harmonic = 1, "
+         "cos = [[0.4, 0.2], [0.1, 0.0]] }]\nload = [{ harmonic = 1, cos = [1.0, 0] }]\n";
+  const std::string at = "two.toml --omega 3.4 --only stability --stability-method ";
+  const Json found = Json::parse(said("steady " + at + "bound --json"))["rods"]["system"];
+  EXPECT_TRUE(found["growth_rate"].is_null()) << found["growth_rate"];
+  EXPECT_TRUE(found["growth_interval"][0].is_number());
+  expect(said("steady " + at + "bound"), {"growth rate       no upper bound, at least -0.09987 1/s"}, {"inf"});
+  expect(said("steady " + at + "determinant"), {"growth rate       not found\n"}, {"inf"});
+  const std::string range = "sweep two.toml --omega 3:3.4:0.2 --stability-method bound";
+  expect(said(range), {"no bound  undecided", "not excluded in 100 % of the range"}, {"inf"});
+  for (const Json& rate : Json::parse(said(range + " --json"))["rods"]["system"]["growth_rate"])
+    EXPECT_TRUE(rate.is_null()) << rate;
+}
+
+// "agree" of nothing, names of nothing.
+TEST_F(Words, WithoutElasticLinksNothingIsSaidOfThem) {
+  std::ofstream(folder_ / "rigid.toml") << R"(
+[crank]
+pivot = [0, 0]
+length = 0.04
+[[dyad]]
+on = "crank"
+branch = 1
+coupler = { name = "K", length = 0.22, mass = 0.3 }
+rocker = { name = "R", pivot = [0.2, -0.03], length = 0.13, mass = 0.3 }
+)";
+  expect(said("check rigid.toml --rpm 300 --only steady"), {"could not be compared", "Nothing could be compared."});
+  expect(said("check rigid.toml --rpm 300"), {"The paths agree within the sum of their error bars."});
+  const std::string tune = "tune rigid.toml --vary R.mass=0.2:0.3 --over rpm=100:300 --no-plots --minimise ";
+  expect(said(tune + "torque-ripple"), {"torque-ripple"});
+  const CommandResult refused = hb(tune + "deflection");
+  EXPECT_EQ(refused.status, 2);
+  expect(refused.err, {"deflection: found no elastic link, allowed: force, torque-ripple where no link is elastic"});
+}
+
+// A value of the wrong dimension was "the path of a number".
+TEST_F(Words, NumbersOfAWrongSceneSayWhatIsWrong) {
+  const CommandResult paths = hb("scene " + scene("six_link") + " --paths --set 'AB.length=22 kg'");
+  EXPECT_EQ(paths.status, 2);
+  expect(paths.err, {"AB.length=22 kg: AB.length: found \"22 kg\", a mass, allowed a number > 0"},
+         {"path of a number"});
+  std::ofstream(folder_ / "flat.toml")
+      << "[hill]\nmass = [[1, 1], [1, 1]]\nstiffness = [{ harmonic = 0, cos = [[1, 0], "
+         "[0, 1]] }]\n";
+  expect(hb("steady flat.toml --omega 1").err, {"found that the mass is singular"}, {"HillSystem"});
+}
+
+// A scene without a title had its file's name in the documents of some commands.
+TEST_F(Words, TheTitleOfADocumentIsTheScenes) {
+  std::ofstream(folder_ / "plain.toml")
+      << "[hill]\nmass = [[1]]\ndamping = [[0.1]]\nstiffness = [{ harmonic = 0, cos = "
+         "[[1.2]] }]\nload = [{ harmonic = 1, cos = [1.0] }]\n";
+  for (const char* command : {"steady", "sweep", "check", "bench --case-limit 0.01"}) {
+    const std::string range = std::string(command) == "sweep" ? "1:2:0.5" : "1";
+    EXPECT_EQ(Json::parse(said(std::string(command) + " plain.toml --json --omega " + range))["title"], "") << command;
+  }
+}
+
 }  // namespace

@@ -32,6 +32,18 @@ def test_arrays_and_a_scene_are_one_system(system):
         assert (stability.exponent_errors == rod.exponent_errors).all()
         assert stability.growth_rate == rod.growth_rate and stability.growth_error == rod.growth_error
         assert stability.verdict == rod.verdict
+        entry = rod.to_dict()
+        for key, value in stability.to_dict().items():
+            assert entry[key] == value, key
+
+
+def test_exponents_are_a_table_and_a_picture(system):
+    stability = system.stability(omega=0.7)
+    frame = pytest.importorskip("pandas") and stability.to_frame()
+    assert (frame["error"].to_numpy() == stability.exponent_errors).all() and len(frame) == 4
+    pytest.importorskip("matplotlib").use("Agg")
+    axes = stability.plot()
+    assert stability.verdict in axes.get_title(loc="left")
 
 
 def test_the_steady_state_solves_the_equation(system):

@@ -86,6 +86,8 @@ def test_every_key_of_one_speed_is_an_attribute(steady):
     for key in ("min", "max", "mean", "rms"):
         assert getattr(steady.torque, key) == document["torque"][key]
         assert getattr(steady.torque, f"{key}_rigid") == document["torque"]["rigid"][key]
+    assert steady.torque.mean_theory_error == steady.to_dict()["torque"]["mean_theory_error"]
+    assert steady.power.mean_theory_error == steady.to_dict()["power"]["mean_theory_error"]
     assert steady.torque.error == pytest.approx(document["torque"]["error"], rel=1e-12)
     assert 0 < steady.joints["rod.0"].error <= document["bearings"]["rod.0"]["error"]
     for name, components in document["joints"].items():

@@ -154,6 +154,10 @@ def test_pages_are_written_whole(tmp_path, six_link, steady, sweep, map):
     sweep.report(tmp_path / "sweep.html")
     map.report(tmp_path / "map.html")
     steady.report(tmp_path / "steady.html")
+    check = six_link.check(rpm=300, modes=1)
+    check.report(tmp_path / "check.html")
+    page = (tmp_path / "check.html").read_text()
+    assert "The paths agree within the sum of their error bars." in page and "<svg" in page
     six_link.report(tmp_path / "both.html", rpm=(200, 400, 100), x="rpm=200:400:4", y="*.J=40:60:3", modes=1, pictures=False)
     for name in ("sweep", "map", "steady", "both"):
         page = (tmp_path / f"{name}.html").read_text()

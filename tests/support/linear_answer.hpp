@@ -62,10 +62,12 @@ struct LinearGrowth {
 
 // What the motion without linearisation changes of the linear answer, relative to its largest: by rod max over i and t
 // of |q_i|, max over x and t of |w|; any joint force's component, of the largest of all; the torque. And the change of
-// the largest growth rate, per unit time, with its own error and that of the linear one.
+// the mean torque, and of the largest growth rate, per unit time, with its own error and that of the linear one.
 struct TrueChanges {
   std::vector<double> q, deflection;
   double force = 0, torque = 0;
+  double mean_torque = 0;  // as it is, of the linear mean
+  double linear_mean = 0, largest_torque = 0;
   std::optional<double> growth;
   double growth_error = 0;
 };
@@ -103,7 +105,10 @@ inline void change_of_forces(const LinearAnswer& answer, double speed, const Fou
   const Eigen::MatrixXd before = force_samples(linear, angles.size()), change = exact - before;
   const Eigen::Index last = before.rows() - 1;
   changes.force = change.topRows(last).cwiseAbs().maxCoeff() / before.topRows(last).cwiseAbs().maxCoeff();
-  changes.torque = change.row(last).cwiseAbs().maxCoeff() / before.row(last).cwiseAbs().maxCoeff();
+  changes.largest_torque = before.row(last).cwiseAbs().maxCoeff();
+  changes.torque = change.row(last).cwiseAbs().maxCoeff() / changes.largest_torque;
+  changes.mean_torque = std::abs(change.row(last).mean());
+  changes.linear_mean = before.row(last).mean();
 }
 
 }  // namespace linear_answer_detail

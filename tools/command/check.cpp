@@ -118,11 +118,10 @@ int run_check(const CheckFlags& flags) {
     found = check(scene, request, SharedWork(out.threads, nullptr, {}, early_end(out.folder.has_value())));
   }
   if (found.speeds.empty()) return stopped_status();
-  nlohmann::ordered_json document = check_json(*found.model, found.speeds, found.settings);
+  nlohmann::ordered_json document = check_json(found);
   if (out.stats) document["accuracy"] = accuracy_json(found.settings);
   Delivery delivery;
-  delivery.printed =
-      out.json ? json_text(document) : check_report(*found.model, found.speeds, found.settings, out.stats);
+  delivery.printed = out.json ? json_text(document) : check_report(found, out.stats);
   delivery.write_data = [&](OutputFolder& place) {
     place.write("check.json", json_file_text(document));
     return write_check_tables(*found.model, found.speeds, place);

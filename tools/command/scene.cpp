@@ -24,10 +24,17 @@
 namespace hb::tools {
 namespace {
 
-// What --set, --x, --y and --vary may name, with its value in the scene's units: one number a line.
-std::string numbers_text(const SceneFamily& family) {
+// What --set, --x, --y and --vary may name, with its value in the scene's units: one number a line. A scene need not be
+// whole for that; what is wrong with a value that has none is what is wrong with the scene.
+std::string numbers_text(const SceneSource& source, const std::vector<Override>& set) {
+  const SceneFamily family(source, set);
   std::string text;
-  for (const std::string& path : family.paths()) text += fmt::format("{} {}\n", path, family.value(path));
+  try {
+    for (const std::string& path : family.paths()) text += fmt::format("{} {}\n", path, family.value(path));
+  } catch (const SceneError&) {
+    (void)source.with(set);
+    throw;
+  }
   return text;
 }
 
@@ -35,7 +42,7 @@ int run_scene(const CommonFlags& flags, bool paths) {
   const SceneInput input = scene_input(flags.scene_file);
   if (paths) {
     Delivery numbers;
-    numbers.printed = printable(numbers_text(SceneFamily(input.source, overrides(flags))));
+    numbers.printed = printable(numbers_text(input.source, overrides(flags)));
     return deliver(nullptr, {}, exit_ok, numbers);
   }
   const Scene scene = input.source.with(overrides(flags));

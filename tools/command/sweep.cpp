@@ -86,9 +86,9 @@ int run_sweep_command(const SweepFlags& flags) {
   }
   std::optional<NonlinearSweep> branches;
   if (branches_asked) {
-    const InterruptGuard guard(false);
+    const InterruptGuard guard(!out.folder);
     branches = nonlinear_sweep(swept, *branches_asked);
-    if (branches->stopped) say_time_limit(flags.time_limit, branches_asked->stop, branches->shortfalls);
+    if (branches->stopped) say_time_limit(flags.time_limit, stop_of(), branches->shortfalls);
   }
   nlohmann::ordered_json document =
       out.json || folder || !bands_asked.empty() ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();

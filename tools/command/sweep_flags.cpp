@@ -48,7 +48,7 @@ std::optional<NonlinearSweepOptions> branches_of(const SweepFlags& flags) {
   const bool nonlinear = is_nonlinear(flags.theory);
   NonlinearSweepOptions asked;
   asked.turns = turns_of(flags.theory);
-  asked.stop = stop_of();
+  asked.stop = early_end(flags.out.has_value());
   if (!nonlinear && !flags.start.empty())
     throw UsageError(
         fmt::format("--start: found {} with the linear theory, allowed: with --theory nonlinear", flags.start.front()));

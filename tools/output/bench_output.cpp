@@ -8,9 +8,13 @@
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "tools/output/json.hpp"
 #include "tools/output/json_output.hpp"
+#include "tools/output/theory_words.hpp"
 #include "tools/output/verdict_words.hpp"
 #include "tools/output/wording.hpp"
 
@@ -36,6 +40,22 @@ std::string error_text(double error, double reference_error) {
   return error < reference_error ? fmt::format("< {:.1e}", reference_error) : fmt::format("{:.1e}", error);
 }
 
+// Of the scene, then of the linear theory where it is that.
+std::vector<std::string> bench_warnings(const Bench& found) {
+  std::vector<std::string> sentences = found.model->scene.warnings;
+  if (!found.theory) return sentences;
+  std::vector<std::string> rods;
+  for (const auto& [name, verdict] : found.verdicts) rods.push_back(name);
+  for (std::string& sentence : theory_warnings(rods, found.theory)) sentences.push_back(std::move(sentence));
+  return sentences;
+}
+
+// That of one rod of the linear theory.
+std::optional<double> theory_error_of(const Bench& found, const std::string& name) {
+  const auto rod = std::ranges::find(found.verdicts, name, [](const auto& entry) { return entry.first; });
+  return found.theory->rods[static_cast<std::size_t>(rod - found.verdicts.begin())].q;
+}
+
 }  // namespace
 
 std::string bench_text(const Bench& found) {
@@ -53,6 +73,9 @@ std::string bench_text(const Bench& found) {
   for (const RodBench& bench : found.rods) {
     fmt::format_to(out, "\n{}, {}; reference by {}, error {:.1e}\n", bench.name, to_string(bench.verdict),
                    found.nonlinear ? "shooting (CVODE)" : "Radau collocation", bench.reference_error);
+    if (found.theory)
+      if (const std::optional<double> error = theory_error_of(found, bench.name))
+        fmt::format_to(out, "  what the linear theory itself leaves out of q: {:.1e} of the largest\n", *error);
     fmt::format_to(out, "  {:<36} {:>8} {:>10} {:>10} {:>11} {:>11}\n", "method", "asked", "harm/steps", "error",
                    "min [s]", "median [s]");
     for (const BenchRow& row : bench.rows)
@@ -65,7 +88,7 @@ std::string bench_text(const Bench& found) {
     fmt::format_to(out, "  (shooting also gives the Floquet exponents, the others do not)\n");
   }
   fmt::format_to(out, "\nlargest memory of the whole run: {:.0f} MB\n", peak_memory_megabytes());
-  for (const std::string& warning : model.scene.warnings) fmt::format_to(out, "WARNING: {}\n", warning);
+  for (const std::string& warning : bench_warnings(found)) fmt::format_to(out, "WARNING: {}\n", warning);
   return fmt::to_string(text);
 }
 
@@ -73,19 +96,21 @@ Json bench_json(const Bench& found) {
   const Scene& scene = found.model->scene;
   const double speed = found.given.omega;
   Json json;
-  json["title"] = scene_name(scene);
+  json["title"] = scene.title;
   json["rpm"] = rpm_from_speed(speed, scene.units);
   json["omega"] = speed;
   json["theory"] = found.nonlinear ? "nonlinear" : "linear";
   if (const std::optional<Verdict> verdict = worst_of(found.verdicts)) json["verdict"] = to_string(*verdict);
   json["geometry_seconds"] = found.geometry_seconds;
   json["memory_megabytes"] = peak_memory_megabytes();
-  if (!scene.warnings.empty()) json["warnings"] = scene.warnings;
+  if (std::vector<std::string> warnings = bench_warnings(found); !warnings.empty())
+    json["warnings"] = std::move(warnings);
   json["rods"] = Json::object();
   for (const RodBench& bench : found.rods) {
     Json& rod = json["rods"][bench.name];
     rod["reference_error"] = bench.reference_error;
     rod["verdict"] = to_string(bench.verdict);
+    if (found.theory) rod["theory_error"] = number(theory_error_of(found, bench.name));
     rod["rows"] = Json::array();
     for (const BenchRow& row : bench.rows)
       rod["rows"].push_back({{"method", row.method},

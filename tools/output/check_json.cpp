@@ -95,7 +95,7 @@ Json verdict(const SpeedCheck& check) {
 
 Json single_json(const SceneModel& model, const SpeedCheck& check, const Settings& settings) {
   Json json;
-  json["title"] = scene_name(model.scene);
+  json["title"] = model.scene.title;
   json["rpm"] = rpm_from_speed(check.speed, model.scene.units);
   json["omega"] = check.speed;
   json["agrees"] = check.agrees();
@@ -125,7 +125,7 @@ Json single_json(const SceneModel& model, const SpeedCheck& check, const Setting
 
 Json speeds_json(const SceneModel& model, const std::vector<SpeedCheck>& checks) {
   Json json;
-  json["title"] = scene_name(model.scene);
+  json["title"] = model.scene.title;
   json["rpm"] = Json::array();
   json["omega"] = Json::array();
   json["agrees"] = std::all_of(checks.begin(), checks.end(), [](const SpeedCheck& c) { return c.agrees(); });
@@ -164,8 +164,10 @@ Json speeds_json(const SceneModel& model, const std::vector<SpeedCheck>& checks)
 
 }  // namespace
 
-Json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings) {
-  Json json = checks.size() > 1 ? speeds_json(model, checks) : single_json(model, checks.front(), settings);
+Json check_json(const Check& found) {
+  const SceneModel& model = *found.model;
+  const std::vector<SpeedCheck>& checks = found.speeds;
+  Json json = found.over_range ? speeds_json(model, checks) : single_json(model, checks.front(), found.settings);
   double series = 0, shooting = 0, marching = 0;
   for (const SpeedCheck& check : checks) {
     series += check.seconds_harmonic_balance;

@@ -4,13 +4,12 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "hb/analysis/cross_check.hpp"
+#include "hb/analysis/analyses.hpp"
 
 namespace hb::tools {
 
-// One speed in all detail, or of several speeds the differences.
-[[nodiscard]] nlohmann::ordered_json check_json(const SceneModel& model, const std::vector<SpeedCheck>& checks,
-                                                const Settings& settings);
+// One speed in all detail, or of several that were asked for the differences.
+[[nodiscard]] nlohmann::ordered_json check_json(const Check& check);
 
 // What missed its tolerance or could not be compared at one speed.
 struct ShortfallsAt {

@@ -83,6 +83,7 @@ Agreement agreement(const std::vector<SpeedCheck>& checks) {
   bool agree = true, complete = true, any = false;
   for (const SpeedCheck& check : checks) {
     agree = agree && check.agrees();
+    any = any || check.joints;
     for (const RodCheck& rod : check.rods) {
       const bool known = rod.compared() || rod.both_singular;
       complete = complete && known;
@@ -90,8 +91,8 @@ Agreement agreement(const std::vector<SpeedCheck>& checks) {
     }
   }
   if (!agree) return {"DISAGREE", "The paths DISAGREE."};
-  if (complete) return {"agree", "The paths agree within the sum of their error bars."};
   if (!any) return {"could not be compared", "Nothing could be compared."};
+  if (complete) return {"agree", "The paths agree within the sum of their error bars."};
   return {"agree where they could be compared",
           "Not everything could be compared; what could agrees within the sum of the error bars."};
 }
@@ -227,17 +228,18 @@ std::vector<std::string> check_warnings(const SceneModel& model, const std::vect
   return sentences;
 }
 
-std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks, const Settings& settings,
-                         bool stats) {
+std::string check_report(const Check& found, bool stats) {
+  const SceneModel& model = *found.model;
+  const std::vector<SpeedCheck>& checks = found.speeds;
   Text text;
   add(text, "{}", verdict_line(model, checks));
-  if (checks.size() > 1)
+  if (found.over_range)
     add_range(text, model, checks);
   else
-    add_single(text, model, checks.front(), settings, stats);
+    add_single(text, model, checks.front(), found.settings, stats);
   add_times(text, checks);
   add_verdict(text, model, checks);
-  if (stats) add(text, "\n{}", accuracy_table(settings));
+  if (stats) add(text, "\n{}", accuracy_table(found.settings));
   return fmt::to_string(text);
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "hb/analysis/cross_check.hpp"
+#include "hb/analysis/analyses.hpp"
 
 namespace hb::tools {
 
@@ -17,7 +17,6 @@ namespace hb::tools {
 
 // The verdict and whether the paths agree; one speed in detail or a table of speeds, then what disagrees, what was not
 // reached.
-[[nodiscard]] std::string check_report(const SceneModel& model, const std::vector<SpeedCheck>& checks,
-                                       const Settings& settings, bool stats);
+[[nodiscard]] std::string check_report(const Check& check, bool stats);
 
 }  // namespace hb::tools

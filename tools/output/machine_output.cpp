@@ -198,6 +198,9 @@ std::string drive_rows(const MachineLoads& loads, double speed, const Scene& sce
       "{:.{}g} .. {:.{}g} W\n",
       mean * moment, of_mean, error * moment, drive.rms * moment, digits, speed * mean * W, of_mean, speed * error * W,
       drive.rms_power * W, digits, drive.smallest_power * W, digits, drive.largest_power * W, digits);
+  if (const std::optional<double>& theory = loads.mean_theory_error)
+    text += fmt::format("  theory error of the means: {:.1e} N m, {:.1e} W{}\n", *theory * moment, speed * *theory * W,
+                        *theory < std::abs(drive.mean) ? "" : ", not less than the means themselves");
   text += fmt::format("  energy that a flywheel takes up and gives back: {:.{}g} J a turn",
                       drive.energy_fluctuation * moment, digits);
   if (fluctuation)
@@ -321,8 +324,13 @@ void add_machine(Json& document, const MachineLoads& loads, const std::vector<Sl
 }
 
 void add_machine(Json& document, const SceneModel& model, const SpeedResult& result) {
-  if (const std::optional<MachineLoads> loads = machine_loads(model, result))
-    add_machine(document, *loads, slider_motions(*model.linkage(), result.speed), result.speed, model.scene.units);
+  const std::optional<MachineLoads> loads = machine_loads(model, result);
+  if (!loads) return;
+  add_machine(document, *loads, slider_motions(*model.linkage(), result.speed), result.speed, model.scene.units);
+  if (!result.theory) return;
+  const std::optional<double>& theory = loads->mean_theory_error;
+  document["torque"]["mean_theory_error"] = number(theory);
+  document["power"]["mean_theory_error"] = theory ? number(result.speed * *theory) : Json(nullptr);
 }
 
 MachineFiles machine_files(const SceneModel& model, const SpeedResult& result) {

@@ -481,7 +481,8 @@ std::string map_summary(const MapDocument& document) {
   text += "\n";
   const MapPoint* fastest = nullptr;
   for (const MapPoint& p : r.worst()) {
-    if (!missing(p) && (fastest == nullptr || p.growth_rate > fastest->growth_rate)) fastest = &p;
+    if (!missing(p) && std::isfinite(p.growth_rate) && (fastest == nullptr || p.growth_rate > fastest->growth_rate))
+      fastest = &p;
   }
   if (fastest != nullptr) {
     const auto place = static_cast<std::size_t>(fastest - r.worst().data());

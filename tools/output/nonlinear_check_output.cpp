@@ -125,7 +125,7 @@ Json nonlinear_check_json(const SceneModel& model, const std::vector<NonlinearCh
   const Units& units = model.scene.units;
   const std::vector<std::string> names = reported_rods(model);
   Json json;
-  json["title"] = scene_name(model.scene);
+  json["title"] = model.scene.title;
   json["theory"] = "nonlinear";
   const bool one = checks.size() == 1;
   const auto each = [&](const auto& value) {

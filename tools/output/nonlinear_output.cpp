@@ -89,7 +89,7 @@ void add_stability(Text& text, const NonlinearResult& result, const Scene& scene
   const Eigen::Index unresolved =
       2 * result.motion.q.num_components() - static_cast<Eigen::Index>(stability.exponents.size());
   add(text, "All rods together\n{}", exponents_rows(stability, unresolved, result.speed, scene));
-  add(text, "  growth rate       {} {}{}\n", growth_text(stability), units.rate,
+  add(text, "  growth rate       {}{}\n", growth_text(stability, units.rate),
       stability.converged ? "" : "  NOT REACHED");
   add(text, "  {}\n\n", verdict_sentence(stability, result.speed, scene));
 }

@@ -45,7 +45,7 @@ void fill_rod_point(Eigen::MatrixXd::RowXpr row, const SweepScene& scene, const 
   }
   if (only.stability) {
     const Stability& stability = here.stability->stability;
-    row(column++) = stability.growth_rate;
+    row(column++) = std::isfinite(stability.growth_rate) ? stability.growth_rate : nan;
     row(column++) = stability.growth_error;
     row(column++) = verdict_number(stability.verdict);
     for (const ModeState& mode : modes) {

@@ -42,6 +42,8 @@ std::string kind_words(BoundaryKind kind, bool linkage) {
 }
 
 std::string growth_digits(const Stability& stability) {
+  if (stability.growth_rate == -HUGE_VAL) return "not found";
+  if (stability.growth_rate == HUGE_VAL) return "no bound";
   if (stability.method == StabilityMethod::bound) return fmt::format("<= {:.4g}", stability.growth_high + 0.0);
   return fmt::format("{:.{}g}", stability.growth_rate + 0.0,
                      std::min(6, trusted_digits(stability.growth_rate, stability.growth_error)));

@@ -161,7 +161,7 @@ std::vector<std::string> sweep_warnings(const SweepScene& scene, const SweepResu
     const auto widest =
         std::ranges::max_element(places, {}, [](const std::array<double, 2>& place) { return place[1] - place[0]; });
     warnings.push_back(fmt::format(
-        "{}: further unstable bands or stable gaps are not excluded in {:.2g} % of the range, the widest place being "
+        "{}: further unstable bands or stable gaps are not excluded in {:.3g} % of the range, the widest place being "
         "{} = {:.10g} .. {:.10g}",
         result.rods[r].name, 100 * width / (values.back() - values.front()), scene.axis().path, (*widest)[0],
         (*widest)[1]));

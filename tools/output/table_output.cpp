@@ -111,7 +111,7 @@ void add_stability(Text& text, const RodModel& model, const RodResult& rod, doub
   const OutputUnits units = output_units(scene);
   add(text, "{}", exponents_rows(stability, unresolved_exponents(rod), speed, scene));
   if (multipliers) add(text, "{}", multipliers_rows(stability, speed, scene));
-  add(text, "  growth rate       {} {}\n", growth_text(stability), units.rate);
+  add(text, "  growth rate       {}\n", growth_text(stability, units.rate));
   if (rod.growth_modes_error)
     add(text, "  its cut           {:.1e} of the larger of itself and the speed, estimated\n", *rod.growth_modes_error);
   std::vector<DisturbanceLine> lines;

@@ -422,7 +422,7 @@ std::string tune_table(const TuneTask& task, const TuneResult& result, const Sce
 
 Json tune_json(const TuneTask& task, const TuneResult& result, const Scene& scene, bool stats) {
   const Units& units = scene.units;
-  Json json = {{"title", scene_name(scene)}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
+  Json json = {{"title", scene.title}, {task.goal.maximise ? "maximise" : "minimise", task.goal.text}};
   json["over"] = span_json(task, result.span_after, units);
   if (speeds_vary(task)) json["over_before"] = span_json(task, result.span_before, units);
   json["status"] = status_word(result.design.status);

@@ -116,11 +116,11 @@ std::string verdict_sentence(const Stability& stability, double speed, const Sce
     case Verdict::undecided:
       break;
   }
-  if (!std::isfinite(stability.growth_error) && !std::isfinite(growth))
-    return fmt::format("undecided: no growth rate was found ({})", stability.evidence);
   if (!std::isfinite(stability.growth_high) && std::isfinite(stability.growth_low))
     return fmt::format("undecided: the growth rate is at least {:.3g} 1/{}, and nothing bounds it from above",
                        stability.growth_low, time);
+  if (!std::isfinite(stability.growth_error) && !std::isfinite(growth))
+    return fmt::format("undecided: no growth rate was found ({})", stability.evidence);
   return fmt::format("undecided: the growth rate {:.3g} +/- {:.1e} 1/{} may be of either sign", growth,
                      stability.growth_error, time);
 }

@@ -54,16 +54,18 @@ int verdict_number(Verdict verdict) {
   return 0;
 }
 
-std::string growth_text(const Stability& stability) {
-  if (stability.method == StabilityMethod::bound)
-    return fmt::format("between {:.4g} and {:.4g}", stability.growth_low + 0.0, stability.growth_high + 0.0);
+std::string growth_text(const Stability& stability, const std::string& unit) {
+  const double rate = stability.growth_rate + 0.0, low = stability.growth_low + 0.0;
+  if (rate == -HUGE_VAL) return "not found";
+  if (rate == HUGE_VAL) return fmt::format("no upper bound, at least {:.4g} {}", low, unit);
+  if (stability.method == StabilityMethod::bound) return fmt::format("between {:.4g} and {:.4g} {}", low, rate, unit);
   const double above = stability.growth_high - stability.growth_rate;
   const double below = stability.growth_rate - stability.growth_low;
   // Twice as large on one side: said apart.
   if (!(std::max(above, below) > 2 * std::min(above, below)))
-    return with_error(stability.growth_rate, stability.growth_error);
-  return fmt::format("{:.{}g} +{:.1e} -{:.1e}", stability.growth_rate + 0.0,
-                     trusted_digits(stability.growth_rate, std::min(above, below)), above, below);
+    return with_error(rate, stability.growth_error) + " " + unit;
+  return fmt::format("{:.{}g} +{:.1e} -{:.1e} {}", rate, trusted_digits(rate, std::min(above, below)), above, below,
+                     unit);
 }
 
 std::vector<std::string> elastic_rockers(const Linkage& linkage) {

@@ -21,7 +21,7 @@ namespace hb::tools {
 inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided, -1 stable, -2 bounded";
 // The growth rate with its error, both halves apart where they differ much: "115.02 +4.9e+03 -3.1e-01"; of
 // closed-form bounds "between -16.4 and -11.2".
-[[nodiscard]] std::string growth_text(const Stability& stability);
+[[nodiscard]] std::string growth_text(const Stability& stability, const std::string& unit);
 // "-16.045448 +/- 1.2e-11": digits as far as the error allows.
 [[nodiscard]] std::string with_error(double value, double error);
 // A place along an axis with no more digits than are known, 3 to 9.

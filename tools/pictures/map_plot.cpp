@@ -64,7 +64,8 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   const bool per_turn = colour == MapColour::per_turn;
   std::vector<double> sizes;
   for (const MapPoint& p : document.result.worst()) {
-    if (p.source != MapSource::missing) sizes.push_back(std::abs(per_turn ? growth_per_turn(p) : p.growth_rate));
+    if (p.source != MapSource::missing && std::isfinite(p.growth_rate))
+      sizes.push_back(std::abs(per_turn ? growth_per_turn(p) : p.growth_rate));
   }
   ColourScale result;
   result.value = per_turn ? "$4" : "$3";

@@ -80,14 +80,13 @@ std::shared_ptr<CheckCore> checked(const SceneCore& core, const py::dict& writte
 }
 
 std::string json(const CheckCore& core) {
-  if (core.linear)
-    return tools::json_text(tools::check_json(*core.linear->model, core.linear->speeds, core.linear->settings));
+  if (core.linear) return tools::json_text(tools::check_json(*core.linear));
   const NonlinearChecks& found = *core.nonlinear;
   return tools::json_text(tools::nonlinear_check_json(*found.model, found.speeds, found.settings));
 }
 
 std::string words(const CheckCore& core) {
-  if (core.linear) return tools::check_report(*core.linear->model, core.linear->speeds, core.linear->settings, false);
+  if (core.linear) return tools::check_report(*core.linear, false);
   const NonlinearChecks& found = *core.nonlinear;
   return tools::nonlinear_check_report(*found.model, found.speeds, found.settings);
 }

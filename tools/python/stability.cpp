@@ -40,13 +40,13 @@ void add_stability(py::module_& module) {
       .def_property_readonly(
           "frequencies_hz",
           [](const StabilityView& v) {
-            return of_each(v, [&v](const Exponent& e) { return e.frequency / (two_pi * v.time_in_s); });
+            return of_each(v, [&v](const Exponent& e) { return e.frequency * (1 / (two_pi * v.time_in_s)); });
           },
           "Frequency of each exponent, unfolded, Hz. Read-only.")
       .def_property_readonly(
           "frequencies_hz_errors",
           [](const StabilityView& v) {
-            return of_each(v, [&v](const Exponent& e) { return e.error / (two_pi * v.time_in_s); });
+            return of_each(v, [&v](const Exponent& e) { return e.error * (1 / (two_pi * v.time_in_s)); });
           },
           "Their errors, Hz. Read-only.")
       .def_property_readonly(

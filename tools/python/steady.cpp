@@ -25,6 +25,7 @@ struct ForceView {
   const Answer* answer;
   const FourierSeries *elastic, *rigid;
   std::optional<double> error;  // of the elastic values
+  std::optional<double> mean_theory_error = {};
 };
 
 double largest_of(const FourierSeries& series) {
@@ -397,6 +398,10 @@ void add_force(py::module_& module) {
       .def_property_readonly(
           "error", [](const ForceView& f) { return optional(f.error); },
           "Estimated error of the elastic values, modes left out included; None: not known.")
+      .def_property_readonly(
+          "mean_theory_error", [](const ForceView& f) { return optional(f.mean_theory_error); },
+          "Of the driving torque, what the first nonlinear correction changes of its mean; None: no value, not judged, "
+          "or without linearisation.")
       .def(
           "elastic", [](const ForceView& f, const py::object& angle) { return force_at(f, *f.elastic, angle); },
           py::arg("angle"), "With the links' elasticity: (2, len(angle)); guides and torque (len(angle),).")
@@ -474,7 +479,8 @@ void add_steady(py::module_& module) {
              const auto& answer = self.cast<const Answer&>();
              if (!answer.result.forces) return py::none();
              return py::cast(ForceView{self, &answer, &answer.result.forces->torque,
-                                       &answer.result.forces->torque_rigid, torque_error(answer.result)});
+                                       &answer.result.forces->torque_rigid, torque_error(answer.result),
+                                       answer.result.theory ? answer.result.theory->mean_torque : std::nullopt});
            })
       .def("json", [](const Answer& answer) { return decoded(answer.json()); })
       .def("words",

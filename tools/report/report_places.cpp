@@ -29,6 +29,10 @@ std::vector<ReportPlace> places_along(const SweepScene& scene, const Work& work,
   const std::vector<std::size_t> kept = kept_points(values.size());
   std::vector<ReportPlace> places(kept.size());
   work.for_each(kept.size(), [&](std::size_t k) {
+    if (work.ends_early()) {
+      places[k] = {nullptr, {}, "not computed before the end", {}};
+      return;
+    }
     const ScenePlace at = scene.at(values[kept[k]]);
     places[k].model = at.model;
     places[k].problem = at.problem;

@@ -158,7 +158,6 @@ SignalsHeld::SignalsHeld() {
 SignalsHeld::~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 InterruptGuard::InterruptGuard(bool signals) {
-  interrupt_seen = 0;
   phase = guarded;
   if (!signals) {
     sigaction(SIGINT, nullptr, &before_guard[0]);

@@ -46,6 +46,7 @@ void visit_point(Visit& visit, SweepPoint& point) {
   visit_elements(visit, point.theory_reason, [&](char& c) { visit_as_number(visit, c); });
   visit_if_there(visit, point.force_theory_error, visit);
   visit_if_there(visit, point.torque_theory_error, visit);
+  visit_if_there(visit, point.mean_torque_theory_error, visit);
   visit_if_there(visit, point.growth_theory_error, visit);
   visit_elements(visit, point.rods, [&](RodPoint& rod) {
     visit_if_there(visit, rod.steady, [&](SteadyStatus& status) { visit_as_number(visit, status); });

@@ -178,6 +178,7 @@ void add_theory(SweepPoint& point, const SceneModel& model, const std::vector<Re
   point.theory_reason = errors.reason;
   point.force_theory_error = errors.force;
   point.torque_theory_error = errors.torque;
+  point.mean_torque_theory_error = errors.mean_torque;
   if (only.stability) point.growth_theory_error = growth_theory_error(*model.linkage(), point.speed, linear, errors);
 }
 

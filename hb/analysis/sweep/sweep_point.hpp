@@ -60,7 +60,8 @@ struct SweepPoint {
   std::string problem;  // no linkage at this x: why; everything below is empty then
   std::vector<RodPoint> rods;
   std::string theory_reason;  // TheoryErrors::reason
-  std::optional<double> force_theory_error, torque_theory_error, growth_theory_error;  // TheoryErrors, where asked for
+  // TheoryErrors, where asked for.
+  std::optional<double> force_theory_error, torque_theory_error, mean_torque_theory_error, growth_theory_error;
   std::vector<TurnRange> joints, joints_rigid;  // per component, in the order of SweepResult::joint_components
   std::optional<TurnRange> torque, torque_rigid;
   std::optional<ForceErrors> force_errors;  // beside them

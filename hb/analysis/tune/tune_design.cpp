@@ -197,6 +197,9 @@ std::vector<DesignAnalysis::Curve> DesignAnalysis::curves_of(const Metric& metri
     throw RequestError(metric.text, "a [hill] scene", "deflection, stable, frequency, clearance",
                        "found in a [hill] scene, which has no links; allowed there: deflection, stable, frequency, "
                        "clearance");
+  const bool needs_rods = metric.kind != MetricKind::force && metric.kind != MetricKind::torque_ripple;
+  if (needs_rods && model_.rods.empty())
+    throw RequestError(metric.text, "no elastic link", "force, torque-ripple where no link is elastic");
   switch (metric.kind) {
     case MetricKind::force: {
       const JointForces forces = forces_of(model_, nodes_.front()->speed, {});

@@ -37,14 +37,14 @@ std::vector<RodMargin> judged(std::vector<MetricValue> margins) {
   return rods;
 }
 
-// Besides what was asked; the stress where all elastic links have a section.
+// Besides what was asked, of elastic links; the stress where all of them have a section.
 std::vector<Metric> always_shown(const Scene& scene) {
   std::vector<Metric> metrics = {{MetricKind::deflection, "", 1, "deflection"}, {MetricKind::margin, "", 1, "stable"}};
   const auto* linkage = std::get_if<Linkage>(&scene.model);
   if (!linkage) return metrics;
-  metrics.push_back({MetricKind::mass, "", 1, "mass"});
   const std::vector<int> links = elastic_links(*linkage);
-  if (links.empty()) return metrics;
+  if (links.empty()) return {};
+  metrics.push_back({MetricKind::mass, "", 1, "mass"});
   metrics.push_back({MetricKind::theory, "", 1, "theory"});
   if (std::ranges::all_of(links, [&](int link) { return body_at(*linkage, link)->elastic->section_height > 0; }))
     metrics.push_back({MetricKind::total_stress, "", 1, "total-stress"});

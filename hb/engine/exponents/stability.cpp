@@ -47,7 +47,7 @@ Stability by_bound(const ScaledSystem& system) {
   result.method = StabilityMethod::bound;
   result.evidence = std::isfinite(high) ? "closed-form bounds on the growth rate; no exponent was computed"
                                         : "closed-form bounds on the growth rate do not exist here";
-  set_growth(result, Omega * (std::isfinite(high) ? high : low), Omega * low, Omega * high);
+  set_growth(result, Omega * high, Omega * low, Omega * high);
   result.converged = result.verdict == Verdict::stable;
   return result;
 }
@@ -141,13 +141,10 @@ Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<in
     verdict = worst(verdict, part.verdict);
     others = std::max(others, part.others_below);
     // A group of which nothing is known may do anything.
-    if (!std::isfinite(part.growth_rate) || !std::isfinite(part.growth_error)) {
-      high = HUGE_VAL;
-      continue;
-    }
-    high = std::max(high, part.growth_high);
+    const bool known = std::isfinite(part.growth_rate) && std::isfinite(part.growth_error);
+    high = known ? std::max(high, part.growth_high) : HUGE_VAL;
     low = std::max(low, part.growth_low);
-    if (!(part.growth_rate > growth)) continue;
+    if (!(part.growth_rate > growth) || !(known || part.method == StabilityMethod::bound)) continue;
     growth = part.growth_rate;
     whole.method = part.method;
     whole.evidence = part.evidence;

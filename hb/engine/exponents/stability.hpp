@@ -56,7 +56,7 @@ struct Exponent {
 struct Stability {
   std::vector<Exponent> exponents;  // real part descending, then imaginary part ascending; those resolved (up to 2I)
   std::vector<Exponent> uncertain;  // the others that were found, their bars beyond 1e-6 of themselves or of Omega
-  double growth_rate = 0;  // max Re lambda, 1/time
+  double growth_rate = 0;  // max Re lambda, 1/time; of bounds the upper one, infinite where there is none
   double growth_error = 0;  // the larger of growth_high - growth_rate and growth_rate - growth_low; may be infinite
   double growth_low = 0, growth_high = 0;  // the growth rate lies between them: what the verdict rests on
   // Upper bound on Re lambda of exponents that are in neither list; infinite: unknown which there are.

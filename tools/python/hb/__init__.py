@@ -14,6 +14,7 @@ from .check import Check, RodCheck
 from .errors import Error, MissingPackage, RequestError, SceneError, SceneProblem
 from .fit import DampingFit, fit_decay, fit_peak
 from .hill_system import HillSystem
+from . import stability as _stability  # adds to Stability
 from .map import Boundary, Map, RodMap
 from .scene import Scene, load, loads
 from .steady import Steady

@@ -88,6 +88,12 @@ class Stability:
     @property
     def evidence(self) -> str:
         """One sentence: what was done."""
+    def to_dict(self) -> dict[str, Any]:
+        """The same keys as under "rods" of `hb steady --json`."""
+    def to_frame(self) -> pandas.DataFrame:
+        """A pandas DataFrame with a row for each exponent."""
+    def plot(self, ax: Optional[Axes] = None) -> Axes:
+        """Draws the exponents with their errors in the complex plane."""
 
 class Rod:
     """The response and stability of one elastic link at one speed."""
@@ -243,6 +249,9 @@ class Force:
     @property
     def error(self) -> Optional[float]:
         """Estimated error of the elastic values, modes left out included; None: not known."""
+    @property
+    def mean_theory_error(self) -> Optional[float]:
+        """Of the driving torque, what the first nonlinear correction changes of its mean; None: no value, not judged, or without linearisation."""
     def elastic(self, angle: ArrayLike) -> Any:
         """With the links' elasticity: (2, len(angle)); guides and torque (len(angle),)."""
     def rigid(self, angle: ArrayLike) -> Any:

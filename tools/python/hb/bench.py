@@ -37,6 +37,12 @@ class RodBench:
         return str(self._entry["verdict"])
 
     @property
+    def theory_error(self) -> Optional[float]:
+        """By how much the linear theory itself is off, relative; None: beyond it, of a [hill] system, or without
+        linearisation."""
+        return self._entry.get("theory_error")
+
+    @property
     def left_out(self) -> list[str]:
         """What was left out, and why."""
         return list(self._entry["left_out"])
@@ -86,6 +92,12 @@ class Bench(Result):
         from . import plots
 
         return plots.bench(self, rod, ax)
+
+    def report(self, file: Any) -> None:
+        """Writes one self-contained HTML page: the table and, with matplotlib, the picture."""
+        from .reports import in_words
+
+        in_words(self, "bench", file)
 
     def __str__(self) -> str:
         return self._words

@@ -197,6 +197,12 @@ class Check(Result):
 
         return plots.check(self, ax)
 
+    def report(self, file: Any) -> None:
+        """Writes one self-contained HTML page: the table and, with matplotlib, the picture."""
+        from .reports import in_words
+
+        in_words(self, "check", file)
+
     def __getitem__(self, name: str) -> RodCheck:
         rods = self._document["rods"]
         if name in rods:

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
+    from ._core import Stability
     from .bench import Bench
     from .check import Check
     from .map import Map
@@ -135,6 +136,21 @@ def of_check(result: "Check") -> "pandas.DataFrame":
         for k, rpm in enumerate(document["rpm"] if several else [document["rpm"]]):
             rows.append({"rod": name, "rpm": rpm} | {key: entry[key][k] if several else entry[key] for key in keys if key in entry})
     return pandas.DataFrame(rows).set_index(["rod", "rpm"])
+
+
+def of_stability(stability: "Stability") -> "pandas.DataFrame":
+    require("pandas", "to_frame()")
+    import pandas
+
+    return pandas.DataFrame(
+        {
+            "real": stability.exponents.real,
+            "imaginary": stability.exponents.imag,
+            "error": stability.exponent_errors,
+            "frequency [Hz]": stability.frequencies_hz,
+            "damping ratio": stability.damping_ratios,
+        }
+    )
 
 
 def of_bench(result: "Bench") -> "pandas.DataFrame":

@@ -150,6 +150,8 @@ class Power:
     rms: Any
     error: Any = None
     """Of each of these."""
+    mean_theory_error: Any = None
+    """What the first nonlinear correction changes of the mean; None: no value, not judged, or without linearisation."""
 
 
 @dataclass(frozen=True)
@@ -185,6 +187,8 @@ class Torque:
     rms: Any = None
     error: Any = None
     """Of each of these."""
+    mean_theory_error: Any = None
+    """What the first nonlinear correction changes of the mean; None: no value, not judged, or without linearisation."""
     rigid: Optional["Torque"] = None
     """The same of the rigid mechanism."""
 

@@ -10,7 +10,7 @@ from .frames import require_kind
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ._core import Rod
+    from ._core import Rod, Stability
     from .bench import Bench
     from .check import Check
     from .map import Map
@@ -66,6 +66,21 @@ def _legend(ax: "Axes", **more: Any) -> None:
 
 # One speed.
 
+_OF_EXPONENTS = "Floquet exponents; right of the line disturbances grow"
+
+
+def _exponents(ax: "Axes", real: Any, imaginary: Any, errors: Any) -> None:
+    ax.errorbar(real, imaginary, xerr=errors, fmt="o", color=LINES[0], markersize=4)
+    ax.axvline(0, color="#000000", linewidth=0.8)
+
+
+def stability(stability: "Stability", ax: Optional["Axes"] = None) -> "Axes":
+    ax = _axes(ax)
+    _exponents(ax, stability.exponents.real, stability.exponents.imag, stability.exponent_errors)
+    ax.set(xlabel="real part, per unit time", ylabel="imaginary part, folded")
+    _title(ax, _VERDICTS.get(stability.verdict, stability.verdict), _OF_EXPONENTS)
+    return ax
+
 
 def rod(rod: "Rod", kind: str = "response", ax: Optional["Axes"] = None) -> "Axes":
     import numpy as np
@@ -98,10 +113,9 @@ def rod(rod: "Rod", kind: str = "response", ax: Optional["Axes"] = None) -> "Axe
         _title(ax, bold, "spectrum")
         _legend(ax)
     elif kind == "exponents":
-        ax.errorbar(rows[:, 0], rows[:, 1], xerr=rows[:, 2], fmt="o", color=LINES[0], markersize=4)
-        ax.axvline(0, color="#000000", linewidth=0.8)
+        _exponents(ax, rows[:, 0], rows[:, 1], rows[:, 2])
         ax.set(xlabel=columns[0], ylabel=columns[1])
-        _title(ax, bold, "Floquet exponents; right of the line disturbances grow")
+        _title(ax, bold, _OF_EXPONENTS)
     else:
         from matplotlib.colors import hsv_to_rgb
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import html
+import io
 import os
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 from . import _core
 from .errors import refused
 
 if TYPE_CHECKING:
+    from .bench import Bench
+    from .check import Check
     from .map import Map
     from .scene import Scene
     from .steady import Steady
@@ -44,6 +47,38 @@ def _threads(threads: Any) -> int:
     if isinstance(threads, bool) or not isinstance(threads, int) or not 1 <= threads <= 1024:
         raise refused("threads", threads, 'an integer 1 to 1024, or "all"')
     return threads
+
+
+def in_words(result: Union["Bench", "Check"], kind: str, file: Any) -> None:
+    """A page of the result's table and, with matplotlib, its picture; the file is whole or not there."""
+    path = _path(file)
+    title = html.escape(f"hb {kind}: {result.title or result.scene.name}")
+    page = (
+        f'<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><title>{title}</title></head>'
+        f"<body><h1>{title}</h1>{preformatted(str(result))}{_picture(result)}</body></html>\n"
+    )
+    unfinished = path + ".part"
+    try:
+        with open(unfinished, "w", encoding="utf-8") as out:
+            out.write(page)
+        os.replace(unfinished, path)
+    finally:
+        if os.path.exists(unfinished):
+            os.remove(unfinished)
+
+
+def _picture(result: Union["Bench", "Check"]) -> str:
+    """What plot() draws, as SVG; nothing without matplotlib."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        return ""
+    figure = Figure(figsize=(8, 4.6), layout="constrained")
+    result.plot(ax=figure.add_subplot())
+    text = io.StringIO()
+    figure.savefig(text, format="svg", metadata={"Date": None})
+    svg = text.getvalue()
+    return svg[svg.index("<svg") :]
 
 
 def steady(result: "Steady", file: Any) -> None:

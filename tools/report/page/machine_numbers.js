@@ -48,6 +48,8 @@ const driveTable = (numbers) => {
     const largest = Math.max(Math.abs(torque.min), Math.abs(torque.max)), error = bar === undefined ? undefined : bar * largest;
     const mean = error !== undefined && Math.abs(torque.mean) <= error ? 0 : torque.mean;  // what its error hides
     add("mean driving torque", element("td", {"data-path": "torque.mean", "data-value": String(torque.mean)}, `${short(mean * units.moment.factor, 5)} N m`));
+    if (torque.mean_theory_error !== undefined && torque.mean_theory_error !== null)
+      add("its error by linear theory, estimated", cell(torque.mean_theory_error, {factor: units.moment.factor, unit: "N m", digits: 2, path: "torque.mean_theory_error"}));
     add("driving torque, root mean square", cell(torque.rms, {factor: units.moment.factor, unit: "N m", digits: 5, error, path: "torque.rms"}));
   }
   if (power) {
