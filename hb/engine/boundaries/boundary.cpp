@@ -153,7 +153,7 @@ class Location {
     if (f_low_ != f_high_) {
       const auto [zero, error] = interpolated();
       // Beyond the zero by more than it is wrong, so that it is bracketed from both sides.
-      const double delta = std::min(kappa1_ * width * width, std::max(0.7 * wanted_, 0.1 * error));
+      const double delta = std::max(0.7 * wanted_, std::min(kappa1_ * width * width, 0.1 * error));
       const double sign = middle > zero ? 1 : middle < zero ? -1 : 0;
       const double truncated = delta <= std::abs(middle - zero) ? zero + sign * delta : middle;
       x = std::abs(truncated - middle) <= radius ? truncated : middle - sign * radius;
@@ -175,8 +175,24 @@ class Location {
     return {x, std::abs(x - secant)};
   }
 
+  // Without damping one end may be the middle of a narrow band: as if Q were largest there. The zero, and a twentieth
+  // of its distance from there.
+  std::pair<double, double> from_vertex() const {
+    const bool low_is_vertex = f_low_ > 0;
+    const double f = low_is_vertex ? f_low_ : f_high_, far = low_is_vertex ? f_high_ : f_low_;
+    const double vertex = low_is_vertex ? low_ : high_, other = low_is_vertex ? high_ : low_;
+    const double away = std::sqrt(f / (f - far)) * (other - vertex);
+    return {vertex + away, 0.05 * std::abs(away)};
+  }
+
   // Q is nearly a parabola of x: its zero between the ends, with the distance from the one before.
   std::pair<double, double> by_parabola(double secant) {
+    constexpr double narrow = 0.1;
+    if (std::isnan(before_) && !by_sign_ && std::max(f_low_, f_high_) < -narrow * std::min(f_low_, f_high_)) {
+      const std::pair<double, double> zero = from_vertex();
+      expected_zero_ = zero.first;
+      return zero;
+    }
     const double slope = (f_high_ - f_low_) / (high_ - low_);
     const double bend = ((f_before_ - f_high_) / (before_ - high_) - slope) / (before_ - low_);
     // f_low + (x - low) (slope + bend (x - high)) = 0, x = low + t
@@ -235,7 +251,10 @@ class Location {
     } else {
       largest_error_ = growth_error_;
     }
-    if (sample.stability.verdict == Verdict::bounded && above != found_.boundary.unstable_above) settled_ = sample.x;
+    if (sample.stability.verdict == Verdict::bounded && above != found_.boundary.unstable_above) {
+      settled_ = sample.x;
+      (above ? found_.above : found_.below) = sample;
+    }
   }
 
   // Looks at both sides of the boundary for places with sure verdicts.

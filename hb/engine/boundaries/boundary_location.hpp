@@ -10,7 +10,8 @@ namespace hb {
 
 struct BoundaryLocation {
   StabilityBoundary boundary;
-  std::optional<StabilitySample> below, above;  // nearest places computed at which the growth rate is certain
+  // Nearest places computed at which the growth rate is certain, or the verdict that disturbances stay bounded.
+  std::optional<StabilitySample> below, above;
 };
 
 // As locate_boundary. `expected`: two places, ascending, between which the boundary should be.

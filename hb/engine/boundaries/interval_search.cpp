@@ -9,7 +9,9 @@
 
 #include "hb/engine/boundaries/boundary_location.hpp"
 #include "hb/engine/boundaries/encounters.hpp"
+#include "hb/engine/boundaries/mirror_images.hpp"
 #include "hb/engine/boundaries/place_models.hpp"
+#include "hb/engine/boundaries/undamped_locks.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "lib/constants.hpp"
 #include "lib/golden_section.hpp"
@@ -53,6 +55,7 @@ class Search {
   SearchedInterval run(const StabilitySample& a, const StabilitySample& b, const StabilitySample* before,
                        const StabilitySample* after, std::span<const StabilitySample> farther) {
     if (!is_unstable(a) && !is_unstable(b) && bounded(a, b)) return {};
+    if (is_unstable(a) && is_unstable(b) && excludes_gaps(at_, a, b)) return {};
     for (const StabilitySample& sample : farther) places_.emplace(sample.x, encounters_.place(sample));
     for (const StabilitySample* sample : {before, &a, &b, after})
       if (sample != nullptr) places_.emplace(sample->x, encounters_.place(*sample));
@@ -163,8 +166,7 @@ class Search {
     StabilityBoundary boundary = found.boundary;
     leading_suffices_ = is_apart(p) && is_apart(q);
     for (const auto* sample : {&found.below, &found.above})
-      if (*sample && leading_suffices_ && std::abs((*sample)->x - boundary.x) < 16 * beyond(boundary, cell))
-        keep(**sample);
+      if (*sample && std::abs((*sample)->x - boundary.x) < 16 * beyond(boundary, cell)) keep(**sample);
     const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
     const StabilitySample& inside = places_.at(boundary.unstable_above ? right : left).sample;
     if (leading_resolved(inside.stability)) boundary.kind = boundary_kind(inside.stability, inside.speed);
@@ -184,7 +186,8 @@ class Search {
     if (!system || sample.stability.verdict == Verdict::undecided) return;
     sample.mean = mean_exponents(*system);
     const Place place = encounters_.place(sample);
-    if (is_apart(place)) places_.emplace(sample.x, place);
+    if (is_partial(sample) ? leading_suffices_ && is_apart(place) : place.strands.all.size() == place.mean.size())
+      places_.emplace(sample.x, place);
   }
 
   // The nearest place on one side of the boundary that shows the verdict of that side.
@@ -233,7 +236,7 @@ class Search {
 
   // NaN: settled; otherwise where to look.
   double doubtful(Place& p, Place& q) {
-    if (!p.unstable && bounded(p.sample, q.sample)) return nan;
+    if (p.unstable ? excludes_gaps(at_, p.sample, q.sample) : bounded(p.sample, q.sample)) return nan;
     for (const Apart what : {Apart::pair, Apart::alone})
       if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())
         if (const std::optional<double> x = doubtful_while_apart(places, what, options_.least_growth)) {
@@ -241,6 +244,7 @@ class Search {
           return std::isnan(*x) ? unforetold(p, q, places, what) : *x;
         }
     leading_suffices_ = false;
+    if (const std::optional<double> x = doubtful_while_locked(places_, p, q)) return *x;
     complete_near(p, q);
     return p.unstable ? doubtful_while_unstable(p, q) : doubtful_while_stable(p, q);
   }
@@ -262,25 +266,28 @@ class Search {
     if (std::ranges::any_of(unpredicted_motions(p, q), [](double part) { return part > most_unpredicted_motion; }))
       return middle;
     const double least = least_growth(p, q);
-    double worst = least, where = nan;
+    double worst = least, where = nan, untold = 0;
     const auto meeting = encounters_.meetings(p, q, least);
     for (const Meeting& m : meeting) {
       const std::optional<GrowthModel> model = pair_model(places_, p, m.a, m.b, q);
       if (!model) return clamped(m.x, p, q, 0.2);
-      worst = std::max(worst, 2 * model->error());
-      const double far = std::max(-model->mean_growth(), worst), centre = model->centre(), width = q.x() - p.x();
+      // A growth of this pair that is not told from none.
+      untold = std::max(untold, 2 * model->error());
+      const double told = std::max(worst, 2 * model->error());
+      const double far = std::max(-model->mean_growth(), told), centre = model->centre(), width = q.x() - p.x();
       const double known = std::min(centre - p.x(), q.x() - centre);  // how near the centre was looked for before
       const bool inside = known > 1e-7 * width;
       const auto [x, high] = highest(*model, p, q);
-      if (inside && model->rise() > 0.25 * far * far && (known > near_centre * width || (*model)(centre).low > worst))
+      if (inside && model->rise() > 0.25 * far * far && (known > near_centre * width || (*model)(centre).low > told))
         return centre;
-      if (high > worst) {
-        where = inside && known > near_centre * width ? centre : clamped(x, p, q, margin_towards(worst, high));
+      if (high > told) {
+        where = inside && known > near_centre * width ? centre : clamped(x, p, q, margin_towards(told, high));
         worst = high;
       }
     }
     if (!std::isnan(where)) return where;
     if (level(p, q, least)) return nan;
+    worst = std::max(worst, untold);
     // One that decays several times as fast as the leading one does not rise above zero by itself.
     constexpr double several = 4;
     const double slowest = std::min(p.growth(), q.growth());
