@@ -241,7 +241,7 @@ SpeedCheck cross_check(const SceneModel& model, double speed, const Settings& se
   wanted.only.steady = true;
   wanted.only.shape = false;
   const auto start = std::chrono::steady_clock::now();
-  SpeedResult series = analyse(model, speed, wanted);
+  SpeedResult series = analyse(model, speed, wanted, true);
   check.seconds_harmonic_balance = seconds_since(start);
   check.shortfalls = series.shortfalls;
   for (const RodResult& rod : series.rods)

@@ -10,6 +10,7 @@
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/analysis/theory_growth.hpp"
+#include "hb/engine/steady/rough_state.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/stop_wish.hpp"
@@ -35,24 +36,25 @@ std::string steady_note(const SteadyState& state, Eigen::Index num_modes) {
                      method_text(state.method), state.iterations);
 }
 
-// The rod's system with another number of modes than it was made for.
-HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Index num_modes) {
-  const Eigen::Index unknowns = rod.link >= 0 ? num_unknowns(link_of(model, rod), num_modes) : num_modes;
-  if (unknowns == rod.system.num_modes()) return rod.system;
-  if (unknowns == rod.finer.num_modes()) return rod.finer;
-  return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
-}
-
-// Modes that the growth rate needs: as many as leave it within the tolerance when there are more, to `max_modes`.
+// Modes that the growth rate needs, hb/analysis/README.md (C2), (C3): the smallest number that leaves it within the
+// tolerance, to `max_modes`. Where the growth rate of more modes is itself not known to the tolerance, more still would
+// not tell: then the number with the smallest error.
 Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
                               RodResult& result, std::vector<Stage>& stages) {
-  // As for the deflection; usually the growth rate settles like I^-4 or faster.
   constexpr double safety = 2;
   StabilityOptions options = growth_comparison_options(settings);
   options.leading_only = true;
+  options.verdict_only = false;
   Stopwatch watch;
   const auto growth = [&](Eigen::Index modes) {
     return analyse_stability(system_with(model, rod, modes), speed, options);
+  };
+  Eigen::Index best = rod.num_modes;
+  double error = HUGE_VAL;
+  const auto consider = [&](Eigen::Index modes, double its_error) {
+    if (modes > max_modes || !(its_error < error) || error <= settings.tolerance) return;
+    best = modes;
+    error = its_error;
   };
   Eigen::Index I = rod.num_modes;
   Stability coarse = growth(I);
@@ -62,46 +64,72 @@ Eigen::Index modes_for_growth(const SceneModel& model, const RodModel& rod, doub
     Stability fine = growth(more);
     const double change = std::abs(fine.growth_rate - coarse.growth_rate),
                  bars = fine.growth_error + coarse.growth_error;
-    // Changes that do not shrink are carried on, in proportion to the number of the mode: every mode that is added may
-    // be damped less than the one before it.
     const bool shrinks = change <= previous / 2 && previous < HUGE_VAL;
     const auto square = [](Eigen::Index modes) { return static_cast<double>(modes * modes); };
     const double steps = shrinks ? 1 : std::max(1.0, (square(max_modes) - square(I)) / (square(more) - square(I)));
     const double scale = std::max(std::abs(fine.growth_rate), speed);
-    result.growth_modes_error = (safety * steps * change + bars) / scale;
-    if (*result.growth_modes_error <= settings.tolerance || I == max_modes) break;
+    consider(I, (safety * steps * change + bars) / scale);
+    if (shrinks) consider(more, (change + bars) / scale);
+    const bool tells = fine.growth_error <= settings.tolerance * scale;
+    if (error <= settings.tolerance || I == max_modes || !tells) break;
     I = more_modes(I);
     coarse = I == more ? std::move(fine) : growth(I);
     previous = change;
   }
-  stages.push_back({"modes for the growth rate of " + rod.name, watch.seconds(), fmt::format("{} modes", I)});
-  return I;
+  result.growth_modes_error = error;
+  stages.push_back({"modes for the growth rate of " + rod.name, watch.seconds(), fmt::format("{} modes", best)});
+  return best;
+}
+
+// A response with more modes or harmonics than the one whose error the difference shows: begun at zero and a hundred
+// times more accurate than is asked of that one, so that its own error is seen too; without a bound of its own. What is
+// left of the load grows by the resonance.
+SteadyState compared_response(const HillSystem& system, Eigen::Index num_modes, double speed, const Settings& settings,
+                              int num_harmonics = 0) {
+  constexpr double most = 1e-6, better = 1e-2, least = 1e-14;
+  SteadyOptions options = response_options(settings);
+  options.without_bound = true;
+  options.num_harmonics = num_harmonics;
+  options.tolerance =
+      std::max(least, std::min(most, better * settings.tolerance) / nearest_amplification(system, speed));
+  return solve_rod(system, num_modes, speed, options);
 }
 
 // Steady state with I modes, and the error of its cut where asked; in auto mode the number of modes grows until that
 // error is within the tolerance or `max_modes` is reached.
 void solve_steady(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings, bool with_cut,
                   Eigen::Index I, RodResult& result, std::vector<Stage>& stages) {
-  const SteadyOptions options = response_options(settings);
+  SteadyOptions options = response_options(settings);
   const bool grows = is_auto(settings.modes) && rod.link >= 0;
-  Stopwatch watch;
-  SteadyState state = solve_rod(system_with(model, rod, I), I, speed, options);
-  stages.push_back({"steady state of " + rod.name, watch.seconds(), steady_note(state, I)});
-
-  if (rod.link >= 0 && (with_cut || grows)) {
+  const Eigen::Index first = I;
+  SteadyState state;
+  const auto solve = [&] {
+    Stopwatch watch;
+    state = solve_rod(system_with(model, rod, I), I, speed, options);
+    stages.push_back({"steady state of " + rod.name, watch.seconds(), steady_note(state, I)});
+    return state.status != SteadyStatus::singular;
+  };
+  if (solve() && rod.link >= 0 && (with_cut || grows)) {
     const Body& link = link_of(model, rod);
     const RodCoefficients& coefficients = coefficients_of(model, rod);
-    while (state.status != SteadyStatus::singular) {
+    FourierSeries q = state.q;
+    while (true) {
       Stopwatch finer_watch;
       const Eigen::Index more = comparison_modes(I);
-      SteadyState finer_state = solve_rod(system_with(model, rod, more), more, speed, options);
-      if (finer_state.status == SteadyStatus::singular) break;
-      result.cut = cut_error(link, coefficients, speed, state.q, finer_state.q);
-      result.more_modes = finer_state.q;
-      stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer_state, more)});
+      SteadyState finer = compared_response(system_with(model, rod, more), more, speed, settings);
+      if (finer.status == SteadyStatus::singular) break;
+      result.cut = cut_error(link, coefficients, speed, q, finer.q);
+      result.more_modes = finer.q;
+      stages.push_back({"error of the cut of " + rod.name, finer_watch.seconds(), steady_note(finer, more)});
       if (!grows || result.cut->deflection <= settings.tolerance || I == max_modes) break;
       I = more_modes(I);
-      state = I == more ? std::move(finer_state) : solve_rod(system_with(model, rod, I), I, speed, options);
+      q = I == more ? std::move(finer.q) : compared_response(system_with(model, rod, I), I, speed, settings).q;
+      if (q.c.size() == 0) break;
+    }
+    options.start = std::move(q);
+    if (I != first && !solve()) {
+      result.cut.reset();
+      result.more_modes = {};
     }
   }
   result.num_modes = I;
@@ -115,9 +143,9 @@ void solve_steady(const SceneModel& model, const RodModel& rod, double speed, co
 // The steady state of a rod once more, with half as many harmonics again.
 FourierSeries with_more_harmonics(const SceneModel& model, const RodModel& rod, double speed, const Settings& settings,
                                   const RodResult& result) {
-  SteadyOptions options = response_options(settings);
-  options.num_harmonics = std::min(options.max_harmonics, result.steady->num_harmonics * 3 / 2 + 8);
-  const SteadyState state = solve_rod(system_with(model, rod, result.num_modes), result.num_modes, speed, options);
+  const int most = response_options(settings).max_harmonics;
+  const SteadyState state = compared_response(system_with(model, rod, result.num_modes), result.num_modes, speed,
+                                              settings, std::min(most, result.steady->num_harmonics * 3 / 2 + 8));
   return state.status == SteadyStatus::singular ? result.steady->q : state.q;
 }
 
@@ -166,7 +194,7 @@ std::vector<std::string> shortfalls_of(const RodResult& rod, const Settings& set
     sentences.push_back(
         fmt::format("{}: with {} modes the growth rate's error of the cut is {:.1e} of the larger of "
                     "itself and the speed, above the tolerance {:.1e}",
-                    rod.name, rod.num_modes, *rod.growth_modes_error, settings.tolerance));
+                    rod.name, rod.growth_modes, *rod.growth_modes_error, settings.tolerance));
   }
   return sentences;
 }
@@ -253,6 +281,13 @@ void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
 Only available(const SceneModel& model, Only only) {
   if (!model.linkage()) only.reactions = only.shape = false;
   return only;
+}
+
+HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Index num_modes) {
+  const Eigen::Index unknowns = rod.link >= 0 ? num_unknowns(link_of(model, rod), num_modes) : num_modes;
+  if (unknowns == rod.system.num_modes()) return rod.system;
+  if (unknowns == rod.finer.num_modes()) return rod.finer;
+  return ritz_system(link_of(model, rod), coefficients_of(model, rod), num_modes);
 }
 
 const char* method_text(SteadyMethod method) {
@@ -343,7 +378,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
   return model;
 }
 
-SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings) {
+SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings, bool one_number) {
   SpeedResult result;
   result.speed = speed;
   const Only only = result.computed = available(model, settings.only);
@@ -358,11 +393,16 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     entry.num_modes = rod.num_modes;
     entry.growth_alone = only.stability && !only.all_exponents();
     const bool shows_cut = rod.reported && wants_modes_error(only);
-    if (auto_modes && rod.link >= 0 && rod.reported && only.stability && !only.verdict)
-      entry.num_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
-    if (only.steady || only.shape || only.reactions || auto_modes) {
+    if (only.stability) entry.growth_modes = rod.num_modes;
+    if (auto_modes && rod.link >= 0 && only.stability) {
+      entry.growth_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
+      if (only.verdict) entry.growth_modes_error.reset();
+      if (one_number || !wants_response(only)) entry.num_modes = entry.growth_modes;
+    }
+    if (wants_response(only)) {
       solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry.num_modes, entry, stages);
       if (!shows_cut) entry.cut.reset();
+      if (one_number && only.stability) entry.growth_modes = entry.num_modes;
     } else {
       stages.push_back({"steady state of " + rod.name, 0, "not asked for", true});
     }
@@ -389,7 +429,7 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     } else {
       const StabilityOptions options = exponent_options(settings);
       Stopwatch watch;
-      const HillSystem system = system_with(model, rod, entry.num_modes);
+      const HillSystem system = system_with(model, rod, entry.growth_modes);
       entry.num_exponents = 2 * system.num_modes();
       entry.stability = analyse_stability(system, speed, options);
       stages.push_back({"stability of " + rod.name, watch.seconds(), entry.stability->evidence});

@@ -56,8 +56,9 @@ struct RodResult {
   std::string name;
   int link = -1;
   bool reported = true;
-  Eigen::Index num_modes = 0;
-  Eigen::Index num_exponents = 0;  // of its system
+  Eigen::Index num_modes = 0;  // of the deflection
+  Eigen::Index growth_modes = 0;  // that the exponents were computed with; 0: they were not asked for
+  Eigen::Index num_exponents = 0;  // of the system with these
   std::optional<SteadyState> steady;  // q_1..q_I
   std::vector<Extremum> max_abs;  // of each q_i over the turn
   std::optional<CutError> cut;
@@ -98,7 +99,13 @@ void require_resolved(const Scene& scene, const LinkageCoefficients& coefficient
 // `compares_modes` false RodModel::finer stays empty.
 [[nodiscard]] SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes = true);
 
-[[nodiscard]] SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings);
+// With modes = "auto" each rod has as many modes as its deflection needs, and for the exponents as many as its growth
+// rate needs; with `one_number` the larger of both for both.
+[[nodiscard]] SpeedResult analyse(const SceneModel& model, double speed, const Settings& settings,
+                                  bool one_number = false);
+
+// Of the rod with this number of modes; a [hill] system has its own.
+[[nodiscard]] HillSystem system_with(const SceneModel& model, const RodModel& rod, Eigen::Index num_modes);
 
 [[nodiscard]] const char* method_text(SteadyMethod method);
 

@@ -18,7 +18,8 @@ Eigen::Index more_modes(Eigen::Index num_modes) {
 }
 
 int most_modes(const std::vector<RodResult>& rods, int least) {
-  for (const RodResult& rod : rods) least = std::max(least, static_cast<int>(rod.num_modes));
+  for (const RodResult& rod : rods)
+    least = std::max({least, static_cast<int>(rod.num_modes), static_cast<int>(rod.growth_modes)});
   return least;
 }
 

@@ -25,7 +25,7 @@ using Modes = std::variant<int, AutoModes>;
 // Where I are too few: as many as they are compared with, to max_modes.
 [[nodiscard]] Eigen::Index more_modes(Eigen::Index num_modes);
 
-// The largest number of these rods, `least` at least.
+// The largest number of these rods, for the deflection or for the exponents, `least` at least.
 [[nodiscard]] int most_modes(const std::vector<RodResult>& rods, int least = 1);
 
 }  // namespace hb

@@ -330,7 +330,7 @@ int plane_modes(const SceneFamily& family, const PlaneAxis& x, const PlaneAxis& 
                 const Settings& settings) {
   if (const int* asked = std::get_if<int>(&settings.modes)) return *asked;
   Settings growth = settings;
-  growth.only = {.steady = false, .stability = true, .reactions = false, .shape = false};
+  growth.only = {.steady = true, .stability = true, .reactions = false, .shape = false};
   int modes = 1;
   for (const auto& [s, t] : {std::pair(0.0, 0.0), {0.0, 1.0}, {1.0, 0.0}, {1.0, 1.0}, {0.5, 0.5}}) {
     Numbers numbers;

@@ -400,6 +400,49 @@ TEST_F(Steady, AnswersNearlyAtRest) {
   }
 }
 
+// Next to a dead centre the deflection needs nineteen modes, the growth rate nine; with nineteen it is known to 3e5
+// only.
+TEST_F(Steady, NextToADeadCentreTheGrowthRateHasItsOwnNumberOfModes) {
+  const std::string at = "steady " + scene("slider_crank") + " --set crank.length=144.9 --rpm 3000 --json";
+  const CommandResult result = hb(at + " --modes auto");
+  EXPECT_EQ(result.status, 0) << result.err;
+  const Json found = Json::parse(result.out), rod = found["rods"]["rod"];
+  EXPECT_LE(rod["error_bound"], 1e-8);
+  EXPECT_LE(rod["modes_error"], 1e-8);
+  EXPECT_LE(rod["growth_modes_error"], 1e-8);
+  EXPECT_EQ(rod["verdict"], "unstable");
+  EXPECT_LE(rod["exponent_error"], 1e-8 * rod["growth_rate"].get<double>());
+  EXPECT_LT(rod["growth_modes"], rod["modes"]);
+  EXPECT_EQ(rod["q"]["fourier"].size(), rod["modes"].get<std::size_t>());
+  EXPECT_LE(rod["exponents"].size(), 2 * rod["growth_modes"].get<std::size_t>());
+  // Alone it is the same, and that of more modes within what the modes left out may change.
+  const Json alone = document(at + " --modes auto --only growth")["rods"]["rod"];
+  EXPECT_EQ(alone["growth_modes"], rod["growth_modes"]);
+  EXPECT_NEAR(alone["growth_rate"], rod["growth_rate"].get<double>(),
+              alone["exponent_error"].get<double>() + rod["exponent_error"].get<double>());
+  const Json finer = document(at + " --modes 13 --only growth")["rods"]["rod"];
+  const double left_out = rod["growth_modes_error"].get<double>() * rod["growth_rate"].get<double>();
+  EXPECT_NEAR(finer["growth_rate"], rod["growth_rate"].get<double>(), left_out);
+}
+
+// One number of modes asked for is that of the exponents too; automatic, each rod has two, in words too.
+TEST_F(Steady, SaysHowManyModesTheExponentsWereComputedWith) {
+  const std::string at = "steady " + scene("six_link") + " --rpm 1500";
+  for (const Json& rod : document(at + " --modes 4")["rods"]) EXPECT_EQ(rod["growth_modes"], 4);
+  for (const Json& rod : document(at + " --modes 4 --only steady")["rods"]) EXPECT_FALSE(rod.contains("growth_modes"));
+  const std::string automatic = at + " --modes auto --tol 1e-6";
+  const Json found = document(automatic), alone = document(automatic + " --only stability");
+  for (const auto& [name, rod] : found["rods"].items()) {
+    EXPECT_LE(rod["growth_modes"], rod["modes"]) << name;
+    EXPECT_EQ(rod["exponents"].size(), 2 * rod["growth_modes"].get<std::size_t>()) << name;
+    EXPECT_EQ(alone["rods"][name]["exponents"], rod["exponents"]) << name;
+    EXPECT_EQ(alone["rods"][name]["modes"], rod["growth_modes"]) << name;
+  }
+  const int of_growth = found["rods"]["AB"]["growth_modes"];
+  ASSERT_LT(of_growth, found["rods"]["AB"]["modes"]);
+  EXPECT_NE(hb(automatic).out.find("; exponents with " + std::to_string(of_growth) + " modes"), std::string::npos);
+}
+
 TEST_F(Steady, SaysBeforehandThatItWillNotFitIntoMemory) {
   const std::string limit = "ulimit -v 600000;", crank = scene("slider_crank") + " --time-limit 1";
   const std::string near = crank + " --set crank.length=144.9 --modes 30";

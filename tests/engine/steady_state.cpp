@@ -301,6 +301,45 @@ TEST(SteadyState, StiffnessWithTwoHundredHarmonics) {
   EXPECT_LE(error_of(state, system, 1), state.error_bound);
 }
 
+double largest_difference(const FourierSeries& a, const FourierSeries& b) {
+  const Index H = std::max(a.num_harmonics(), b.num_harmonics());
+  return 2 * (fourier::resized(a, H).c - fourier::resized(b, H).c).cwiseAbs().rowwise().sum().maxCoeff();
+}
+
+TEST(SteadyState, BeginsWhereItIsToldAndClaimsNothingWhereNoBoundIsAskedFor) {
+  Random random(31);
+  for (const SteadyMethod method : {SteadyMethod::iterative, SteadyMethod::direct}) {
+    const HillSystem s = random_system({.modes = 4, .stiffness_harmonics = 12, .load_harmonics = 8}, random);
+    const double speed = 0.7;
+    SteadyOptions options{.method = method};
+    const SteadyState from_rest = solve_steady_state(s, speed, options);
+    ASSERT_EQ(from_rest.status, SteadyStatus::converged);
+    const double size = fourier::max_abs(from_rest.q, 0).value;
+
+    options.without_bound = true;
+    const SteadyState rough = solve_steady_state(s, speed, options);
+    EXPECT_EQ(rough.status, SteadyStatus::not_reached);
+    EXPECT_EQ(rough.error_bound, HUGE_VAL);
+    EXPECT_LE(largest_difference(rough.q, from_rest.q), 1e-7 * size);
+    if (method == SteadyMethod::iterative) {
+      EXPECT_LT(rough.iterations, from_rest.iterations);
+    }
+
+    options.start = from_rest.q;
+    const SteadyState known = solve_steady_state(s, speed, options);
+    EXPECT_LE(largest_difference(known.q, from_rest.q), 1e-7 * size);
+    if (method == SteadyMethod::iterative) {
+      EXPECT_LT(known.iterations, rough.iterations);
+    }
+
+    options.without_bound = false;
+    options.start.c.array() += 3;  // far off: as accurate
+    const SteadyState again = solve_steady_state(s, speed, options);
+    EXPECT_EQ(again.status, SteadyStatus::converged);
+    EXPECT_LE(largest_difference(again.q, from_rest.q), 1e-7 * size);
+  }
+}
+
 TEST(SteadyState, TooFewHarmonicsAreSaidToBeTooFew) {
   const SteadyState state = solve_steady_state(mathieu(0.1), 1, {.tolerance = 1e-12, .num_harmonics = 3});
   EXPECT_EQ(state.status, SteadyStatus::not_reached);

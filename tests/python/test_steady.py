@@ -49,6 +49,7 @@ def test_arrays_hold_the_documents_numbers(steady):
         for attribute, key in [
             ("error_bound", "error_bound"),
             ("modes_error", "modes_error"),
+            ("growth_modes", "growth_modes"),
             ("theory_error", "theory_error"),
             ("growth_rate", "growth_rate"),
             ("growth_error", "exponent_error"),

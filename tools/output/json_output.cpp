@@ -53,6 +53,7 @@ void add_stability(Json& json, const RodResult& rod, double speed, const Units& 
   json.update(stability_json(*rod.stability, rod.num_exponents));
   json["exponents_unresolved"] = unresolved_exponents(rod);
   add_modes(json, rod.stability->exponents, speed, units);
+  json["growth_modes"] = rod.growth_modes;
   if (rod.growth_modes_error) json["growth_modes_error"] = *rod.growth_modes_error;
 }
 

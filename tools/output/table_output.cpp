@@ -105,8 +105,10 @@ std::string growth_theory_row(const SpeedResult& result, const OutputUnits& unit
                      *result.theory->growth < std::abs(rate) ? "" : ", not less than the rate itself");
 }
 
-void add_stability(Text& text, const RodModel& model, const RodResult& rod, double speed, const Scene& scene,
-                   bool multipliers) {
+void add_stability(Text& text, const SceneModel& model, std::size_t r, const SpeedResult& result, bool multipliers) {
+  const Scene& scene = model.scene;
+  const RodResult& rod = result.rods[r];
+  const double speed = result.speed;
   const Stability& stability = *rod.stability;
   const OutputUnits units = output_units(scene);
   add(text, "{}", exponents_rows(stability, unresolved_exponents(rod), speed, scene));
@@ -116,7 +118,7 @@ void add_stability(Text& text, const RodModel& model, const RodResult& rod, doub
     add(text, "  its cut           {:.1e} of the larger of itself and the speed, estimated\n", *rod.growth_modes_error);
   std::vector<DisturbanceLine> lines;
   if (stability.verdict == Verdict::unstable && !stability.exponents.empty())
-    lines = disturbance_lines(model.system, speed, stability.exponents.front());
+    lines = disturbance_lines(system_with(model, model.rods[r], rod.growth_modes), speed, stability.exponents.front());
   add(text, "  {}\n", verdict_sentence(stability, speed, scene, lines));
 }
 
@@ -166,6 +168,8 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     add(text, "{}: {} {}", rod.name, rod.num_modes,
         is_linkage ? (rod.num_modes == 1 ? "mode" : "modes") : (rod.num_modes == 1 ? "unknown" : "unknowns"));
     if (rod.steady && result.computed.steady) add(text, ", {} harmonics", rod.steady->num_harmonics);
+    if (rod.stability && rod.growth_modes != rod.num_modes)
+      add(text, "; exponents with {} {}", rod.growth_modes, rod.growth_modes == 1 ? "mode" : "modes");
     add(text, "\n");
     if (rod.steady && result.computed.steady) add_steady(text, model, r, result, settings.tolerance);
     if (is_linkage) add_theory(text, result.theory, r);
@@ -180,7 +184,7 @@ std::string steady_table(const SceneModel& model, const SpeedResult& result, con
     }
     if (rod.stress) add(text, "{}", stress_lines(*rod.stress, *body_at(*model.linkage(), rod.link), units));
     add(text, "{}", stress_rows(model, result, r));
-    if (rod.stability) add_stability(text, model.rods[r], rod, result.speed, scene, multipliers);
+    if (rod.stability) add_stability(text, model, r, result, multipliers);
     add(text, "\n");
   }
   if (result.rods.empty() && is_linkage) add(text, "No elastic links: rigid joint forces only.\n\n");

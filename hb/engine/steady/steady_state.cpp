@@ -64,7 +64,7 @@ class Solver {
     const bool chosen = options_.num_harmonics > 0;
     Index H = chosen ? options_.num_harmonics
                      : steady::predicted_harmonics(system_, 0.1 * std::max(options_.tolerance, eps), most);
-    Spectrum x;
+    Spectrum x = start();
     for (;;) {
       steady::Operator A(system_, H);
       const bool last = chosen || H >= most;
@@ -112,6 +112,7 @@ class Solver {
         wanted = harmonics_for(A, steady::largest_over_turn(x * T_.transpose()), r, A.noise(), 1);
         if (wanted > H) return state;
       }
+      if (solved && options_.without_bound) return unbounded(x, r, state);
       const double response = solved ? steady::response(A, *inverse, T_) : HUGE_VAL;
       if (std::isfinite(response)) {
         if (!last) {
@@ -303,6 +304,20 @@ class Solver {
     state.residual = HUGE_VAL;
     state.resonance_distance = 0;
     state.q = FourierSeries(Eigen::MatrixXcd(scaled_.load_scale * (T_ * x.transpose())));
+  }
+
+  SteadyState& unbounded(const Spectrum& x, const Spectrum& r, SteadyState& state) const {
+    fail(x, state);
+    state.residual = steady::wiener_norms(r).sum() / steady::wiener_norms(system_.f).sum();
+    state.q.c.col(0) = state.q.c.col(0).real().cast<std::complex<double>>().eval();
+    return state;
+  }
+
+  // Empty where none was given.
+  Spectrum start() const {
+    const FourierSeries& q = options_.start;
+    if (q.num_components() != system_.I || q.num_harmonics() < 0) return {};
+    return (dense::inverse(T_) * q.c / scaled_.load_scale).transpose();
   }
 
   const ScaledSystem& scaled_;

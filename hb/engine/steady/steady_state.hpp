@@ -27,6 +27,12 @@ struct SteadyOptions {
   int max_harmonics = 4096;  // give up beyond
   SteadyMethod method = SteadyMethod::automatic;
   SteadyBound bound = SteadyBound::estimated;
+  // The solution alone, to a residual (each row divided by the size of its diagonal) of 0.03 of the tolerance or
+  // rounding, whatever the response makes of it: error_bound is infinite, the status not_reached (or singular).
+  bool without_bound = false;
+  // Where the iteration begins, in given units; harmonics that it does not have are zero. Of another number of
+  // components, as when empty: from zero.
+  FourierSeries start = {};
 };
 
 enum class SteadyStatus {

@@ -222,6 +222,9 @@ class Rod:
     def exponents_uncertain(self) -> Any:
         """Exponents with bars too wide, as in the document: exponent and error of each; None: not computed."""
     @property
+    def growth_modes(self) -> Optional[int]:
+        """Number of Ritz terms of the exponents; None: not computed."""
+    @property
     def growth_modes_error(self) -> Optional[float]:
         """Estimated relative error of the growth rate from the modes left out; None: not asked."""
     def response(self, angle: ArrayLike) -> NDArray[Any]:

@@ -469,6 +469,7 @@ for _key, _attribute in {
     "exponents_uncertain": _of_entry(
         "exponents_uncertain", "Exponents with bars too wide, as in the document: exponent and error of each; None: not computed."
     ),
+    "growth_modes": _of_entry("growth_modes", "Number of Ritz terms of the exponents; None: not computed."),
     "growth_modes_error": _of_entry(
         "growth_modes_error", "Estimated relative error of the growth rate from the modes left out; None: not asked."
     ),
