@@ -82,6 +82,8 @@ class Location {
     rough_.tolerance = std::max(rough_.tolerance, rough);
     rough_.growth_suffices = rough_.as_found = true;
     notice_kind(unstable);
+    parabolic_ = true;
+    parabolic_ = !by_sign_ || lock_ != 0 || value(unstable) != growth(unstable);
     f_low_ = value(a);
     f_high_ = value(b);
     certain_low_ = low_;
@@ -117,12 +119,24 @@ class Location {
   // of (B2), with damping |c| - cosh 2 pi m of (B11), hb/engine/README.md.
   double value(const StabilitySample& s) const {
     const double g = growth(s);
-    if (by_sign_ && lock_ == 0) return g;
+    if (!parabolic_) return g;
     if (!by_sign_ && g > 0) return std::pow(g / s.speed, 2);
     const auto [apart, mean] = nearest_pair(s);
+    if (by_sign_ && lock_ == 0) return off_locks(apart, mean, g);
     if (!by_sign_) return -0.25 * apart.imag() * apart.imag();
     const double beyond = std::cosh(pi * apart.real()) * std::cos(pi * apart.imag()) - std::cosh(two_pi * mean);
     return std::isfinite(beyond) && (beyond > 0) == (g > 0) ? beyond : g;
+  }
+
+  // Two that meet off the locks: with Q = ((s_1 - s_2)/2)^2 of (B2) and m < 0 their mean growth m + Re sqrt(Q) is zero,
+  // and has the sign of
+  //     Re Q - m^2 + (Im Q)^2/(4 m^2) = (r^2 - m^2)(1 + y^2/m^2),      sqrt(Q) = r + i y,
+  // which is analytic in x. One that grows by itself: its growth.
+  static double off_locks(std::complex<double> apart, double m, double g) {
+    const std::complex<double> Q = 0.25 * apart * apart;
+    const double shared = std::pow(Q.imag() / (2 * m), 2), f = Q.real() - m * m + shared;
+    const bool tells = m < 0 && shared <= std::abs(Q.real()) + m * m && (f > 0) == (g > 0);
+    return tells ? f : g;
   }
 
   // The two that may lock are near each other, and their mean is near the lock: s_1 - s_2 and the mean of their growth.
@@ -165,7 +179,7 @@ class Location {
   // with its distance from the secant's zero; else that.
   std::pair<double, double> interpolated() {
     const double secant = (f_high_ * low_ - f_low_ * high_) / (f_high_ - f_low_);
-    if (!by_sign_ || lock_ != 0) return by_parabola(secant);
+    if (parabolic_) return by_parabola(secant);
     const double before = (f_before_ - f_low_) / (f_high_ - f_low_);
     const bool monotonic = before_ < low_ ? before < 0 : before_ > high_ && before > 1;
     if (!monotonic) return {secant, HUGE_VAL};
@@ -301,6 +315,7 @@ class Location {
   StabilityOptions sharp_, rough_;
   bool by_sign_ = false;
   double lock_ = 0;  // sign of the multipliers that leave, 0: complex ones
+  bool parabolic_ = false;  // two that meet tell where to look, not a single one
   double expected_zero_ = nan;  // as Q foretold it last
   std::complex<double> locked_;  // leading exponent of the nearest place where it grows
   double wanted_ = 0, promised_ = 0;  // half of the bracket; error of the boundary
