@@ -193,6 +193,19 @@ class Solver {
     const double largest = steady::largest_over_turn(x * T_.transpose());
     const double load = steady::wiener_norms(system_.f).sum();
     const double rounding = steady::amplified(A.rounding(x), response, T_);
+    const auto in_given_units = [&] {
+      return Eigen::MatrixXcd(given_.scale * (given_.T * system_.weight.cwiseInverse().asDiagonal() * x.transpose()));
+    };
+    if (rounding > options_.tolerance * largest) {  // what a residual in double precision says is not enough
+      state.error_bound = HUGE_VAL;
+      Eigen::MatrixXcd u = in_given_units();
+      refine(A, inverse, response, 0.1 * options_.tolerance, u, state, wanted);
+      if (wanted > H || state.status == SteadyStatus::converged) {
+        state.q = result(u);
+        if (options_.bound == SteadyBound::proved) prove(A, u, state);
+        return;
+      }
+    }
     const steady::Correction correction =
         steady::correction(A, inverse, r, response, T_, 0.1 * options_.tolerance * largest);
     if (correction.window.allFinite() && std::isfinite(correction.rest)) x += correction.window;
@@ -201,13 +214,12 @@ class Solver {
     state.residual = steady::wiener_norms(r).sum() / load;
     state.error_bound = (error + conversion) / largest;
     state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
-    Eigen::MatrixXcd u = (given_.T * system_.weight.cwiseInverse().asDiagonal() * x.transpose());
-    u *= given_.scale;
+    Eigen::MatrixXcd u = in_given_units();
     // More harmonics where those left out are what is missing.
     if (state.status != SteadyStatus::converged && correction.outside > 0.1 * options_.tolerance * largest)
       wanted = H + std::max<Index>({2, system_.P / 2, H / 4});
     else if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound))
-      refine(A, inverse, response, u, state, wanted);
+      refine(A, inverse, response, options_.tolerance, u, state, wanted);
     state.q = result(u);
     if (options_.bound == SteadyBound::proved) prove(A, u, state);
   }
@@ -249,8 +261,8 @@ class Solver {
   }
 
   // Residuals in extended precision, of u as it is stored: its own rounding is then part of the residual.
-  void refine(steady::Operator& A, steady::Inverse& inverse, double response, Eigen::MatrixXcd& u, SteadyState& state,
-              Index& wanted) {
+  void refine(steady::Operator& A, steady::Inverse& inverse, double response, double enough, Eigen::MatrixXcd& u,
+              SteadyState& state, Index& wanted) {
     const Index H = A.num_harmonics();
     const Eigen::MatrixXd to_u = given_.T * system_.weight.cwiseInverse().asDiagonal();
     const double load = steady::wiener_norms(system_.f).sum();
@@ -272,15 +284,13 @@ class Solver {
         state.residual = steady::wiener_norms(residual.r).sum() / load;
         best = u;
       }
-      if (state.error_bound <= options_.tolerance) {
-        state.status = SteadyStatus::converged;
-        break;
-      }
+      if (state.error_bound <= enough) break;
       if (!(inner < 0.5 * last)) break;
       last = inner;
       u += given_.scale * to_u * correction.window.transpose();
     }
     u = best;
+    if (state.error_bound <= options_.tolerance) state.status = SteadyStatus::converged;
   }
 
   FourierSeries result(const Eigen::MatrixXcd& u) const {
