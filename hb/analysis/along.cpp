@@ -55,6 +55,8 @@ void require_values(const char* field, const Along& along, const Units& units) {
   for (std::size_t k = 0; k + 1 < values.size(); ++k)
     if (!(values[k] < values[k + 1]))
       throw RequestError(field, fmt::format("{} before {}", values[k], values[k + 1]), "values in ascending order");
+  if (!is_speed(along.path) && along.path.starts_with("analysis."))
+    throw RequestError(field, along.path, "a speed, or a number of the mechanism or system: all points share the rest");
   if (!is_speed(along.path)) return;
   const double lowest = in_rpm(along.path) ? speed_from_rpm(values.front(), units) : values.front();
   if (!(lowest >= std::numeric_limits<double>::min()))

@@ -57,7 +57,7 @@ SceneFamily::SceneFamily(SceneSource source, std::vector<Override> set) {
     FromText(SceneSource text, std::vector<Override> overrides) : text_(std::move(text)), set_(std::move(overrides)) {}
     Scene scene(const Numbers& numbers) const override {
       std::vector<Override> all = set_;
-      for (const Number& number : numbers) all.push_back(number_override(number.path, number.value));
+      for (const Number& number : numbers) all.push_back(value_override(number.path, number.value));
       return text_.with(all);
     }
     std::vector<std::string> paths() const override { return text_.numeric_paths(); }
@@ -71,7 +71,7 @@ SceneFamily::SceneFamily(SceneSource source, std::vector<Override> set) {
     }
     std::shared_ptr<const Kind> with(const Numbers& numbers) const override {
       std::vector<Override> all = set_;
-      for (const Number& number : numbers) all.push_back(number_override(number.path, number.value));
+      for (const Number& number : numbers) all.push_back(value_override(number.path, number.value));
       return std::make_shared<FromText>(text_, std::move(all));
     }
     SceneSource text_;

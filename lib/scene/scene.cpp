@@ -194,6 +194,8 @@ Override number_override(std::string path, double value) {
   return {std::move(path), std::move(text)};
 }
 
+Override value_override(std::string path, double value) { return {std::move(path), fmt::format("{:.17g}", value)}; }
+
 SceneSource::SceneSource(const std::filesystem::path& file)
     : text_(read_text_file(file)), name_(file.string()), folder_(file.parent_path()) {}
 

@@ -87,6 +87,8 @@ struct Override {
 };
 
 [[nodiscard]] Override number_override(std::string path, double value);  // all digits
+// The same where it is read again at once: a whole number as an integer, which every key takes.
+[[nodiscard]] Override value_override(std::string path, double value);
 
 // The text of a scene, read once and turned into scenes as often as wanted; constant and free to share by threads.
 // Every member throws SceneError.

@@ -522,4 +522,39 @@ TEST_F(Words, TheTitleOfADocumentIsTheScenes) {
   }
 }
 
+// "nan", an empty list, the points of a slider passed over.
+TEST_F(Words, WhatHasNoValueOrIsAPointIsSaid) {
+  std::ofstream(folder_ / "resonant.toml")
+      << "[hill]\nmass = [[1, 0], [0, 1]]\nstiffness = { harmonic = 0, cos = [[1, 0], "
+         "[0, 9]] }\nload = { harmonic = 1, cos = [1.0, 0] }\n";
+  const Json q = Json::parse(said("steady resonant.toml --omega 1 --json", 3))["rods"]["system"]["q"];
+  EXPECT_EQ(q["max_abs"], Json({nullptr, nullptr}));
+  EXPECT_EQ(q["crank_angle"], Json({nullptr, nullptr}));
+  std::ofstream(folder_ / "slider.toml") << R"(
+[crank]
+pivot = [0, 0]
+length = 0.04
+[[dyad]]
+on = "crank"
+branch = 1
+coupler = { name = "rod", length = 0.19, mass = 0.3 }
+slider = { name = "piston", mass = 0.4, guide = [0, 0], points = { P = [0.05, 0.0] } }
+)";
+  expect(said("scene slider.toml"), {"point piston.P at (0.05, 0) m in its frame"});
+  const Json slider = Json::parse(said("scene slider.toml --json"))["linkage"]["dyads"][0]["slider"];
+  EXPECT_EQ(slider["points_xy"]["P"], Json({0.05, 0.0}));
+}
+
+// A whole number of the scene was refused as 1.0; modes are shared by all points.
+TEST_F(Words, WholeNumbersOfTheSceneCanBeSwept) {
+  std::ofstream(folder_ / "two.toml") << "[hill]\nmass = [[1]]\ndamping = [[0.1]]\nstiffness = { harmonic = 0, cos = "
+                                         "[[4]] }\nload = [{ harmonic = 1, cos = [1] }]\n";
+  const Json found = Json::parse(said("sweep two.toml --omega 1 --x hill.load.0.harmonic=1:2:1 --no-search --json"));
+  EXPECT_NEAR(found["rods"]["system"]["max_abs"][0][0], 1 / std::hypot(3, 0.1), 1e-12);
+  EXPECT_NEAR(found["rods"]["system"]["max_abs"][1][0], 1 / 0.2, 1e-12);
+  const CommandResult modes = hb("sweep " + scene("six_link") + " --rpm 300 --x analysis.modes=1:3:1");
+  EXPECT_EQ(modes.status, 2);
+  expect(modes.err, {"analysis.modes", "all points share the rest"});
+}
+
 }  // namespace

@@ -65,9 +65,9 @@ Scene readable_scene(const SceneSource& source, const std::vector<Override>& set
   for (int corner = 0; corner <= 4; ++corner) {
     std::vector<Override> all = set;
     if (corner > 0 && !is_speed(x.path))
-      all.push_back(number_override(x.path, corner % 2 ? x.values.front() : x.values.back()));
+      all.push_back(value_override(x.path, corner % 2 ? x.values.front() : x.values.back()));
     if (corner > 0 && !is_speed(y.path))
-      all.push_back(number_override(y.path, corner <= 2 ? y.values.front() : y.values.back()));
+      all.push_back(value_override(y.path, corner <= 2 ? y.values.front() : y.values.back()));
     try {
       return source.with(all);
     } catch (const ObstructedLinkage& error) {

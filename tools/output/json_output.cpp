@@ -24,6 +24,7 @@ void add_steady(Json& json, const RodResult& rod, const Units& units) {
   json["status"] = status_text(state.status);
   json["harmonics"] = state.q.num_harmonics() >= 0 ? state.q.num_harmonics() : 0;
   Json max_abs = Json::array(), angles = Json::array();
+  if (rod.max_abs.empty()) max_abs = angles = Json(static_cast<std::size_t>(rod.num_modes), Json(nullptr));
   for (const Extremum& peak : rod.max_abs) {
     max_abs.push_back(peak.value);
     angles.push_back(scene_angle(peak.crank_angle, units));

@@ -111,6 +111,13 @@ void add_elastic(Text& text, const Body& body, const Units& units) {
   if (!elastic.shear) add_shear_left_out(text, body);
 }
 
+// Further joints of a link or slider.
+void add_points(Text& text, const std::string& name, const std::map<std::string, std::complex<double>>& points,
+                const Units& units) {
+  for (const auto& [point, place] : points)
+    add(text, "           point {}.{} at {} {} in its frame\n", name, point, point_text(place), units.length);
+}
+
 void add_body(Text& text, const Body& body, const char* kind, const Units& units) {
   add(text, "  {:<8} {:<12} length {:.6g} {}, mass {:.6g} {}", kind, body.name, body.length, units.length, body.mass,
       units.mass);
@@ -121,9 +128,7 @@ void add_body(Text& text, const Body& body, const char* kind, const Units& units
     }
   }
   add(text, "\n");
-  for (const auto& [name, point] : body.points) {
-    add(text, "           point {}.{} at {} {} in its frame\n", body.name, name, point_text(point), units.length);
-  }
+  add_points(text, body.name, body.points, units);
   if (!body.elastic) return;
   add_elastic(text, body, units);
 }
@@ -161,6 +166,7 @@ void add_linkage(Text& text, const Scene& scene, const Linkage& linkage) {
       const Slider& slider = std::get<Slider>(dyad.closing);
       add(text, "  {:<8} {:<12} mass {:.6g} {}, guide through {} {}, direction {:.6g} deg\n", "slider", slider.name,
           slider.mass, units.mass, point_text(slider.guide), units.length, slider.direction * degrees_per_radian);
+      add_points(text, slider.name, slider.points, units);
       text.append(force_text(slider, dyad.branch, units));
     }
     const TransmissionAngle worst = transmission_angle(linkage, static_cast<int>(d));
@@ -177,9 +183,7 @@ Json point_json(std::complex<double> given) {
 Json body_json(const Body& body, const Units& units) {
   Json json = {
       {"length", body.length}, {"mass", body.mass}, {"com_xy", point_json(body.com)}, {"inertia", body.inertia}};
-  if (!body.points.empty()) {
-    for (const auto& [name, point] : body.points) json["points_xy"][name] = point_json(point);
-  }
+  for (const auto& [name, point] : body.points) json["points_xy"][name] = point_json(point);
   if (body.elastic) {
     const Elastic& elastic = *body.elastic;
     json["elastic"] = {{"E", elastic.youngs_modulus},
@@ -228,6 +232,7 @@ Json linkage_json(const Linkage& linkage, const Units& units) {
                          {"guide", point_json(slider.guide)},
                          {"direction", scene_angle(slider.direction, units)},
                          {"force_harmonics", std::max<Eigen::Index>(0, slider.force.num_harmonics())}};
+      for (const auto& [name, point] : slider.points) entry["slider"]["points_xy"][name] = point_json(point);
       if (slider.force.num_components() > 0) {
         const Range range = fourier::range(slider.force, 0);
         entry["slider"]["force"] = {

@@ -65,7 +65,9 @@ void add_point(Text& text, const SweepScene& scene, const SweepResult& result, s
   const RodPoint& here = point.rods[r];
   if (result.computed.steady && here.max_abs.empty()) add(text, "  {:>14}", "unbounded");
   if (result.computed.steady && !here.max_abs.empty()) add(text, "  {:>14.6g}", here.max_abs.front());
-  if (result.computed.shape)
+  if (result.computed.shape && here.steady == SteadyStatus::singular)
+    add(text, "  {:>15}  {:>14}", "unbounded", "unbounded");
+  else if (result.computed.shape)
     add(text, "  {:>15.6g}  {:>14.6g}", here.deflection.value_or(nan),
         here.bending_moment.value_or(nan) * units.moment);
   if (has_theory(scene, result))

@@ -147,7 +147,7 @@ class MapSearch {
     if (surface_sought_ || grid_alone_ || at_nodes_.method != StabilityMethod::automatic) return;
     surface_sought_ = true;
     const std::vector<double>&x = mesh_.x().values, &y = mesh_.y().values;
-    constexpr std::size_t least_evaluations = 4000, points_for_one = 16;
+    constexpr std::size_t least_evaluations = 4000, points_for_one = 3;
     const DiscriminantSurface::Request request{
         .box = {{x.front(), y.front()}, {x.back(), y.back()}},
         .varies = options_.varies,
