@@ -13,6 +13,14 @@ using Eigen::Index;
 
 constexpr Index most_unknowns = 60;
 
+// What does not vary over the turn, without loads: it has the frequencies of the whole.
+HillSystem mean_part(const HillSystem& system) {
+  HillSystem mean{system.mass, system.damping, {}, {}};
+  for (std::size_t p = 0; p < 3; ++p)
+    if (system.stiffness[p].c.size() > 0) mean.stiffness[p] = fourier::resized(system.stiffness[p], 0);
+  return mean;
+}
+
 // Omega with r(Omega) = n by Omega <- Omega r(Omega)/n, which is exact where omega_1 does not depend on the speed.
 std::optional<NearestResonance> resonance_of(const HillSystem& system, double speed, int n) {
   constexpr int most_steps = 60;
@@ -38,13 +46,14 @@ double frequency_ratio(const HillSystem& system, double speed) {
 
 std::optional<NearestResonance> nearest_resonance(const HillSystem& system, double speed) {
   if (system.num_modes() > most_unknowns) return std::nullopt;
-  const double ratio = frequency_ratio(system, speed);
+  const HillSystem mean = mean_part(system);
+  const double ratio = frequency_ratio(mean, speed);
   constexpr double most_orders = 1e6;
   if (!(ratio > 0 && ratio < most_orders)) return std::nullopt;
   const int below = std::max(1, static_cast<int>(std::floor(ratio)));
   std::optional<NearestResonance> nearest;
   for (const int n : {below, below + 1}) {
-    const std::optional<NearestResonance> found = resonance_of(system, speed, n);
+    const std::optional<NearestResonance> found = resonance_of(mean, speed, n);
     if (found && (!nearest || std::abs(found->speed - speed) < std::abs(nearest->speed - speed))) nearest = found;
   }
   return nearest;
@@ -69,13 +78,14 @@ std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Ind
   const Index N = fourier::fast_length(std::max<Index>(4 * H + 2, 32));
   const Eigen::MatrixXd matrices = fourier::synthesise(C, N), loads = fourier::synthesise(h, N);
   Eigen::MatrixXd motion(num_modes, N);
+  dense::Lu<double> lu;
   int sign = 0;
   for (Index j = 0; j < N; ++j) {
-    const Eigen::Map<const Eigen::MatrixXd> at(matrices.col(j).data(), I, I);
-    const dense::Lu<double> lu(at);
+    lu.compute(Eigen::Map<const Eigen::MatrixXd>(matrices.col(j).data(), I, I));
+    const Eigen::VectorXd pivots = lu.pivots();
     // The determinant keeps its sign over the turn, or C is singular between two angles.
-    const int now = lu.sign() * (((lu.pivots().array() < 0).count() % 2 == 0) ? 1 : -1);
-    if (!(lu.rcond() > 0) || (j > 0 && now != sign)) return std::nullopt;
+    const int now = lu.sign() * (((pivots.array() < 0).count() % 2 == 0) ? 1 : -1);
+    if (!(pivots.cwiseAbs().minCoeff() > 0) || (j > 0 && now != sign)) return std::nullopt;
     sign = now;
     const Eigen::VectorXd u = lu.solve(Eigen::VectorXd(loads.col(j)));
     motion.col(j) = u.head(num_modes);

@@ -58,6 +58,8 @@ struct RodShape {
 // True maxima over (x, tau) of w and EJ w'', kept modes plus the quasi-static tail: modes beyond I follow their load
 // (f0, f1 and the coupling to the kept modes) without inertia, (1 + alpha_c d/dt) w'''' = p, summed in closed form.
 [[nodiscard]] RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q);
+[[nodiscard]] RodPeak largest_deflection(const Body& link, const RodCoefficients& rod, double speed,
+                                         const FourierSeries& q);
 
 // w and EJ w'' at x_j (columns) and tau (rows of the result are x, columns tau), tail included; for pictures and tests.
 struct RodField {

@@ -376,20 +376,36 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::Matri
 
 }  // namespace
 
+namespace {
+
+// 8 a wave.
+Eigen::VectorXd places_along(double l, Eigen::Index I) {
+  return Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l);
+}
+Eigen::MatrixXd over_turn_finely(const FourierSeries& T) {
+  return fourier::synthesise(T, angles_from(8 * (T.num_harmonics() + 1)));
+}
+
+}  // namespace
+
+RodPeak largest_deflection(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
+  const Eigen::Index I = q.num_components();
+  const FourierSeries T = time_functions(link, rod, speed, q);
+  const ShapeTable& table = shape_table(link.length, I, shear_flexibility(link), places_along(link.length, I));
+  return peak(table, T, over_turn_finely(T), 0);
+}
+
 RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
   const Eigen::Index I = q.num_components();
   const double l = link.length;
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l);  // 8 a wave
-  const auto sampled = [](const FourierSeries& T) {
-    return fourier::synthesise(T, angles_from(8 * (T.num_harmonics() + 1)));
-  };
+  const Eigen::VectorXd x = places_along(l, I);
   const FourierSeries T = time_functions(link, rod, speed, q);
-  const Eigen::MatrixXd time = sampled(T);
+  const Eigen::MatrixXd time = over_turn_finely(T);
   RodShape result;
   result.deflection = peak(shape_table(l, I, shear_flexibility(link), x), T, time, 0);
   if (link.elastic->shear) {
     const FourierSeries rotation = moment_functions(link, speed, q, T);
-    result.bending_moment = peak(shape_table(l, I, 0, x), rotation, sampled(rotation), 2);
+    result.bending_moment = peak(shape_table(l, I, 0, x), rotation, over_turn_finely(rotation), 2);
   } else {
     result.bending_moment = peak(shape_table(l, I, 0, x), T, time, 2);
   }
