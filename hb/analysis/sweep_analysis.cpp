@@ -132,8 +132,9 @@ class SweepRun {
   Between search(std::size_t r, std::size_t k) const {
     Between found;
     const SweepPoint &a = result_.points[k], &b = result_.points[k + 1];
-    if (!a.problem.empty() || !b.problem.empty()) return found;
-    if (work_.ends_early()) {
+    const bool ended = work_.ends_early() || a.problem == not_computed || b.problem == not_computed;
+    if (!ended && !(a.problem.empty() && b.problem.empty())) return found;
+    if (ended) {
       found.bands.not_excluded.push_back({a.x, b.x});
       return found;
     }
@@ -178,7 +179,7 @@ class SweepRun {
       const SearchedInterval& found = between_[i * intervals() + k].bands;
       for (const StabilitySample& sample : found.samples) samples.push_back(&sample);
       rod.boundaries.insert(rod.boundaries.end(), found.boundaries.begin(), found.boundaries.end());
-      rod.not_excluded.insert(rod.not_excluded.end(), found.not_excluded.begin(), found.not_excluded.end());
+      for (const std::array<double, 2>& place : found.not_excluded) add_place(place, rod.not_excluded);
     }
     rod.bands = unstable_bands(samples, rod.boundaries);
     for (const StabilityBoundary& boundary : rod.boundaries) {
@@ -187,6 +188,14 @@ class SweepRun {
                                           rod.name, scene_.axis().path, boundary.x, boundary.error));
     }
     return rod.boundaries.size();
+  }
+
+  // Touching ones are one.
+  static void add_place(const std::array<double, 2>& place, std::vector<std::array<double, 2>>& places) {
+    if (!places.empty() && places.back()[1] == place[0])
+      places.back()[1] = place[1];
+    else
+      places.push_back(place);
   }
 
   std::string why_not_searched() const {

@@ -58,6 +58,7 @@ struct RodShape {
 // True maxima over (x, tau) of w and EJ w'', kept modes plus the quasi-static tail: modes beyond I follow their load
 // (f0, f1 and the coupling to the kept modes) without inertia, (1 + alpha_c d/dt) w'''' = p, summed in closed form.
 [[nodiscard]] RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q);
+// The first of them alone.
 [[nodiscard]] RodPeak largest_deflection(const Body& link, const RodCoefficients& rod, double speed,
                                          const FourierSeries& q);
 

@@ -245,6 +245,20 @@ TEST(NonlinearFromCpp, TheCycleOfABentRodIsTheWorstOfAllPlacesFibresAndAngles) {
   EXPECT_LT(cycle.max_abs, found.rods[0].stress->axial + found.rods[0].stress->bending);
 }
 
+TEST(NonlinearFromCpp, TellsHowFarTheFirstBranchHasCome) {
+  std::size_t told = 0, passed = 0;
+  const NonlinearSweepOptions options{.advanced = [&](std::size_t values) { ++told, passed += values; }};
+  SweepRequest request;
+  request.modes = 1;
+  request.only = with_stability;
+  request.x = along("rpm", 300, 500, 21);
+  const NonlinearAlong found = nonlinear_sweep(read_scene(nonlinear_scenes + "six_link.toml"), request, options);
+  ASSERT_TRUE(found.branches.followed.back());
+  EXPECT_GT(told, 3u);
+  EXPECT_GE(passed, 15u);  // those behind the last step but one
+  EXPECT_LE(passed, 20u);
+}
+
 TEST(NonlinearFromCpp, StopEndsWithWhatIsThere) {
   int asked = 0;
   const NonlinearSweepOptions options{.stop = [&] { return ++asked > 200; }};

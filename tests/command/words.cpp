@@ -195,6 +195,10 @@ TEST(Forecast, IsOfAllStepsByThePartsOfEachKind) {
   forecast.begin(180, 90, "edge", {});  // half of them are known from an earlier run
   EXPECT_EQ(said([&] { now = 12.1, forecast.advance(10); }),
             "hb: the map takes about 44 s, as later parts show (1 thread); --threads and --time-limit change that\n");
+
+  hb::tools::Forecast alone("the branch", 0, false, [&now] { return now; });
+  alone.begin(100, 1);
+  EXPECT_EQ(said([&] { now += 2, alone.advance(4); }), "hb: the branch takes about 50 s; --time-limit changes that\n");
 }
 
 // Imaginary parts were folded to half the speed without a word; a mode of 88 Hz was shown as 0.3 rad/s.
@@ -425,6 +429,12 @@ TEST_F(Words, TheTimeLimitIsForTheWholeCommandAndGivesWhatIsThere) {
   EXPECT_NE(found["notes"][0].get<std::string>().find("ended before the answer was complete"), std::string::npos);
   EXPECT_TRUE(found["rods"]["AB"]["max_abs"][0].is_array());
   EXPECT_TRUE(found["rods"]["AB"]["max_abs"].back().is_null());
+  // What was not computed is neither stable nor free of bands.
+  EXPECT_EQ(found["not_excluded"]["AB"].back()[1], 6000) << found["not_excluded"]["AB"];
+  const std::string text =
+      hb("sweep " + scene("six_link") + " --rpm 200:6000:0.1 --only steady,stability --time-limit 1").out;
+  EXPECT_NE(text.find("; no answer at "), std::string::npos) << text;
+  EXPECT_EQ(text.find("elsewhere"), std::string::npos) << text;
   const CommandResult map =
       hb("map " + scene("six_link") + " --x rpm=200:6000:400 --y AB.J=20:200:300 --time-limit 1 --json");
   EXPECT_EQ(map.status, 3) << map.err;

@@ -195,6 +195,10 @@ TEST(RodShape, PeaksAreTrueMaximaOfTheField) {
       EXPECT_LE(shape.deflection.max_abs, w * (1 + 1e-3));
       EXPECT_GE(shape.bending_moment.max_abs, moment * (1 - 10 * eps));
       EXPECT_LE(shape.bending_moment.max_abs, moment * (1 + 1e-3));
+      const RodPeak alone = largest_deflection(rod, coefficients.rods[r], Omega, q);
+      EXPECT_EQ(alone.max_abs, shape.deflection.max_abs);
+      EXPECT_EQ(alone.x, shape.deflection.x);
+      EXPECT_EQ(alone.crank_angle, shape.deflection.crank_angle);
     }
 }
 

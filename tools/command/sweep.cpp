@@ -27,6 +27,7 @@
 #include "tools/pictures/band_figures.hpp"
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/report_data.hpp"
+#include "tools/work/forecast.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/keep.hpp"
 #include "tools/work/ranks.hpp"
@@ -48,6 +49,17 @@ void add_bands(const nlohmann::ordered_json& document, const SweepScene& swept, 
 void say_stages(const SweepScene& swept, const SweepResult& result, const std::optional<NonlinearSweep>& branches) {
   fmt::print(stderr, "\n{}{}{}", stages_table(result.stages), branches ? stages_table(branches->stages) : "",
              accuracy_table(swept.settings()));
+}
+
+NonlinearSweep followed_branches(const SweepScene& swept, NonlinearSweepOptions options, const SweepFlags& flags,
+                                 const Output& out) {
+  const InterruptGuard guard(!out.folder);
+  Forecast forecast("the branch from the first value", 0);
+  forecast.begin(swept.axis().values.size(), 1);
+  options.advanced = [&](std::size_t values) { forecast.advance(values); };
+  NonlinearSweep branches = nonlinear_sweep(swept, options);
+  if (branches.stopped) say_time_limit(flags.time_limit, stop_of(), branches.shortfalls);
+  return branches;
 }
 
 int run_sweep_command(const SweepFlags& flags) {
@@ -84,12 +96,8 @@ int run_sweep_command(const SweepFlags& flags) {
     SharedWork work(out.threads);
     measured = compare_measured(flags.measured, {input.source, set}, request, swept, branches_asked, work);
   }
-  std::optional<NonlinearSweep> branches;
-  if (branches_asked) {
-    const InterruptGuard guard(!out.folder);
-    branches = nonlinear_sweep(swept, *branches_asked);
-    if (branches->stopped) say_time_limit(flags.time_limit, stop_of(), branches->shortfalls);
-  }
+  const std::optional<NonlinearSweep> branches =
+      branches_asked ? std::optional(followed_branches(swept, *branches_asked, flags, out)) : std::nullopt;
   nlohmann::ordered_json document =
       out.json || folder || !bands_asked.empty() ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
   if (!bands_asked.empty()) document["bands"] = sweep_bands_json(document, bands);

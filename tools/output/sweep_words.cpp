@@ -110,11 +110,11 @@ std::optional<double> distance_to_boundary(const SweepRod& rod, double x) {
 std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
   if (!result.computed.stability || result.rods.empty()) return "";
   const Counts n = count_verdicts(result);
+  const std::size_t none = result.points.size() - n.answers;
+  const std::string rest = none > 0 ? fmt::format("; no answer at {}", counted(none, "point")) : "";
   std::vector<std::string> bands;
   for (const auto& [from, to] : unstable_anywhere(result)) bands.push_back(span_text(from, to));
   if (n.unstable == 0 && bands.empty()) {
-    const std::size_t none = result.points.size() - n.answers;
-    const std::string rest = none > 0 ? fmt::format("; no answer at {}", counted(none, "point")) : "";
     if (n.answers == 0) return "no answer at any point";
     if (n.undecided > 0) return fmt::format("undecided at {} of {} points{}", n.undecided, n.answers, rest);
     return fmt::format("{} at all {} points{}{}",
@@ -138,8 +138,8 @@ std::string sweep_verdict(const SweepScene& scene, const SweepResult& result) {
                          n.bounded == 0    ? "stable"
                          : n.stable() == 0 ? "bounded"
                                            : "bounded or stable",
-                         result.searched_bands ? "elsewhere" : "at the others");
-  return mechanism_verdict(worst_along(result)) + where;
+                         result.searched_bands && none == 0 ? "elsewhere" : "at the others");
+  return mechanism_verdict(worst_along(result)) + where + rest;
 }
 
 std::string sweep_title_verdict(const SweepResult& result) {

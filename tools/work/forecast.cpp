@@ -1,6 +1,7 @@
 #include "tools/work/forecast.hpp"
 
 #include <fmt/core.h>
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -120,9 +121,11 @@ void Forecast::look() {
   constexpr double other = 1.5;
   const bool news = said_ == 0 ? left > 0 && all >= worth_saying : all > other * said_ || all < said_ / other;
   if (!news) return;
-  fmt::print(stderr, "{}: {} takes {} {}{} ({} {}); --threads and --time-limit change that\n", speaker(), what_,
-             at_most_ ? "at most" : "about", duration(all), said_ > 0 ? ", as later parts show" : "", num_threads_,
-             num_threads_ == 1 ? "thread" : "threads");
+  const std::string change = num_threads_ == 0 ? "; --time-limit changes that"
+                                               : fmt::format(" ({} {}); --threads and --time-limit change that",
+                                                             num_threads_, num_threads_ == 1 ? "thread" : "threads");
+  fmt::print(stderr, "{}: {} takes {} {}{}{}\n", speaker(), what_, at_most_ ? "at most" : "about", duration(all),
+             said_ > 0 ? ", as later parts show" : "", change);
   said_ = all;
 }
 

@@ -22,7 +22,7 @@ class Forecast {
   // Seconds since some moment.
   using Clock = std::function<double()>;
 
-  // `what`: the work in words; `at_most`: it may end before all parts.
+  // `what`: the work in words; num_threads 0: one, however many there are; `at_most`: it may end before all parts.
   Forecast(std::string what, int num_threads, bool at_most = false, Clock clock = steady_seconds);
   // A step of so many parts, of which `known` take no time.
   void begin(std::size_t parts, std::size_t known = 0, const std::string& kind = {}, PartsAhead ahead = {});

@@ -144,8 +144,19 @@ class Sweeper {
     }
     PeriodicMotion motion = start.motion;
     motion.parameter = options_.low;
+    if (asked_.advanced) options_.reached = [this, passed = std::size_t(1)](double x) mutable { tell(x, passed); };
     add_branch(follow(motion, 1), nullptr);
+    options_.reached = {};
     from_below_ = !result_.branches.empty();
+  }
+
+  // The values up to x, of which so many were told before.
+  void tell(double x, std::size_t& passed) const {
+    const std::vector<double>& values = scene_.axis().values;
+    const auto there = static_cast<std::size_t>(std::ranges::upper_bound(values, x) - values.begin());
+    if (there <= passed) return;
+    asked_.advanced(there - passed);
+    passed = there;
   }
 
   // Where the branch from below does not lead to it.

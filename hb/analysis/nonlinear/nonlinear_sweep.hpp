@@ -91,6 +91,8 @@ struct NonlinearSweepOptions {
   int turns = 1;  // motions of up to this many turns, a power of two: from period doublings
   std::vector<BranchStart> starts = {};  // beside the motions that are looked for
   std::function<bool()> stop = {};  // true ends the work with what is there
+  // Told how many more of the axis' values the branch from the first one has come to.
+  std::function<void(std::size_t values)> advanced = {};
 };
 
 // Throws RequestError for a [hill] scene, one without elastic links or with shear, turns that are no power of two, and

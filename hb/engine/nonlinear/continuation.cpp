@@ -75,6 +75,7 @@ class Follower {
       if (outside || (options_.end_at_stop && branch_.points.back().stop)) return ended(BranchEnd::range);
       if (closed) return ended(BranchEnd::closed);
       branch_.points.push_back(std::move(point));
+      if (options_.reached) options_.reached(branch_.points.back().motion.parameter);
       fit_harmonics();
     }
   }

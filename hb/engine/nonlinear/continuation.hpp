@@ -30,6 +30,7 @@ struct ContinuationOptions {
   StabilityOptions exponents = {};
   double location_tolerance = 1e-8;  // of a fold's or bifurcation's parameter, relative
   std::function<bool()> stop = {};  // true ends the work
+  std::function<void(double parameter)> reached = {};  // told where each point of the branch is, as soon as it is found
 };
 
 // A motion and the branch's direction through it.
