@@ -18,6 +18,7 @@
 #include "tools/command/scene_input.hpp"
 #include "tools/command/sweep_axis.hpp"
 #include "tools/command/sweep_flags.hpp"
+#include "tools/command/sweep_forecast.hpp"
 #include "tools/command/theory_flags.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/sweep_bands.hpp"
@@ -81,7 +82,7 @@ int run_report(const ReportFlags& flags) {
   SharedWork work(out.threads, nullptr, {}, time_is_up, "the page");
   const SweepResult result = run_sweep(*along, work);
   std::optional<NonlinearSweep> found;
-  if (nonlinear) found = nonlinear_sweep(*along, branches_asked);
+  if (nonlinear) found = announced_branches(*along, branches_asked);
   const NonlinearSweep* branches = found ? &*found : nullptr;
   ReportData data(scene);
   data.add_sweep(*along, result, places_along(*along, work, branches), branches);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "hb/analysis/nonlinear/nonlinear_sweep.hpp"
 #include "lib/scene/scene_reader.hpp"
@@ -27,7 +28,6 @@
 #include "tools/pictures/band_figures.hpp"
 #include "tools/pictures/sweep_figures.hpp"
 #include "tools/report/report_data.hpp"
-#include "tools/work/forecast.hpp"
 #include "tools/work/interrupts.hpp"
 #include "tools/work/keep.hpp"
 #include "tools/work/ranks.hpp"
@@ -51,13 +51,9 @@ void say_stages(const SweepScene& swept, const SweepResult& result, const std::o
              accuracy_table(swept.settings()));
 }
 
-NonlinearSweep followed_branches(const SweepScene& swept, NonlinearSweepOptions options, const SweepFlags& flags,
-                                 const Output& out) {
-  const InterruptGuard guard(!out.folder);
-  Forecast forecast("the branch from the first value", 0);
-  forecast.begin(swept.axis().values.size(), 1);
-  options.advanced = [&](std::size_t values) { forecast.advance(values); };
-  NonlinearSweep branches = nonlinear_sweep(swept, options);
+NonlinearSweep followed(const SweepScene& swept, NonlinearSweepOptions options, const SweepFlags& flags, bool files) {
+  const InterruptGuard guard(!files);
+  NonlinearSweep branches = announced_branches(swept, std::move(options));
   if (branches.stopped) say_time_limit(flags.time_limit, stop_of(), branches.shortfalls);
   return branches;
 }
@@ -97,7 +93,7 @@ int run_sweep_command(const SweepFlags& flags) {
     measured = compare_measured(flags.measured, {input.source, set}, request, swept, branches_asked, work);
   }
   const std::optional<NonlinearSweep> branches =
-      branches_asked ? std::optional(followed_branches(swept, *branches_asked, flags, out)) : std::nullopt;
+      branches_asked ? std::optional(followed(swept, *branches_asked, flags, out.folder.has_value())) : std::nullopt;
   nlohmann::ordered_json document =
       out.json || folder || !bands_asked.empty() ? sweep_json(swept, result, out.stats) : nlohmann::ordered_json();
   if (!bands_asked.empty()) document["bands"] = sweep_bands_json(document, bands);

@@ -38,4 +38,11 @@ void say_forecast_of(const SweepScene& swept, const Output& out) {
   say_expected_of(swept, out.threads);
 }
 
+NonlinearSweep announced_branches(const SweepScene& swept, NonlinearSweepOptions options) {
+  Forecast forecast("the branch from the first value", 0);
+  forecast.begin(swept.axis().values.size(), 1);
+  options.advanced = [&](std::size_t values) { forecast.advance(values); };
+  return nonlinear_sweep(swept, options);
+}
+
 }  // namespace hb::tools

@@ -18,7 +18,7 @@ class ByteBlock {
   // Pairs (re, im) of c_0 .. c_H as floats, each component as far as its coefficients exceed `relative` of its largest.
   [[nodiscard]] nlohmann::ordered_json series(const FourierSeries& series, double relative = 1e-5);
   // The same of components of one size and unit, as a link's modes are: relative to the largest of all.
-  [[nodiscard]] nlohmann::ordered_json alike(const FourierSeries& series, double relative = 1e-5);
+  [[nodiscard]] nlohmann::ordered_json alike(const FourierSeries& series, double relative = 3e-6);
 
   [[nodiscard]] std::string base64() const;
 
