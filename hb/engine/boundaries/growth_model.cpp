@@ -1,7 +1,6 @@
 #include "hb/engine/boundaries/growth_model.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -13,14 +12,11 @@ using cplx = std::complex<double>;
 // The last term of an interpolation may be small by chance: its divided difference is taken for a tenth of the one
 // before over the distance of the nodes at least, and the term three times.
 constexpr double safety = 3, least_part = 0.1;
-// Of more nodes than these the term before the last one counts instead, as for a pair apart.
-constexpr std::size_t few_nodes = 4;
-constexpr double of_last = 10, of_next_to_last = 3;
 
 }  // namespace
 
-GrowthNode pair_node(double x, cplx a, cplx b, double turns, double error_a, double error_b) {
-  const cplx apart(a.real() - b.real(), a.imag() - b.imag() - turns);
+GrowthNode pair_node(double x, cplx a, cplx b, double error_a, double error_b) {
+  const cplx apart(a.real() - b.real(), a.imag() - b.imag() - std::round(a.imag() - b.imag()));
   const double error = 0.5 * (error_a + error_b);
   return {x,     0.5 * (a.real() + b.real()),      b.imag() + 0.5 * apart.imag(), 0.25 * apart * apart,
           error, (std::abs(apart) + error) * error};
@@ -40,78 +36,52 @@ std::vector<double> probes(double from, double to) {
 }
 
 GrowthModel::GrowthModel(std::vector<GrowthNode> nodes) : nodes_(std::move(nodes)) {
-  assert(nodes_.size() <= most_nodes);
-  for (std::size_t k = 0; k < nodes_.size(); ++k) {
-    const GrowthNode& node = nodes_[k];
+  for (GrowthNode& node : nodes_) {
     real_ = real_ && std::abs(node.Q.imag()) <= 4 * node.Q_error + 1e-14 * std::abs(node.Q);
-    growth_[k] = node.growth;
-    angle_[k] = node.angle;
-    Q_[k] = node.Q;
+    node.angle -= std::round(node.angle - nodes_.front().angle);
   }
-  const auto divide = [&](auto& d) {
-    for (std::size_t order = 1; order < nodes_.size(); ++order)
-      for (std::size_t k = nodes_.size() - 1; k >= order; --k)
-        d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
-  };
-  divide(growth_);
-  divide(angle_);
-  divide(Q_);
 }
 
-// Newton's form through the first `count` nodes.
-template <class Value>
-Value GrowthModel::at(double x, const std::array<Value, most_nodes>& terms, std::size_t count) const {
-  Value sum = terms[count - 1];
-  for (std::size_t k = count - 1; k-- > 0;) sum = terms[k] + (x - nodes_[k].x) * sum;
-  return sum;
-}
-
-template <class Value>
-double GrowthModel::last_terms(double x, const std::array<Value, most_nodes>& terms) const {
+// Newton's divided differences; value and error.
+template <class Value, class Of>
+std::pair<Value, double> GrowthModel::interpolated(double x, const Of& of) const {
   const std::size_t n = nodes_.size();
-  if (n < 3) return HUGE_VAL;
-  double before = 1;
-  for (std::size_t k = 0; k + 2 < n; ++k) before *= x - nodes_[k].x;
-  const double last = std::abs(before * (x - nodes_[n - 2].x));
-  if (n > few_nodes)
-    return std::max(of_last * std::abs(terms[n - 1]) * last, of_next_to_last * std::abs(terms[n - 2] * before));
-  const auto [low, high] = std::ranges::minmax(nodes_, {}, &GrowthNode::x);
-  return safety * std::max(std::abs(terms[n - 1]), least_part * std::abs(terms[n - 2]) / (high.x - low.x)) * last;
-}
-
-// Of few nodes the errors at the two ends count in proportion; what they do to higher terms these show. Of more the
-// errors of all, by Lagrange's polynomials.
-GrowthModel::Errors GrowthModel::errors(double x) const {
-  Errors sum{last_terms(x, growth_), last_terms(x, Q_)};
-  const bool few = nodes_.size() <= few_nodes;
-  const std::size_t count = few ? 2 : nodes_.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    double weight = 1;
-    for (std::size_t j = 0; j < count; ++j)
-      if (j != k) weight *= (x - nodes_[j].x) / (nodes_[k].x - nodes_[j].x);
-    sum.growth += std::abs(weight) * nodes_[k].growth_error;
-    sum.Q += std::abs(weight) * nodes_[k].Q_error;
+  std::array<Value, 4> d{};
+  for (std::size_t k = 0; k < n; ++k) d[k] = of(nodes_[k]);
+  Value sum = d[0];
+  double product = 1;
+  for (std::size_t order = 1; order < n; ++order) {
+    for (std::size_t k = n - 1; k >= order; --k) d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
+    product *= x - nodes_[order - 1].x;
+    sum += d[order] * product;
   }
-  return sum;
+  if (n < 3) return {sum, HUGE_VAL};
+  const auto [low, high] = std::ranges::minmax(nodes_, {}, &GrowthNode::x);
+  return {sum, std::max(std::abs(d[n - 1]), least_part * std::abs(d[n - 2]) / (high.x - low.x)) * std::abs(product)};
 }
 
 bool GrowthModel::consistent() const {
   constexpr double part = 0.1, angle = 0.01;
+  GrowthModel others({nodes_.begin(), nodes_.end() - 1});
   const GrowthNode& last = nodes_.back();
   double scale = 0, moved = 0;
   for (const GrowthNode& node : nodes_) {
     scale = std::max(scale, std::abs(node.Q));
     moved = std::max(moved, std::abs(node.angle - last.angle));
   }
-  const std::size_t count = nodes_.size() - 1;
-  return std::abs(at(last.x, Q_, count) - last.Q) <= part * scale &&
-         std::abs(at(last.x, angle_, count) - last.angle) <= angle + part * moved;
+  const cplx Q = others.interpolated<cplx>(last.x, [](const GrowthNode& node) { return node.Q; }).first;
+  const double turns = others.interpolated<double>(last.x, [](const GrowthNode& node) { return node.angle; }).first;
+  return std::abs(Q - last.Q) <= part * scale && std::abs(turns - last.angle) <= angle + part * moved;
 }
 
 GrowthBounds GrowthModel::operator()(double x) const {
-  const double growth = at(x, growth_, nodes_.size());
-  const cplx Q = at(x, Q_, nodes_.size());
-  const auto [growth_error, E] = errors(x);
+  const auto [growth, growth_change] = interpolated<double>(x, [](const GrowthNode& node) { return node.growth; });
+  const auto [Q, Q_change] = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; });
+  double growth_error = safety * growth_change, E = safety * Q_change;
+  // Errors at the two ends count in proportion; what they do to higher terms these show.
+  const double part = (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);
+  growth_error += (1 - part) * nodes_[0].growth_error + part * nodes_[1].growth_error;
+  E += (1 - part) * nodes_[0].Q_error + part * nodes_[1].Q_error;
   double low, high;
   if (real_) {
     low = std::sqrt(std::max(Q.real() - E, 0.0));
@@ -125,10 +95,16 @@ GrowthBounds GrowthModel::operator()(double x) const {
   return {growth - growth_error + low, growth + growth_error + high};
 }
 
-double GrowthModel::rise() const { return real_Q(centre()) - std::max(nodes_[0].Q.real(), nodes_[1].Q.real()); }
+double GrowthModel::rise() const {
+  const double x = centre();
+  const double Q = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; }).first.real();
+  return Q - std::max(nodes_[0].Q.real(), nodes_[1].Q.real());
+}
 
 double GrowthModel::centre() const {
-  const auto value = [&](double x) { return real_Q(x); };
+  const auto value = [&](double x) {
+    return interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; }).first.real();
+  };
   double low = nodes_[0].x, high = nodes_[1].x;
   // The best of a few places, then golden sections about it.
   constexpr int places = 16;

@@ -14,14 +14,14 @@ namespace hb {
 struct GrowthNode {
   double x = 0;
   double growth = 0;  // of the single strand, or the mean of the two
-  double angle = 0;  // imaginary part of the single strand, or of the middle of the two; counted on from node to node
+  double angle = 0;  // imaginary part of the single strand, or of the middle of the two; modulo 1
   std::complex<double> Q;
   double growth_error = 0, Q_error = 0;
 };
 
-// Two strands, `turns` whole turns nearer to each other than a - b; errors are those of the exponents.
-[[nodiscard]] GrowthNode pair_node(double x, std::complex<double> a, std::complex<double> b, double turns,
-                                   double error_a, double error_b);
+// Two strands; errors are those of the exponents.
+[[nodiscard]] GrowthNode pair_node(double x, std::complex<double> a, std::complex<double> b, double error_a,
+                                   double error_b);
 
 // Between two places, where a model is looked at: dense at both ends, where an interpolation's error vanishes with the
 // distance.
@@ -33,16 +33,12 @@ struct GrowthBounds {
 
 class GrowthModel {
  public:
-  static constexpr std::size_t most_nodes = 8;
-
-  // Between x of the first two nodes; up to six more beside them, nearest first. Without these nothing is bounded.
+  // Between x of the first two nodes; up to two more beside them, nearest first. Without these nothing is bounded.
   explicit GrowthModel(std::vector<GrowthNode> nodes);
 
   // Larger growth of the two at x, with the interpolation's error: the difference between the polynomials through all
-  // nodes and through all but the last one, of more than four nodes also of the one before, and the nodes' errors.
+  // nodes and through all but the last one.
   GrowthBounds operator()(double x) const;
-  // The error of Q at x.
-  double Q_error(double x) const { return errors(x).Q; }
   // All nodes but one predict that one.
   bool consistent() const;
   // Where the two come nearest to each other or lock deepest.
@@ -54,21 +50,10 @@ class GrowthModel {
   double mean_growth() const { return 0.5 * (nodes_[0].growth + nodes_[1].growth); }
 
  private:
-  using Real = std::array<double, most_nodes>;
-  using Complex = std::array<std::complex<double>, most_nodes>;
-  struct Errors {
-    double growth, Q;
-  };
-  template <class Value>
-  Value at(double x, const std::array<Value, most_nodes>& terms, std::size_t count) const;
-  template <class Value>
-  double last_terms(double x, const std::array<Value, most_nodes>& terms) const;
-  Errors errors(double x) const;
-  double real_Q(double x) const { return at(x, Q_, nodes_.size()).real(); }
+  template <class Value, class Of>
+  std::pair<Value, double> interpolated(double x, const Of& of) const;
 
   std::vector<GrowthNode> nodes_;
-  Real growth_{}, angle_{};  // divided differences
-  Complex Q_{};
   bool real_ = true;  // Q is real: a conjugate pair modulo i
 };
 
