@@ -42,7 +42,6 @@ TEST(ByteBlock, SeriesAreKeptAsFarAsEachComponentNeeds) {
   series.c(1, 1) = 1e-9;  // small, and the largest of its component
   ByteBlock block;
   EXPECT_EQ(block.series(series), Json({0, {3, 1}}));
-  EXPECT_EQ(block.alike(series), Json({48, {3, 0}}));
 }
 
 TEST(ByteBlock, NumbersBeyondAFloatAreNoNumbersRatherThanInfinite) {

@@ -43,13 +43,14 @@ Json ByteBlock::floats(std::span<const double> values) {
   return {offset, values.size()};
 }
 
-Json ByteBlock::cut_series(const FourierSeries& series, const Eigen::VectorXd& negligible) {
+Json ByteBlock::series(const FourierSeries& series, double relative) {
   align();
   const std::size_t offset = bytes_.size();
   Json harmonics = Json::array();
   for (Eigen::Index i = 0; i < series.num_components(); ++i) {
     Eigen::Index H = series.num_harmonics();
-    while (H > 0 && std::abs(series.c(i, H)) <= negligible(i)) --H;
+    const double largest = H >= 0 ? series.c.row(i).cwiseAbs().maxCoeff() : 0;
+    while (H > 0 && std::abs(series.c(i, H)) <= relative * largest) --H;
     for (Eigen::Index n = 0; n <= H; ++n) {
       append(as_float(series.c(i, n).real()));
       append(as_float(series.c(i, n).imag()));
@@ -57,17 +58,6 @@ Json ByteBlock::cut_series(const FourierSeries& series, const Eigen::VectorXd& n
     harmonics.push_back(H);
   }
   return {offset, std::move(harmonics)};
-}
-
-Json ByteBlock::series(const FourierSeries& series, double relative) {
-  Eigen::VectorXd negligible = Eigen::VectorXd::Zero(series.num_components());
-  if (series.num_harmonics() >= 0) negligible = relative * series.c.cwiseAbs().rowwise().maxCoeff();
-  return cut_series(series, negligible);
-}
-
-Json ByteBlock::alike(const FourierSeries& series, double relative) {
-  const double largest = series.c.size() > 0 ? series.c.cwiseAbs().maxCoeff() : 0;
-  return cut_series(series, Eigen::VectorXd::Constant(series.num_components(), relative * largest));
 }
 
 std::string ByteBlock::base64() const { return tools::base64(bytes_); }

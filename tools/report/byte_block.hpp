@@ -17,8 +17,6 @@ class ByteBlock {
   [[nodiscard]] nlohmann::ordered_json floats(std::span<const double> values);
   // Pairs (re, im) of c_0 .. c_H as floats, each component as far as its coefficients exceed `relative` of its largest.
   [[nodiscard]] nlohmann::ordered_json series(const FourierSeries& series, double relative = 1e-5);
-  // The same of components of one size and unit, as a link's modes are: relative to the largest of all.
-  [[nodiscard]] nlohmann::ordered_json alike(const FourierSeries& series, double relative = 3e-6);
 
   [[nodiscard]] std::string base64() const;
 
@@ -26,8 +24,6 @@ class ByteBlock {
   template <class Number>
   void append(Number value);
   void align();  // to the start of the next double
-  // Each component up to its last harmonic above what is negligible in it.
-  nlohmann::ordered_json cut_series(const FourierSeries& series, const Eigen::VectorXd& negligible);
 
   std::string bytes_;
 };

@@ -56,15 +56,12 @@ Json place_curves(const ReportPlace& place, ByteBlock& block) {
   const bool bent = place.motion.has_value();
   const int turns = bent ? place.motion->turns : 1;
   const SpeedResult shown = bent ? as_speed_result(*place.motion) : place.result;
-  // The unknowns of a [hill] scene may have any sizes.
-  const bool linkage = place.model->linkage() != nullptr;
-  const auto modes = [&](const FourierSeries& q) { return linkage ? block.alike(q) : block.series(q); };
   Json entry;
   entry["rods"] = Json::object();
   for (const RodResult& rod : shown.rods) {
     if (!is_known(rod)) continue;
     Json own;
-    own["q"] = modes(rod.steady->q);
+    own["q"] = block.series(rod.steady->q);
     // Coefficients of the rod are series over one turn.
     const RodModel* model = rod_model(*place.model, rod.name);
     if (place.model->linkage() && model && rod.shape && turns == 1) {
@@ -76,7 +73,7 @@ Json place_curves(const ReportPlace& place, ByteBlock& block) {
                                      shown.speed, rod.steady->q, block);
     }
     const auto linear = std::ranges::find(place.result.rods, rod.name, &RodResult::name);
-    if (bent && linear != place.result.rods.end() && is_known(*linear)) own["linear"] = modes(linear->steady->q);
+    if (bent && linear != place.result.rods.end() && is_known(*linear)) own["linear"] = block.series(linear->steady->q);
     entry["rods"][rod.name] = std::move(own);
   }
   if (shown.forces) {
