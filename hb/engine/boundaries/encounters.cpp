@@ -301,6 +301,35 @@ double Encounters::motion_towards(Place& p, Place& q, std::size_t a, std::size_t
   return motion;
 }
 
+namespace {
+
+// Two that are no farther apart than this part of what they decay do not grow by being together.
+constexpr double together = 0.2;
+
+// How near two strands come at both ends of the way from p to q, where together these are no more than they move.
+struct Approach {
+  double here, there;  // along the axis
+  double there_all;
+};
+
+std::optional<Approach> approach(const Strands& p, const Strands& q, const std::vector<double>& motion, std::size_t a,
+                                 std::size_t b) {
+  const double most = motion[a] + motion[b] + 1e-12, here = apart(p, a, b), point = meeting_point(p, a, b);
+  if (here > most) return std::nullopt;
+  double there = HUGE_VAL, there_all = HUGE_VAL;
+  for (std::size_t c = 0; c < q.all.size(); ++c)
+    for (std::size_t d = c + 1; d < q.all.size(); ++d) {
+      const double away = meeting_point(q, c, d) - point;
+      if (std::abs(away - 0.5 * std::round(2 * away)) > most || apart(q, c, d) > there) continue;
+      there = apart(q, c, d);
+      there_all = std::abs(folded(q.all[c].s - q.all[d].s));
+    }
+  if (!(here + there <= most)) return std::nullopt;
+  return Approach{here, there, there_all};
+}
+
+}  // namespace
+
 std::vector<Meeting> Encounters::meetings(Place& p, Place& q, double least) const {
   std::vector<Meeting> found;
   const Strands &sp = p.strands, &sq = q.strands;
@@ -309,42 +338,62 @@ std::vector<Meeting> Encounters::meetings(Place& p, Place& q, double least) cons
   for (std::size_t k = 0; k < motion.size(); ++k) mean_part.push_back(2 * mean_motion(sp, sq, k));
   for (std::size_t a = 0; a < sp.all.size(); ++a) {
     for (std::size_t b = a + 1; b < sp.all.size(); ++b) {
-      const double most = motion[a] + motion[b] + 1e-12, here = apart(sp, a, b);
-      if (here > most) continue;
+      const double most = motion[a] + motion[b];
       // What they move is more than what locks them, and than the growth that this gives.
-      if (highest_together(sp, a, b, most) < 0) continue;
-      const double point = meeting_point(sp, a, b);
-      if (point < -1e-12) continue;  // the conjugate pair's
-      double there = HUGE_VAL, there_all = HUGE_VAL;  // along the axis; in all
-      for (std::size_t c = 0; c < sq.all.size(); ++c)
-        for (std::size_t d = c + 1; d < sq.all.size(); ++d) {
-          const double away = meeting_point(sq, c, d) - point;
-          if (std::abs(away - 0.5 * std::round(2 * away)) > most || apart(sq, c, d) > there) continue;
-          there = apart(sq, c, d);
-          there_all = std::abs(folded(sq.all[c].s - sq.all[d].s));
-        }
-      if (!(here + there <= most)) continue;
+      if (apart(sp, a, b) > most + 1e-12 || highest_together(sp, a, b, most + 1e-12) < 0) continue;
+      if (meeting_point(sp, a, b) < -1e-12) continue;  // the conjugate pair's
+      const std::optional<Approach> near = approach(sp, sq, motion, a, b);
+      if (!near) continue;
       // Two that stay together, so near that nothing grows.
-      constexpr double together = 0.2, far = 0.9;
+      constexpr double far = 0.9;
       const double mean = 0.5 * (sp.all[a].s.real() + sp.all[b].s.real());
-      if (std::max(std::abs(folded(sp.all[a].s - sp.all[b].s)), there_all) < -together * mean && most < far) continue;
+      if (std::max(std::abs(folded(sp.all[a].s - sp.all[b].s)), near->there_all) < -together * mean && most < far)
+        continue;
       const double needed = needed_coupling(sp.all[a].s.real(), sp.all[b].s.real());
       const double exciting = exciting_motion(p, q, a, b, std::max(needed, least));
-      const double sum = here + there, moved = exciting + motion[a] + motion[b] - mean_part[a] - mean_part[b];
+      const double sum = near->here + near->there,
+                   moved = exciting + motion[a] + motion[b] - mean_part[a] - mean_part[b];
       if (exciting < 0 || sum > moved + 1e-12) continue;
       // Where they have hardly come nearer than they may have moved, nothing is known of the place.
-      const double part = sum > 0.15 * moved ? here / sum : 0.5;
+      const double part = sum > 0.15 * moved ? near->here / sum : 0.5;
       found.push_back({a, b, p.x() + (q.x() - p.x()) * part});
     }
   }
   return found;
 }
 
+std::vector<std::vector<std::size_t>> Encounters::crowds(Place& p, const Place& q,
+                                                         const std::vector<Meeting>& meetings) const {
+  const std::vector<double> motion = motions(p, q);
+  std::vector<std::vector<std::size_t>> found;
+  for (const Meeting& m : meetings) {
+    // A third one bends Q by kappa^2; one that stays with either of the two by no more than what they are apart.
+    constexpr double part = 0.5;
+    const double growth = growth_by_itself(p.strands, m.a), other = growth_by_itself(p.strands, m.b);
+    const double needed = part * needed_coupling(growth, other);
+    const auto bends = [&](std::size_t c, std::size_t one) {
+      const std::optional<Approach> near = approach(p.strands, q.strands, motion, c, one);
+      if (!near) return false;
+      const double here = std::abs(folded(p.strands.all[c].s - p.strands.all[one].s));
+      if (std::max(here, near->there_all) < -together * 0.5 * (growth + other)) return false;
+      return !(largest_coupling(p, c, one, Effect::quenches) < needed);
+    };
+    std::vector<std::size_t> crowd;
+    for (std::size_t c = 0; c < motion.size(); ++c)
+      if (c == m.a || c == m.b || bends(c, m.a) || bends(c, m.b)) crowd.push_back(c);
+    if (crowd.size() > 2 && std::ranges::find(found, crowd) == found.end()) found.push_back(std::move(crowd));
+  }
+  return found;
+}
+
 // Upper estimate of the coupling of two strands of p; infinite if they cannot be named.
-double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b) const {
+double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b, Effect effect) const {
   const Strand &s = p.strands.all[a], &t = p.strands.all[b];
   const ParametricCoupling* strength = coupling(p);
   if (strength == nullptr || s.mean.empty() || t.mean.empty()) return HUGE_VAL;
+  const auto coupled = [&](std::size_t from_n, std::size_t to_r, int order) {
+    return effect == Effect::quenches ? strength->either_way(from_n, to_r, order) : (*strength)(from_n, to_r, order);
+  };
   double largest = 0;
   for (const std::size_t n : s.mean) {
     for (const std::size_t r : t.mean) {
@@ -354,7 +403,7 @@ double Encounters::largest_coupling(Place& p, std::size_t a, std::size_t b) cons
         if (k == 0)
           largest = strength->symmetric() && in * ir > 0 ? largest : HUGE_VAL;
         else
-          largest = std::max(largest, k > 0 ? (*strength)(n, r, k) : (*strength)(r, n, -k));
+          largest = std::max(largest, k > 0 ? coupled(n, r, k) : coupled(r, n, -k));
         return std::isinf(largest);
       });
     }
@@ -405,7 +454,7 @@ bool Encounters::locked_throughout(Place& p, std::size_t k, Place& q) const {
   const double Q = half * half - std::min(mean, 0.0) * std::min(mean, 0.0);
   const double moved = motion[k] + motion[b];
   if (!(Q > moved * half)) return false;
-  return Q > moved * std::max(half, largest_coupling(p, k, b));
+  return Q > moved * std::max(half, largest_coupling(p, k, b, Effect::excites));
 }
 
 bool Encounters::leading_lock_holds(Place& p, Place& q) const {

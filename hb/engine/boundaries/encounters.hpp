@@ -56,6 +56,10 @@ class Encounters {
   // Pairs of p's strands that may come together on the way to q and make each other grow by more than `least`.
   std::vector<Meeting> meetings(Place& p, Place& q, double least) const;
 
+  // The strands of each meeting with all others of p that come near one of its two on the way to q and may bend it,
+  // whether they excite it or not; where there are such.
+  std::vector<std::vector<std::size_t>> crowds(Place& p, const Place& q, const std::vector<Meeting>& meetings) const;
+
   // Two exponents that give the growth at p are locked to each other and stay so to q, or those of q to p; or two
   // others that grow at both places.
   bool lock_holds(Place& p, Place& q) const;
@@ -75,7 +79,7 @@ class Encounters {
     return motion_towards(p, q, a, b, needed, Effect::excites);
   }
   bool quenched(Place& p, Place& q, std::size_t a, std::size_t b) const;
-  double largest_coupling(Place& p, std::size_t a, std::size_t b) const;
+  double largest_coupling(Place& p, std::size_t a, std::size_t b, Effect effect) const;
   bool same_lock(Place& p, std::size_t k, Place& q, std::size_t l) const;
   bool locked_throughout(Place& p, std::size_t k, Place& q) const;
   bool leading_lock_holds(Place& p, Place& q) const;

@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "hb/engine/boundaries/interpolation.hpp"
+
 namespace hb {
 
 namespace {
 
 using cplx = std::complex<double>;
-// The last term of an interpolation may be small by chance: its divided difference is taken for a tenth of the one
-// before over the distance of the nodes at least, and the term three times.
-constexpr double safety = 3, least_part = 0.1;
+constexpr double safety = 3;  // the last term of an interpolation is taken so many times
 
 }  // namespace
 
@@ -42,24 +42,6 @@ GrowthModel::GrowthModel(std::vector<GrowthNode> nodes) : nodes_(std::move(nodes
   }
 }
 
-// Newton's divided differences; value and error.
-template <class Value, class Of>
-std::pair<Value, double> GrowthModel::interpolated(double x, const Of& of) const {
-  const std::size_t n = nodes_.size();
-  std::array<Value, 4> d{};
-  for (std::size_t k = 0; k < n; ++k) d[k] = of(nodes_[k]);
-  Value sum = d[0];
-  double product = 1;
-  for (std::size_t order = 1; order < n; ++order) {
-    for (std::size_t k = n - 1; k >= order; --k) d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
-    product *= x - nodes_[order - 1].x;
-    sum += d[order] * product;
-  }
-  if (n < 3) return {sum, HUGE_VAL};
-  const auto [low, high] = std::ranges::minmax(nodes_, {}, &GrowthNode::x);
-  return {sum, std::max(std::abs(d[n - 1]), least_part * std::abs(d[n - 2]) / (high.x - low.x)) * std::abs(product)};
-}
-
 bool GrowthModel::consistent() const {
   constexpr double part = 0.1, angle = 0.01;
   GrowthModel others({nodes_.begin(), nodes_.end() - 1});
@@ -69,14 +51,16 @@ bool GrowthModel::consistent() const {
     scale = std::max(scale, std::abs(node.Q));
     moved = std::max(moved, std::abs(node.angle - last.angle));
   }
-  const cplx Q = others.interpolated<cplx>(last.x, [](const GrowthNode& node) { return node.Q; }).first;
-  const double turns = others.interpolated<double>(last.x, [](const GrowthNode& node) { return node.angle; }).first;
+  const cplx Q = interpolated<cplx>(others.nodes_, last.x, [](const GrowthNode& node) { return node.Q; }).first;
+  const double turns =
+      interpolated<double>(others.nodes_, last.x, [](const GrowthNode& node) { return node.angle; }).first;
   return std::abs(Q - last.Q) <= part * scale && std::abs(turns - last.angle) <= angle + part * moved;
 }
 
 GrowthBounds GrowthModel::operator()(double x) const {
-  const auto [growth, growth_change] = interpolated<double>(x, [](const GrowthNode& node) { return node.growth; });
-  const auto [Q, Q_change] = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; });
+  const auto [growth, growth_change] =
+      interpolated<double>(nodes_, x, [](const GrowthNode& node) { return node.growth; });
+  const auto [Q, Q_change] = interpolated<cplx>(nodes_, x, [](const GrowthNode& node) { return node.Q; });
   double growth_error = safety * growth_change, E = safety * Q_change;
   // Errors at the two ends count in proportion; what they do to higher terms these show.
   const double part = (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);
@@ -97,13 +81,13 @@ GrowthBounds GrowthModel::operator()(double x) const {
 
 double GrowthModel::rise() const {
   const double x = centre();
-  const double Q = interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; }).first.real();
+  const double Q = interpolated<cplx>(nodes_, x, [](const GrowthNode& node) { return node.Q; }).first.real();
   return Q - std::max(nodes_[0].Q.real(), nodes_[1].Q.real());
 }
 
 double GrowthModel::centre() const {
   const auto value = [&](double x) {
-    return interpolated<cplx>(x, [](const GrowthNode& node) { return node.Q; }).first.real();
+    return interpolated<cplx>(nodes_, x, [](const GrowthNode& node) { return node.Q; }).first.real();
   };
   double low = nodes_[0].x, high = nodes_[1].x;
   // The best of a few places, then golden sections about it.

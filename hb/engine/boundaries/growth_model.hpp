@@ -50,9 +50,6 @@ class GrowthModel {
   double mean_growth() const { return 0.5 * (nodes_[0].growth + nodes_[1].growth); }
 
  private:
-  template <class Value, class Of>
-  std::pair<Value, double> interpolated(double x, const Of& of) const;
-
   std::vector<GrowthNode> nodes_;
   bool real_ = true;  // Q is real: a conjugate pair modulo i
 };

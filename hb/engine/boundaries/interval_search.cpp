@@ -286,6 +286,7 @@ class Search {
       }
     }
     if (!std::isnan(where)) return where;
+    if (const double x = doubtful_in_crowds(p, q, meeting, std::max(worst, untold)); !std::isnan(x)) return x;
     if (level(p, q, least)) return nan;
     worst = std::max(worst, untold);
     // One that decays several times as fast as the leading one does not rise above zero by itself.
@@ -305,6 +306,27 @@ class Search {
         worst = high;
         where = clamped(x, p, q);
       }
+    }
+    return where;
+  }
+
+  // What a pair's model tells does not hold where others come near: all of them together tell.
+  double doubtful_in_crowds(Place& p, const Place& q, const std::vector<Meeting>& meetings, double told) const {
+    constexpr int steps = 24;
+    constexpr double central = 0.3;  // errors fall with the fourth power of the width
+    double where = nan, worst = told;
+    for (const std::vector<std::size_t>& crowd : encounters_.crowds(p, q, meetings)) {
+      const std::optional<ClusterModel> model = cluster_model(places_, p, crowd, q);
+      if (!model) return 0.5 * (p.x() + q.x());
+      const auto look = [&](double x) {
+        const ClusterModel::Bounds at_x = (*model)(x, told);
+        if (at_x.growth > worst) {
+          where = clamped(x, p, q, central);
+          worst = at_x.growth;
+        }
+        return at_x.apart;
+      };
+      for (const double x : notches(look, probes(p.x(), q.x()), steps)) look(x);
     }
     return where;
   }
@@ -340,14 +362,13 @@ class Search {
     const auto foretold = [&](double x) {
       return std::ranges::all_of(models, [&](const GrowthModel& model) { return model(x).low + model(x).high <= 0; });
     };
-    for (const double x : notches(lowest, places)) look(x, foretold(x) ? 1e-6 : 0.02);
+    for (const double x : notches(lowest, places, 36)) look(x, foretold(x) ? 1e-6 : 0.02);
     return worst > 0 ? nan : where;
   }
 
   // The lowest places between neighbours of each place where f is lower than at both.
   template <class Function>
-  static std::vector<double> notches(const Function& f, std::vector<double> places) {
-    constexpr int steps = 36;
+  static std::vector<double> notches(const Function& f, std::vector<double> places, int steps) {
     std::ranges::sort(places);
     std::vector<double> values, found;
     for (const double x : places) values.push_back(f(x));

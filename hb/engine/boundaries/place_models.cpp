@@ -7,6 +7,8 @@ namespace hb {
 
 namespace {
 
+using cplx = std::complex<double>;
+
 // Models take places no farther away than that.
 constexpr double most_motion_of_models = 0.5;
 
@@ -122,6 +124,29 @@ std::optional<GrowthModel> pair_model(const Places& places, const Place& p, std:
   }
   if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
   return consistent_model(std::move(nodes), p, q);
+}
+
+std::optional<ClusterModel> cluster_model(const Places& places, const Place& p, const std::vector<std::size_t>& strands,
+                                          const Place& q) {
+  std::vector<ClusterNode> nodes;
+  std::vector<cplx> s(strands.size());
+  std::vector<double> error(strands.size());
+  for (const Place* place : window(places, p, q)) {
+    const auto at = followed(places, p, *place, strands);
+    if (!at) continue;
+    double lowest = 0, highest = 0;
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      const Strand& strand = place->strands.all[(*at)[j]];
+      s[j] = strand.s;
+      error[j] = strand.error;
+      const double away = folded(s[j] - s[0]).imag();
+      lowest = std::min(lowest, away);
+      highest = std::max(highest, away);
+    }
+    if (highest - lowest < 0.5) nodes.push_back(cluster_node(place->x(), s, error));
+  }
+  if (nodes.size() < 4 || nodes[0].x != p.x() || nodes[1].x != q.x()) return std::nullopt;
+  return ClusterModel(std::move(nodes));
 }
 
 std::optional<GrowthModel> partner_model(const Places& places, const Place& p, std::size_t k, const Place& q) {

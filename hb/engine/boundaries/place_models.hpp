@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "hb/engine/boundaries/cluster_model.hpp"
 #include "hb/engine/boundaries/encounters.hpp"
 #include "hb/engine/boundaries/growth_model.hpp"
 #include "hb/engine/boundaries/separate_pair.hpp"
@@ -26,6 +27,8 @@ using Places = std::map<double, Place>;  // by x
                                                       const Place& q);
 [[nodiscard]] std::optional<GrowthModel> pair_model(const Places& places, const Place& p, std::size_t a, std::size_t b,
                                                     const Place& q);
+[[nodiscard]] std::optional<ClusterModel> cluster_model(const Places& places, const Place& p,
+                                                        const std::vector<std::size_t>& strands, const Place& q);
 [[nodiscard]] std::optional<GrowthModel> partner_model(const Places& places, const Place& p, std::size_t k,
                                                        const Place& q);
 
