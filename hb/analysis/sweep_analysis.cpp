@@ -294,11 +294,11 @@ class SweepRun {
 
   std::optional<CriticalPoint> located(const PeakTask& task) const {
     const RodAlong& rod = along_[task.rod];
-    const PeakAccuracy accuracy = peak_accuracy(settings_);
     const Maximum& m = task.maximum;
+    const std::optional<PeakResponses> responses = rod.responses(m.component, m.inside);
+    if (!responses) return std::nullopt;
     const std::optional<ResponsePeak> peak =
-        locate_peak(rod.largest(m.component, accuracy.rough), rod.largest(m.component, accuracy.fine), m.low, m.inside,
-                    m.high, accuracy.height);
+        locate_peak(*responses, m.low, m.inside, m.high, peak_accuracy(settings_).height);
     if (!peak) return std::nullopt;
     CriticalPoint point;
     point.rod = task.rod;

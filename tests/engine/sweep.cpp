@@ -327,20 +327,30 @@ TEST(Sweep, BandsThatReachTheSweepsEndsAreOpen) {
   EXPECT_EQ(found.bands[0].to, 2.3);
 }
 
+// A response that is the same at all angles.
+template <class Height>
+ResponseAt constant_response(const Height& height) {
+  return [height](double x) -> std::optional<FourierSeries> {
+    const std::optional<double> f = height(x);
+    if (!f) return std::nullopt;
+    return FourierSeries(Eigen::MatrixXcd::Constant(1, 1, *f));
+  };
+}
+
 TEST(ResponsePeak, OfADampedOscillatorIsTheClosedFormToTenDigits) {
   // |x| = 1/sqrt((k - W^2)^2 + b^2 W^2) is largest at W^2 = k - b^2/2.
   for (const double b : {1e-4, 0.01, 0.2, 1.0}) {
     const double k = 1.3;
     const HillSystem system = oscillator(b, k, 0);
     const double expected = std::sqrt(k - b * b / 2);
-    const auto value = [&](double W) -> std::optional<double> {
+    const auto value = [&](double W) -> std::optional<FourierSeries> {
       SteadyOptions options;
       options.tolerance = 1e-12;
-      return fourier::max_abs(solve_steady_state(system, W, options).q, 0).value;
+      return solve_steady_state(system, W, options).q;
     };
     const double reach = std::min(0.3, 20 * b);
     const std::optional<ResponsePeak> peak =
-        locate_peak(value, value, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
+        locate_peak({value, value, value}, expected - 0.7 * reach, expected + 0.1 * reach, expected + reach);
     ASSERT_TRUE(peak);
     EXPECT_TRUE(peak->converged) << b << " " << peak->error;
     EXPECT_NEAR(peak->x, expected, 1e-10 * expected) << b;
@@ -351,8 +361,8 @@ TEST(ResponsePeak, OfADampedOscillatorIsTheClosedFormToTenDigits) {
 TEST(ResponsePeak, IsToldFromAPole) {
   // 1/|x - x0| with a background that leans.
   const double x0 = 1.2345678901;
-  const auto value = [&](double x) -> std::optional<double> { return std::abs(1e-3 / (x - x0) + 0.7 * x); };
-  const std::optional<ResponsePeak> pole = locate_peak(value, value, 1.1, 1.2345, 1.4);
+  const ResponseAt value = constant_response([&](double x) { return std::optional(1e-3 / (x - x0) + 0.7 * x); });
+  const std::optional<ResponsePeak> pole = locate_peak({value, value, value}, 1.1, 1.2345, 1.4);
   ASSERT_TRUE(pole);
   EXPECT_TRUE(std::isinf(pole->value));
   EXPECT_NEAR(pole->x, x0, 1e-10 * x0);
@@ -362,9 +372,11 @@ TEST(ResponsePeak, IsToldFromAPole) {
 // Near a pole the rough values are off by tenths: its place was told to a hundredth of the last step all the same.
 TEST(ResponsePeak, APoleIsLocatedByTheFineValues) {
   const double x0 = 0.92899074664;
-  const auto value = [&](double x) { return std::optional(1.0 + 0.016 / std::abs(x - x0)); };
-  const auto rough = [&](double x) { return std::optional(*value(x) * (x > x0 ? 1.2 : 0.9)); };
-  const std::optional<ResponsePeak> peak = locate_peak(rough, value, 0.9, 0.93, 1);
+  const auto height = [&](double x) { return std::optional(1.0 + 0.016 / (x - x0)); };
+  const ResponseAt value = constant_response(height),
+                   rough =
+                       constant_response([&](double x) { return std::optional(*height(x) * (x > x0 ? 1.2 : 0.9)); });
+  const std::optional<ResponsePeak> peak = locate_peak({rough, value, value}, 0.9, 0.93, 1);
   ASSERT_TRUE(peak);
   EXPECT_EQ(peak->value, HUGE_VAL);
   EXPECT_LE(std::abs(peak->x - x0), peak->error);
@@ -372,13 +384,44 @@ TEST(ResponsePeak, APoleIsLocatedByTheFineValues) {
   EXPECT_TRUE(peak->converged);
 }
 
-TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {
-  const auto value = [](double x) -> std::optional<double> {
-    if (x > 1.1) return std::nullopt;
-    return -x * x;
+// Two of them, nearer to each other than a pole has to show from.
+TEST(ResponsePeak, OneOfTwoPolesSideBySideIsLocated) {
+  const double x0 = 3.1, x1 = x0 + 1.2e-7;
+  const ResponseAt value =
+      constant_response([&](double x) { return std::optional(1e-4 / (x - x0) + 3e-4 / (x - x1) + 2); });
+  const std::optional<ResponsePeak> pole = locate_peak({value, value, value}, 3.0, 3.1001, 3.3);
+  ASSERT_TRUE(pole);
+  EXPECT_TRUE(std::isinf(pole->value));
+  EXPECT_LE(std::min(std::abs(pole->x - x0), std::abs(pole->x - x1)), pole->error);
+}
+
+// Two angles that are as high as each other: max |q| = 1 + max(x - x0, -2 (x - x0)) turned over.
+TEST(ResponsePeak, WhereAnotherAngleTakesTheLeadIsLocated) {
+  const double x0 = 0.7654321;
+  const ResponseAt value = [&](double x) -> std::optional<FourierSeries> {
+    // q = m + a cos tau: largest at 0, m + a, or at pi, a - m.
+    const double rising = 1 + (x - x0), falling = 1 - 2 * (x - x0);
+    Eigen::MatrixXcd c(1, 2);
+    c << 0.5 * (rising - falling), 0.25 * (rising + falling);
+    return FourierSeries(c);
   };
-  EXPECT_FALSE(locate_peak(value, value, -1, 0.5, 1.2));
-  EXPECT_TRUE(locate_peak(value, value, -1, 0.5, 1));
+  // Of the two the larger one is least at x0; its inverse is largest.
+  const ResponseAt inverse = [&](double x) -> std::optional<FourierSeries> {
+    return FourierSeries(Eigen::MatrixXcd(value(x)->c / std::pow(fourier::max_abs(*value(x), 0).value, 2)));
+  };
+  const std::optional<ResponsePeak> peak = locate_peak({inverse, inverse, inverse}, 0.6, 0.75, 0.9);
+  ASSERT_TRUE(peak);
+  EXPECT_LE(std::abs(peak->x - x0), peak->error);
+  EXPECT_LT(peak->error, 1e-4);
+}
+
+TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {
+  const ResponseAt value = constant_response([](double x) -> std::optional<double> {
+    if (x > 1.1) return std::nullopt;
+    return 2 - x * x;
+  });
+  EXPECT_FALSE(locate_peak({value, value, value}, -1, 0.5, 1.2));
+  EXPECT_TRUE(locate_peak({value, value, value}, -1, 0.5, 1));
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 #include <iterator>
 #include <limits>
 
-#include "hb/analysis/accuracy.hpp"
-
 namespace hb {
 namespace {
 
@@ -16,7 +14,7 @@ constexpr double most_detuning = 0.3;
 constexpr double least_prominence = 1e-8;
 
 std::optional<ResponseSample> sample_at(const RodAlong& rod, double x) {
-  const std::optional<FourierSeries> q = rod.response(x, peak_accuracy(rod.settings()).rough);
+  const std::optional<FourierSeries> q = rod.rough_response(x);
   if (!q) return std::nullopt;
   ResponseSample sample{x, {}};
   for (Eigen::Index i = 0; i < q->num_components(); ++i) sample.max_abs.push_back(fourier::max_abs(*q, i).value);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/rod_steady.hpp"
 
 namespace hb {
@@ -13,25 +14,43 @@ std::optional<ScaledSystem> RodAlong::system(double x) const {
   return scale_system(place.model->rods[rod_].system, place.speed);
 }
 
-std::optional<FourierSeries> RodAlong::response(double x, double tolerance) const {
+std::optional<SteadyState> RodAlong::solved(double x, const SteadyOptions& options) const {
   ++evaluations_;
   const ScenePlace place = scene_.at(x);
   if (!place.model) return std::nullopt;
-  SteadyOptions options;
-  options.method = scene_.settings().steady_method;
-  options.tolerance = tolerance;
   const RodModel& rod = place.model->rods[rod_];
   SteadyState state = solve_rod(rod.system, rod.num_modes, place.speed, options);
   if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
-  return std::move(state.q);
+  return state;
 }
 
-ResponseAt RodAlong::largest(int component, double tolerance) const {
-  return [this, component, tolerance](double x) -> std::optional<double> {
-    const std::optional<FourierSeries> q = response(x, tolerance);
-    if (!q) return std::nullopt;
-    return fourier::max_abs(*q, component).value;
+std::optional<FourierSeries> RodAlong::rough_response(double x) const {
+  std::optional<SteadyState> state =
+      solved(x, {.tolerance = peak_accuracy(settings()).rough, .method = settings().steady_method});
+  if (!state) return std::nullopt;
+  return std::move(state->q);
+}
+
+std::optional<PeakResponses> RodAlong::responses(int component, double about) const {
+  constexpr double more_harmonics = 1.25, part_of_residual = 0.01;  // which a response may amplify
+  const auto alone = [this, component](const SteadyOptions& options) -> ResponseAt {
+    return [this, component, options](double x) -> std::optional<FourierSeries> {
+      const std::optional<SteadyState> state = solved(x, options);
+      if (!state) return std::nullopt;
+      return FourierSeries(Eigen::MatrixXcd(state->q.c.row(component)));
+    };
   };
+  const PeakAccuracy accuracy = peak_accuracy(settings());
+  const SteadyOptions sure{.tolerance = accuracy.fine, .method = settings().steady_method};
+  const std::optional<SteadyState> state = solved(about, sure);
+  if (!state) return std::nullopt;
+  // What is left out moves poles, which the solution's own bound does not tell: harmonics that it needs, and more.
+  SteadyOptions rough = sure, fine = sure;
+  rough.tolerance = part_of_residual * accuracy.rough;
+  fine.tolerance = part_of_residual * accuracy.fine;
+  rough.without_bound = fine.without_bound = true;
+  fine.num_harmonics = static_cast<int>(more_harmonics * state->num_harmonics);
+  return PeakResponses{alone(rough), alone(fine), alone(sure)};
 }
 
 }  // namespace hb

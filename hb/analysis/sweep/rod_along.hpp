@@ -7,6 +7,7 @@
 
 #include "hb/analysis/sweep/sweep_scene.hpp"
 #include "hb/engine/steady/response_peak.hpp"
+#include "hb/engine/steady/steady_state.hpp"
 #include "hb/engine/system/scaled_system.hpp"
 
 namespace hb {
@@ -22,13 +23,15 @@ class RodAlong {
   // Empty where there is no linkage.
   [[nodiscard]] std::optional<ScaledSystem> system(double x) const;
 
-  // Empty also where it is singular. `tolerance` is relative to the largest |q|.
-  [[nodiscard]] std::optional<FourierSeries> response(double x, double tolerance) const;
+  // To a few digits; empty also where it is singular.
+  [[nodiscard]] std::optional<FourierSeries> rough_response(double x) const;
 
-  // max |q_i| over the turn, i = component + 1.
-  [[nodiscard]] ResponseAt largest(int component, double tolerance) const;
+  // q_i alone, i = component + 1, near a place; empty where there is none there.
+  [[nodiscard]] std::optional<PeakResponses> responses(int component, double about) const;
 
  private:
+  [[nodiscard]] std::optional<SteadyState> solved(double x, const SteadyOptions& options) const;
+
   const SweepScene& scene_;
   std::size_t rod_;
   std::atomic<std::size_t>& evaluations_;

@@ -3,218 +3,247 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <vector>
 
+#include "hb/engine/steady/response_interpolant.hpp"
 #include "lib/constants.hpp"
 
 namespace hb {
 
 namespace {
 
-using Eigen::Index;
+constexpr double pole_distance = 2e-6;  // relative: so near a pole has to show
 
-constexpr Index N = 13;  // Chebyshev points
+double height(const FourierSeries& response) { return fourier::max_abs(response, 0).value; }
 
-// f(c + r t) = sum a_k T_k(t), from its values at the roots t_j = cos(pi (2 j + 1)/(2 N)) of T_N.
-Eigen::VectorXd coefficients(const Eigen::VectorXd& values) {
-  Eigen::VectorXd a(N);
-  for (Index k = 0; k < N; ++k) {
-    double sum = 0;
-    for (Index j = 0; j < N; ++j)
-      sum += values(j) * std::cos(pi * static_cast<double>(k) * (2 * static_cast<double>(j) + 1) / (2 * N));
-    a(k) = sum * (k == 0 ? 1.0 : 2.0) / N;
-  }
-  return a;
+// Mean of a.b over the turn.
+double product(const FourierSeries& a, const FourierSeries& b) {
+  const Eigen::Index H = std::min(a.num_harmonics(), b.num_harmonics()) + 1;
+  const auto terms = a.c.leftCols(H).conjugate().cwiseProduct(b.c.leftCols(H)).real();
+  return 2 * terms.sum() - terms(0);
 }
 
-// Coefficients of the derivative with respect to t: b_(k-1) = b_(k+1) + 2 k a_k, b_0 halved.
-Eigen::VectorXd derivative(const Eigen::VectorXd& a) {
-  const Index n = a.size();
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
-  for (Index k = n - 1; k >= 1; --k) b(k - 1) = (k + 1 < n ? b(k + 1) : 0) + 2 * static_cast<double>(k) * a(k);
-  b(0) /= 2;
-  return b;
+FourierSeries difference(const FourierSeries& a, const FourierSeries& b) {
+  const Eigen::Index H = std::max(a.num_harmonics(), b.num_harmonics());
+  return FourierSeries(Eigen::MatrixXcd(fourier::resized(a, H).c - fourier::resized(b, H).c));
 }
 
-// Clenshaw.
-double evaluate(const Eigen::VectorXd& a, double t) {
-  double b1 = 0, b2 = 0;
-  for (Index k = a.size() - 1; k >= 1; --k) {
-    const double b = a(k) + 2 * t * b1 - b2;
-    b2 = b1;
-    b1 = b;
-  }
-  return a(0) + t * b1 - b2;
-}
-
-// Zero of the derivative in [-1, 1] at which f is largest; NaN if there is none with a maximum.
-double largest_at(const Eigen::VectorXd& a) {
-  const Eigen::VectorXd b = derivative(a);
-  constexpr int cells = 64;
-  double best = std::numeric_limits<double>::quiet_NaN(), best_value = -HUGE_VAL;
-  for (int i = 0; i < cells; ++i) {
-    double low = -1 + 2.0 * i / cells, high = -1 + 2.0 * (i + 1) / cells;
-    if (!(evaluate(b, low) > 0) || evaluate(b, high) > 0) continue;
-    for (int step = 0; step < 60 && high - low > eps; ++step) {
-      const double middle = 0.5 * (low + high);
-      (evaluate(b, middle) > 0 ? low : high) = middle;
-    }
-    const double value = evaluate(a, 0.5 * (low + high));
-    if (value > best_value) {
-      best_value = value;
-      best = 0.5 * (low + high);
-    }
-  }
-  return best;
-}
-
-constexpr double pole_distance = 2e-7;  // relative: so near a pole has to show
-
-// Of a pole seen from two distances.
-bool same_residue(double a, double b) { return a >= 0.8 * b && a <= 1.25 * b; }
-
-// f = c/|x - x0| near x0: then (x0 - l)/(r - x0) = f(r)/f(l), and f(l) f(r)/(f(l) + f(r)) (r - l) = c whatever l, r.
-std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double a, double x, double b) {
-  double distance = 0.25 * std::min(x - a, b - x), last = 0;
-  for (int step = 0; step < 12; ++step) {
-    const double l = x - distance, r = x + distance;
-    const std::optional<double> fl = value(l), fr = value(r);
-    if (!fl || !fr) return std::nullopt;
-    const double residue = *fl * *fr / (*fl + *fr) * (r - l);
-    const bool constant = step > 0 && same_residue(residue, last);
-    if (step > 1 && !constant) return std::nullopt;
-    const double next = l + (r - l) * *fr / (*fl + *fr);
-    if (distance <= pole_distance * std::abs(x) && constant) return ResponsePeak{next, HUGE_VAL, distance, false};
-    x = next;
-    last = residue;
-    distance *= 0.03;
+// q = A/(x - x0) + B beside a pole: x0 from three places, A along what q changes between them; the next place lies as
+// far beside it as the last one was off, but no nearer than `nearest`, where a pole has to show. Empty where they do
+// not come to agree to the tolerance.
+std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double about, double distance, double nearest,
+                                        double tolerance) {
+  constexpr int most_steps = 6;
+  struct Seen {
+    double x;
+    FourierSeries q;
+  };
+  std::vector<Seen> seen;
+  const auto look = [&](double x) {
+    std::optional<FourierSeries> q = value(x);
+    if (q) seen.push_back({x, *std::move(q)});
+    return q.has_value();
+  };
+  if (!look(about - distance) || !look(about + 0.7 * distance) || !look(about + 0.2 * distance)) return std::nullopt;
+  double x0 = about, changed = 3 * distance;
+  for (int step = 0; step < most_steps; ++step) {
+    const Seen *p = &seen.end()[-3], *q = &seen.end()[-2], *r = &seen.end()[-1];
+    const FourierSeries A = difference(r->q, q->q);
+    const double first = product(A, difference(p->q, q->q)), second = product(A, difference(q->q, r->q));
+    // (r - x0)/(p - x0)
+    const double ratio = first / second * (r->x - q->x) / (q->x - p->x), next = (r->x - ratio * p->x) / (1 - ratio);
+    const double change = std::abs(next - x0), error = change + 4 * eps * std::abs(next);
+    if (!(change <= std::max(0.5 * changed, tolerance * std::abs(next)))) return std::nullopt;
+    const bool shown = step > 0 && std::abs(r->x - next) <= 2 * nearest;
+    if (shown && error <= tolerance * std::abs(next)) return ResponsePeak{next, HUGE_VAL, error, true};
+    x0 = next;
+    changed = change;
+    const double beside = std::max(change, nearest);
+    if (!look(x0 + (step % 2 == 0 ? beside : -beside))) return std::nullopt;
   }
   return std::nullopt;
 }
 
-// From ever smaller distances; what the last step changed is the error. Rough values so near a pole may be off by some
-// tenths.
-ResponsePeak refined_pole(const ResponseAt& value, ResponsePeak pole, double tolerance) {
-  constexpr int most_steps = 6;
-  constexpr double least = 1e4 * eps;  // relative
-  double distance = std::max(pole.error, least * std::abs(pole.x)), last = 0;
-  pole.error = distance;
-  for (int step = 0; step < most_steps && !pole.converged; ++step, distance *= 0.2) {
-    const double l = pole.x - distance, r = pole.x + distance;
-    const std::optional<double> fl = value(l), fr = value(r);
-    if (!fl || !fr) return pole;
-    const double residue = *fl * *fr / (*fl + *fr) * (r - l), next = l + (r - l) * *fr / (*fl + *fr);
-    const double error = std::abs(next - pole.x) + 4 * eps * std::abs(pole.x);
-    if (step > 0 && !(error < pole.error && same_residue(residue, last))) return pole;
-    pole = {next, HUGE_VAL, step > 0 ? error : distance, step > 0 && error <= tolerance * std::abs(next)};
-    last = residue;
-  }
-  return pole;
-}
+// g = 1/f^2: beside a resonance about c ((x - x0)^2 + w^2).
+double flattened(double f) { return 1 / (f * f); }
 
-// The top at x lies between a and b.
+// The least g, at x, lies between a and b.
 struct Bracket {
-  double a, x, b, fa, fx, fb;
+  double a, x, b, ga, gx, gb;
   std::optional<ResponsePeak> pole;  // found instead
+  double width = 0;  // of the resonance, or of half of what is between a and b
 
-  bool narrow(const ResponseAt& rough, double tolerance);
+  bool narrow(const PeakResponses& at, double most_width, double tolerance);
 };
 
-// Golden sections with parabolas until the parabola describes what is between: a width to interpolate over. False where
-// there is no response.
-bool Bracket::narrow(const ResponseAt& rough, double tolerance) {
-  const double f_low = fa, f_high = fb, width = b - a;
-  constexpr double golden = 0.3819660112501051;
+// By parabolas, or golden sections where these do not shrink the bracket, until that is no wider than `most_width` and
+// the vertex moves by less than half of the width w. False where there is no response.
+bool Bracket::narrow(const PeakResponses& at, double most_width, double tolerance) {
+  constexpr double golden = 0.3819660112501051, near_pole = 1e-5;
   constexpr int max_steps = 60;
-  double last_width = HUGE_VAL;
-  double next_pole = 10;  // growth at which a pole is suspected
+  double last_width = HUGE_VAL, tried = HUGE_VAL;
   for (int step = 0; step < max_steps; ++step) {
+    width = 0.5 * (b - a);
     if (b - a <= 1e-3 * tolerance * std::abs(x)) break;
-    const double p = (x - a) * (fx - fb), q = (b - x) * (fx - fa);
-    double y = x - 0.5 * ((x - a) * p - (b - x) * q) / (p + q);
-    const double margin = 0.05 * (b - a);
+    const double c = ((gb - gx) / (b - x) - (gx - ga) / (x - a)) / (b - a);
+    const double slope = (gx - ga) / (x - a) + c * (x - a), vertex = x - slope / (2 * c), w = std::sqrt(gx / c);
+    if (step > 0 && b - a <= most_width && std::abs(vertex - x) <= 0.5 * w) {
+      width = std::min(width, w);
+      break;
+    }
+    // So near a pole, or a resonance as narrow.
+    if (w <= near_pole * std::abs(x) && w < 0.1 * tried && std::abs(vertex - x) <= 2 * w) {
+      tried = w;
+      const double nearest = std::min(pole_distance * std::abs(x), 0.1 * std::min(vertex - a, b - vertex));
+      if ((pole = locate_pole(at.fine, vertex, std::max(w, nearest), nearest, tolerance))) return true;
+    }
     const bool shrinks = b - a <= 0.6 * last_width;
     last_width = b - a;
-    const bool parabola = std::isfinite(y) && y > a + margin && y < b - margin && shrinks;
-    if (!parabola || std::abs(y - x) <= margin) y = b - x > x - a ? x + golden * (b - x) : x - golden * (x - a);
-    const std::optional<double> fy = rough(y);
-    if (!fy) return false;
-    if (*fy > fx) {
+    double y = vertex;
+    if (!(vertex > a && vertex < b && (shrinks || w < 0.05 * (b - a))))
+      y = b - x > x - a ? x + golden * (b - x) : x - golden * (x - a);
+    const std::optional<FourierSeries> at_y = at.rough(y);
+    if (!at_y) return false;
+    const double gy = flattened(height(*at_y));
+    if (gy < gx) {
       (y > x ? a : b) = x;
-      (y > x ? fa : fb) = fx;
+      (y > x ? ga : gb) = gx;
       x = y;
-      fx = *fy;
+      gx = gy;
     } else {
       (y > x ? b : a) = y;
-      (y > x ? fb : fa) = *fy;
+      (y > x ? gb : ga) = gy;
     }
-    if (fx >= next_pole * std::max(f_low, f_high)) {
-      next_pole *= 10;
-      if ((pole = locate_pole(rough, a, x, b))) return true;
-    }
-    // Ends that have come near the top: the function is about parabolic between.
-    if (fx - std::min(fa, fb) <= 0.1 * std::abs(fx) && b - a <= 0.25 * width) break;
   }
   return true;
 }
 
-// Chebyshev interpolation over ever narrower intervals round the top.
-std::optional<ResponsePeak> interpolate_top(const ResponseAt& value, const Bracket& top, double low, double high,
-                                            double tolerance) {
-  double c = top.x, r = std::min({0.5 * (top.b - top.a), c - low, high - c});
-  ResponsePeak peak{top.x, top.fx, 0.5 * (top.b - top.a), false};
-  constexpr int max_rounds = 12;
-  for (int round = 0; round < max_rounds; ++round) {
-    r = std::min({r, c - low, high - c});
-    if (!(r > 4 * eps * std::abs(c))) break;
-    Eigen::VectorXd values(N);
-    for (Index j = 0; j < N; ++j) {
-      const double t = std::cos(pi * (2 * static_cast<double>(j) + 1) / (2 * N));
-      const std::optional<double> f = value(c + r * t);
-      if (!f) return std::nullopt;
-      values(j) = *f;
+// Where |q| is largest over the turn: its value there does not tell the angle to more than half of the digits.
+double angle_of_top(const FourierSeries& q) {
+  constexpr double most_moved = 1e-4;
+  double angle = fourier::max_abs(q, 0).crank_angle;
+  const FourierSeries slope = fourier::derivative(q), bend = fourier::derivative(q, 2);
+  for (int step = 0; step < 2; ++step)
+    if (const double moved = fourier::evaluate(slope, angle)(0) / fourier::evaluate(bend, angle)(0);
+        std::abs(moved) < most_moved)
+      angle -= moved;
+  return angle;
+}
+
+// d/dx max_tau |q|: the slope of q at the angle where it is largest.
+double rise(const ResponseInterpolant& response, double x) {
+  const FourierSeries q = response(x);
+  const double angle = angle_of_top(q), slope = fourier::evaluate(response.slope(x), angle)(0);
+  return fourier::evaluate(q, angle)(0) < 0 ? -slope : slope;
+}
+
+// Within c -+ r, where it rises no longer; empty where it is largest at an end, on the side returned by `beside`.
+std::optional<ResponsePeak> highest(const ResponseInterpolant& response, double c, double r, double error,
+                                    int& beside) {
+  constexpr int parts = 16, halvings = 44;
+  const double step = 2 * r / parts;
+  int best = 0;
+  double value = -HUGE_VAL;
+  for (int k = 0; k <= parts; ++k)
+    if (const double f = height(response(c - r + step * k)); f > value) {
+      value = f;
+      best = k;
     }
-    const Eigen::VectorXd coefs = coefficients(values);
-    const double t = largest_at(coefs);
-    if (!std::isfinite(t)) {
-      // The top lies beside: move to the better end.
-      Index best;
-      values.maxCoeff(&best);
-      const double moved = c + (best == 0 ? r : best == N - 1 ? -r : 0);
-      if (moved == c) r *= 0.5;
-      c = moved;
+  beside = best == 0 ? -1 : best == parts ? 1 : 0;
+  if (beside != 0) return std::nullopt;
+  double low = c - r + step * (best - 1), high = low + 2 * step;
+  for (int k = 0; k < halvings && high - low > eps * std::abs(c); ++k) {
+    const double middle = 0.5 * (low + high);
+    (rise(response, middle) > 0 ? low : high) = middle;
+  }
+  const double x = 0.5 * (low + high), h = 0.25 * step;
+  const auto turned = [&](double within) { return rise(response, x - within) - rise(response, x + within); };
+  // Two angles may be as high there: then the slope jumps, and it is the heights that tell.
+  constexpr double nearer = 0.125;
+  const double all = turned(h), jump = (turned(nearer * h) - nearer * all) / (1 - nearer);
+  const double x_error =
+      (jump > 0.25 * all ? 2 * error / jump : 2 * h * response.slope_error(x, error) / all) + 4 * eps * std::abs(x);
+  return ResponsePeak{x, height(response(x)), all > 0 ? x_error : HUGE_VAL, false};
+}
+
+// Interpolation over ever narrower intervals round the top, or round a pole that shows: what is known then, the best of
+// it, if anything.
+std::optional<ResponsePeak> interpolate_top(const PeakResponses& at, const Bracket& top, double tolerance) {
+  constexpr double near_pole = 0.1, beside_pole = 0.1;
+  constexpr int most_rounds = 6;
+  double c = top.x, r = top.width, last_pole = HUGE_VAL;
+  std::optional<ResponsePeak> best;
+  for (int round = 0; round < most_rounds; ++round) {
+    r = std::min({r, c - top.a, top.b - c});
+    if (!(r > 4 * eps * std::abs(c))) break;
+    std::vector<FourierSeries> fine;
+    for (const double x : ResponseInterpolant::places(c, r)) {
+      std::optional<FourierSeries> q = at.fine(x);
+      if (!q) return best;
+      fine.push_back(*std::move(q));
+    }
+    const ResponseInterpolant response(c, r, fine);
+    if (const std::optional<double> pole = response.pole()) {
+      const double moved = std::abs(*pole - last_pole) + 4 * eps * std::abs(c);
+      if (moved <= tolerance * std::abs(c)) return ResponsePeak{*pole, HUGE_VAL, moved, true};
+      const double room = 0.1 * std::min(*pole - top.a, top.b - *pole),
+                   nearest = std::min(pole_distance * std::abs(c), room);
+      if (moved < std::min(near_pole * r, room))
+        if (const auto found = locate_pole(at.fine, *pole, std::max(moved, nearest), nearest, tolerance)) return found;
+      if (std::isfinite(moved) && moved > 0.5 * r) return best;  // a guess of the fit
+      last_pole = *pole;
+      r = std::clamp(3 * moved, 0.03 * r, r);
+      c = *pole + beside_pole * r;
       continue;
     }
-    // Truncation by the last coefficients, noise by rounding; both differentiate to at most N^2 times themselves.
-    const double tail = coefs.tail(2).cwiseAbs().maxCoeff();
-    const double curvature = std::abs(evaluate(derivative(derivative(coefs)), t));
-    const double noise = 4 * eps * values.cwiseAbs().maxCoeff();
-    const double slope_error = std::max(tail, noise) * static_cast<double>(N);
-    const double error = r * slope_error / curvature;
-    const double at = c + r * t;
-    if (std::isfinite(error) && (round == 0 || error < peak.error)) peak = {at, evaluate(coefs, t), error, false};
-    peak.converged = peak.error <= tolerance * std::abs(peak.x);
-    if (peak.converged && std::abs(t) <= 0.5) return peak;
-    const bool truncated = tail > 8 * noise;
-    c = at;
-    if (truncated) {
-      r *= 0.4;
-    } else if (std::abs(t) <= 0.5) {
-      return peak;  // rounding is the limit
+    const std::optional<FourierSeries> at_c = at.sure(c);
+    if (!at_c) return best;
+    const double error = response.error(*at_c);
+    int beside = 0;
+    const std::optional<ResponsePeak> found = highest(response, c, r, error, beside);
+    if (!found) {
+      // Where the interpolant may be trusted the top lies on that side.
+      if (!(error < 0.1 * std::abs(height(response(c + r)) - height(response(c - r))))) return best;
+      c += beside * r;
+      continue;
     }
+    if (best && found->error >= best->error) return best;
+    best = *found;
+    best->converged = best->error <= tolerance * std::abs(best->x);
+    if (best->converged) return best;
+    c = found->x;
+    r = response.better_radius(error, *at_c);
   }
-  return peak;
+  return best;
 }
 
 }  // namespace
 
-std::optional<ResponsePeak> locate_peak(const ResponseAt& rough, const ResponseAt& value, double low, double inside,
-                                        double high, double tolerance) {
-  const std::optional<double> f_low = rough(low), f_inside = rough(inside), f_high = rough(high);
-  if (!f_low || !f_inside || !f_high) return std::nullopt;
-  Bracket top{low, inside, high, *f_low, *f_inside, *f_high, std::nullopt};
-  if (!top.narrow(rough, tolerance)) return std::nullopt;
-  return top.pole ? refined_pole(value, *top.pole, tolerance) : interpolate_top(value, top, low, high, tolerance);
+std::optional<ResponsePeak> locate_peak(const PeakResponses& responses, double low, double inside, double high,
+                                        double tolerance) {
+  const auto g = [&](double x) -> std::optional<double> {
+    const std::optional<FourierSeries> q = responses.rough(x);
+    if (!q) return std::nullopt;
+    return flattened(height(*q));
+  };
+  const std::optional<double> g_low = g(low), g_inside = g(inside), g_high = g(high);
+  if (!g_low || !g_inside || !g_high) return std::nullopt;
+  Bracket top{low, inside, high, *g_low, *g_inside, *g_high, std::nullopt};
+  constexpr int most_tries = 8;
+  constexpr double narrower = 0.1;
+  double most_width = HUGE_VAL;
+  std::optional<ResponsePeak> best;
+  for (int attempt = 0; attempt < most_tries; ++attempt) {
+    if (!top.narrow(responses, most_width, tolerance)) return std::nullopt;
+    if (top.pole) return top.pole;
+    const std::optional<ResponsePeak> found = interpolate_top(responses, top, tolerance);
+    if (found && found->converged) return found;
+    const double half = 0.5 * (top.b - top.a);
+    if (found && found->error < half && (!best || found->error < best->error)) best = found;
+    if (half <= tolerance * std::abs(top.x)) break;
+    most_width = 2 * narrower * half;
+  }
+  return best ? best : ResponsePeak{top.x, 1 / std::sqrt(top.gx), 0.5 * (top.b - top.a), false};
 }
 
 }  // namespace hb
