@@ -385,7 +385,7 @@ TEST_F(Words, AnOddSceneIsWarnedOfWhereverItIsComputed) {
   const std::string odd = " --rpm 1000 --modes 1 --set rod.section.height=12 ";
   const std::string slender = " --theory nonlinear --set rod.E=200000";
   expect(said("check " + file + " --rpm 10 --modes 1" + slender, 3), {"WARNING: ", "solids have 1 GPa to 1.5 TPa"});
-  for (const std::string command : {"steady " + file, "check " + file, "bench --case-limit 1 " + file})
+  for (const std::string& command : {"steady " + file, "check " + file, "bench --case-limit 1 " + file})
     expect(said(command + odd), {"WARNING: ", "are section and length in their units?"});
   expect(said("compare " + file + " " + file + odd), {"WARNING: A and B: ", "are section and length in their units?"});
   expect(said("compare " + file + " " + file + " --rpm 1000 --modes 1 --set-b rod.section.height=12"),
