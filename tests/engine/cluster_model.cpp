@@ -50,6 +50,13 @@ TEST(ClusterModel, FindsTheBandOfTwoBesideAThird) {
   EXPECT_LE(model(0.30051, 1e-12).growth, 1e-12);
 }
 
+// Three at one place at all places: no disc has a size, and nothing is told from growth.
+TEST(ClusterModel, WhatIsNotToldApartIsNotToldNotToGrow) {
+  const auto exponents = [](double x) { return std::vector<cplx>(3, cplx(0, 0.1 * x)); };
+  const ClusterModel model = model_of(exponents, {0.34, 0.36, 0.32, 0.38});
+  EXPECT_GT(model(0.35, 0).growth, 0);
+}
+
 // Damped, two on top of each other: not known apart, but known to decay.
 TEST(ClusterModel, ExponentsThatCoincideAndDecayAreToldToDecay) {
   const auto exponents = [](double x) {

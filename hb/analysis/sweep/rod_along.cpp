@@ -44,7 +44,7 @@ std::optional<PeakResponses> RodAlong::responses(int component, double about) co
   const SteadyOptions sure{.tolerance = accuracy.fine, .method = settings().steady_method};
   const std::optional<SteadyState> state = solved(about, sure);
   if (!state) return std::nullopt;
-  // What is left out moves poles, which the solution's own bound does not tell: harmonics that it needs, and more.
+  // What is interpolated has one number of harmonics, those needed here and some more.
   SteadyOptions rough = sure, fine = sure;
   rough.tolerance = part_of_residual * accuracy.rough;
   fine.tolerance = part_of_residual * accuracy.fine;

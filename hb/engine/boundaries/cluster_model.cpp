@@ -28,8 +28,8 @@ std::vector<cplx> polynomial(std::span<const cplx> roots, std::size_t without) {
 
 // w^n + c_(n-2) w^(n-2) + .. + c_0.
 cplx value(const std::vector<cplx>& c, cplx w) {
-  cplx sum = w * w;
-  for (std::size_t k = c.size(); k-- > 0;) sum = k == 0 ? sum + c[0] : (sum + c[k]) * w;
+  cplx sum = w;
+  for (std::size_t k = c.size(); k-- > 0;) sum = sum * w + c[k];
   return sum;
 }
 
@@ -121,7 +121,9 @@ ClusterModel::Bounds ClusterModel::operator()(double x, double told) const {
       bounds.apart = std::min(bounds.apart, apart);
       alone = alone && apart > radius[j] + radius[k];
     }
-    if (!(real && alone)) bounds.growth = std::max(bounds.growth, mean - w[j].imag() + radius[j]);
+    if (real && alone) continue;
+    const double high = mean - w[j].imag() + radius[j];
+    if (!(high <= bounds.growth)) bounds.growth = std::isnan(high) ? HUGE_VAL : high;
   }
   // On the line Re s = told, where it is nearest to each root, the polynomial is larger than its error: none is beyond.
   constexpr double margin = 2;
