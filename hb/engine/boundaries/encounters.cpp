@@ -171,33 +171,39 @@ BoundaryKind kind_of(const Strand& strand) {
 
 }  // namespace
 
+const std::vector<std::size_t>& onward(const Place& p, const Place& q) {
+  const auto known = p.continued_at.find(q.x());
+  return known != p.continued_at.end() ? known->second
+                                       : p.continued_at.emplace(q.x(), continued(p.strands, q.strands)).first->second;
+}
+
 double apart(const Strands& strands, std::size_t a, std::size_t b) {
   return std::abs(folded(strands.all[a].s - strands.all[b].s).imag());
 }
 
 std::vector<double> unpredicted_motions(const Place& p, const Place& q) {
-  const std::vector<std::size_t> onward = continued(p.strands, q.strands);
-  std::vector<double> unpredicted(onward.size(), 0);
-  for (std::size_t k = 0; k < onward.size(); ++k) {
+  const std::vector<std::size_t>& at_q = onward(p, q);
+  std::vector<double> unpredicted(at_q.size(), 0);
+  for (std::size_t k = 0; k < at_q.size(); ++k) {
     const Strand& strand = p.strands.all[k];
-    if (onward[k] == no_strand || strand.mean.empty() || p.mean.size() != q.mean.size()) continue;
-    const double moved = (q.strands.all[onward[k]].s - strand.s).imag();
+    if (at_q[k] == no_strand || strand.mean.empty() || p.mean.size() != q.mean.size()) continue;
+    const double moved = (q.strands.all[at_q[k]].s - strand.s).imag();
     double least = HUGE_VAL;
     for (const std::size_t n : strand.mean) {
       const double apart = moved - (q.mean[n].value - p.mean[n].value).imag();
       least = std::min(least, std::abs(apart - std::round(apart)));
     }
-    unpredicted[k] = std::max(least, grown_shift(p, strand, q, q.strands.all[onward[k]]));
+    unpredicted[k] = std::max(least, grown_shift(p, strand, q, q.strands.all[at_q[k]]));
   }
   return unpredicted;
 }
 
 std::vector<double> motions(const Place& p, const Place& q) {
-  const std::vector<std::size_t> onward = continued(p.strands, q.strands);
+  const std::vector<std::size_t>& at_q = onward(p, q);
   std::vector<double> motion = unpredicted_motions(p, q);
   for (std::size_t k = 0; k < motion.size(); ++k) {
     motion[k] = 2 * (motion[k] + mean_motion(p.strands, q.strands, k));
-    if (onward[k] != no_strand) motion[k] += std::abs(folded(q.strands.all[onward[k]].s - p.strands.all[k].s).imag());
+    if (at_q[k] != no_strand) motion[k] += std::abs(folded(q.strands.all[at_q[k]].s - p.strands.all[k].s).imag());
   }
   return motion;
 }
@@ -503,9 +509,9 @@ bool Encounters::locked_alike(const Place& p, const Place& q) {
 bool Encounters::quenched(Place& p, Place& q, std::size_t a, std::size_t b) const {
   const double g = p.strands.all[a].s.real(), d = -growth_by_itself(p.strands, b);
   if (!(d > 0)) return false;
-  const std::vector<std::size_t> onward = continued(p.strands, q.strands);
-  if (onward[a] != no_strand && onward[b] != no_strand &&
-      grow_together(g - d, q.strands.all[onward[a]].s.real() + q.strands.all[onward[b]].s.real()))
+  const std::vector<std::size_t>& at_q = onward(p, q);
+  if (at_q[a] != no_strand && at_q[b] != no_strand &&
+      grow_together(g - d, q.strands.all[at_q[a]].s.real() + q.strands.all[at_q[b]].s.real()))
     return false;
   return motion_towards(p, q, a, b, std::sqrt(g * d), Effect::quenches) >= 0;
 }

@@ -2,6 +2,7 @@
 // unfolded and nothing is remembered from farther away. See hb/engine/README.md, "Boundaries".
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -20,6 +21,8 @@ struct Place {
   std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
   std::optional<LeadingPair> pair, alone;
   bool unstable = false;
+  // Which strands of other places, by x, these go on as; filled by `onward`.
+  mutable std::map<double, std::vector<std::size_t>> continued_at;
 
   double x() const { return sample.x; }
   double growth() const { return sample.stability.growth_rate / sample.speed; }
@@ -31,6 +34,9 @@ struct Meeting {
   std::size_t a = 0, b = 0;
   double x = 0;  // where they meet, roughly
 };
+
+// Which strand of q each one of p goes on as; computed once.
+[[nodiscard]] const std::vector<std::size_t>& onward(const Place& p, const Place& q);
 
 // Imaginary parts of two strands of one place apart, modulo 1: 0 .. 1/2.
 [[nodiscard]] double apart(const Strands& strands, std::size_t a, std::size_t b);

@@ -127,6 +127,11 @@ class Search {
     const bool unstable = place.unstable;
     place = encounters_.place(*sample);
     place.unstable = unstable;
+    forget_continued(place.x());
+  }
+
+  void forget_continued(double x) const {
+    for (const auto& known : places_) known.second.continued_at.erase(x);
   }
 
   static bool is_partial(const StabilitySample& sample) {
@@ -208,6 +213,7 @@ class Search {
         break;
       }
       places_.erase(x);
+      forget_continued(x);
     }
     const double skipped = std::abs(beside - boundary.x);
     if (skipped > std::max(least, 2 * first)) {

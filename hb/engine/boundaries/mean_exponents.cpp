@@ -204,6 +204,16 @@ double shift_by_modulation(const MeanExponent& mean) {
   return mean.coupling * mean.coupling / (margin * margin * detuning);
 }
 
+double moved(const MeanExponent& p, const MeanExponent& q) {
+  if (p.frozen != 0 && q.frozen != 0) return std::abs(q.frozen - p.frozen);
+  const MeanExponent &weak = p.modulation < q.modulation ? p : q, &strong = p.modulation < q.modulation ? q : p;
+  const double mean = std::abs((q.value - p.value).imag());
+  if (weak.modulation == strong.modulation) return mean;
+  const double shift = std::max(0.5, std::min(shift_by_modulation(weak), weak.modulation)),
+               ratio = strong.modulation / weak.modulation;
+  return mean + shift * std::min(1.0, ratio * ratio - 1);
+}
+
 std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
   const MeanModes modes = mean_modes(system);
   const Index n = modes.mu.size(), H = system.K.num_harmonics();

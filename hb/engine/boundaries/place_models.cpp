@@ -22,9 +22,9 @@ std::optional<std::vector<std::size_t>> followed(const Places& places, const Pla
   while (it->first != to.x()) {
     const auto next = up ? std::next(it) : std::prev(it);
     if (!usable(next->second, p)) return std::nullopt;
-    const std::vector<std::size_t> onward = continued(it->second.strands, next->second.strands);
+    const std::vector<std::size_t>& there = onward(it->second, next->second);
     for (std::size_t& k : strands) {
-      k = onward[k];
+      k = there[k];
       if (k == no_strand) return std::nullopt;
     }
     it = next;

@@ -43,25 +43,14 @@ std::array<std::size_t, 2> slowest(const std::vector<MeanExponent>& mean) {
   return {std::min(order[0], order[1]), std::max(order[0], order[1])};
 }
 
-// How far modulation may shift an exponent between two places, (B10) with |Im(s - mu)| <= 1/2.
-double grown_shift(const MeanExponent& a, const MeanExponent& b) {
-  const auto [weak, strong] = std::minmax(a.modulation, b.modulation);
-  if (weak == strong) return 0;
-  return 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1);
-}
-
-// How far mean exponent n and its shift by modulation move between two places.
-double moved(const Place& p, const Place& q, std::size_t n) {
-  return std::abs((q.mean[n].value - p.mean[n].value).imag()) + grown_shift(p.mean[n], q.mean[n]);
-}
-
 PairModel model_of(const std::vector<const Place*>& places, Apart what) {
   const Place& first = *places[0];
   const auto turned = [&](const Place& place) {
     if (what == Apart::alone || &place == &first) return 0.0;
     if (place.mean.size() != first.mean.size()) return HUGE_VAL;
     const auto [a, b] = slowest(first.mean);
-    return std::copysign(std::max(moved(first, place, a), moved(first, place, b)), place.x() - first.x());
+    return std::copysign(std::max(moved(first.mean[a], place.mean[a]), moved(first.mean[b], place.mean[b])),
+                         place.x() - first.x());
   };
   std::vector<PairNode> nodes;
   for (const Place* place : places) nodes.push_back({place->x(), *pair_of(*place, what), turned(*place)});
@@ -77,7 +66,7 @@ Motion motion_between(const Place& p, const Place& q) {
   if (slow[0] == slow[1] || slow != slowest(q.mean)) return Motion::unknown;
   double pair = 0, growth = HUGE_VAL;
   for (const std::size_t n : slow) {
-    pair = std::max(pair, moved(p, q, n));
+    pair = std::max(pair, moved(p.mean[n], q.mean[n]));
     for (const MeanExponent* mean : {&p.mean[n], &q.mean[n]})
       growth = std::min(growth, mean->value.real() - mean->drift);
   }
@@ -86,7 +75,7 @@ Motion motion_between(const Place& p, const Place& q) {
     if (n == slow[0] || n == slow[1]) continue;
     const MeanExponent &a = p.mean[n], &b = q.mean[n];
     const double faster = growth - std::max(a.value.real() + a.drift, b.value.real() + b.drift),
-                 against = moved(p, q, n) + pair;
+                 against = moved(p.mean[n], q.mean[n]) + pair;
     if (against <= faster) continue;
     followed = false;
     if (!(against <= (faster >= much_faster ? most_too_far_of_those : most_too_far) * faster)) return Motion::unknown;

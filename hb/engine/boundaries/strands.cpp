@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory_resource>
+#include <tuple>
 
 namespace hb {
 
@@ -191,7 +192,7 @@ double mean_motion(const Strands& p, const Strands& q, std::size_t k) {
 std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
   struct Match {
     bool unlike;  // no mean exponent may have become both
-    double distance;
+    double distance;  // squared
     std::size_t from, to;
   };
   const auto alike = [](const Strand& a, const Strand& b) {
@@ -199,6 +200,7 @@ std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
            std::ranges::any_of(a.mean, [&](std::size_t n) { return std::ranges::count(b.mean, n) > 0; });
   };
   std::vector<Match> matches;
+  matches.reserve(p.all.size() * q.all.size());
   for (std::size_t a = 0; a < p.all.size(); ++a) {
     cplx motion = 0;
     if (!p.all[a].mean.empty() && p.mean.size() == q.mean.size()) {
@@ -208,11 +210,11 @@ std::vector<std::size_t> continued(const Strands& p, const Strands& q) {
     for (std::size_t b = 0; b < q.all.size(); ++b) {
       const bool unlike = p.mean.size() == q.mean.size() && !alike(p.all[a], q.all[b]);
       const cplx apart = q.all[b].s - p.all[a].s;
-      matches.push_back({unlike, std::min(std::abs(folded(apart)), std::abs(folded(apart - motion))), a, b});
+      matches.push_back({unlike, std::min(std::norm(folded(apart)), std::norm(folded(apart - motion))), a, b});
     }
   }
-  std::stable_sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
-    return a.unlike != b.unlike ? b.unlike : a.distance < b.distance;
+  std::sort(matches.begin(), matches.end(), [](const Match& a, const Match& b) {
+    return std::tie(a.unlike, a.distance, a.from, a.to) < std::tie(b.unlike, b.distance, b.from, b.to);
   });
   std::vector<std::size_t> result(p.all.size(), no_strand);
   std::vector<bool> taken(q.all.size(), false);

@@ -40,15 +40,11 @@ std::vector<LeadingPair> locks_of(const Place& place, double sign) {
   return locks;
 }
 
-// How far any of the mean exponents turns, with its shift by modulation, (B10) with |Im(s - mu)| <= 1/2.
+// How far any of the mean exponents turns, with its shift by modulation.
 double most_turned(const Place& p, const Place& q) {
   if (p.mean.size() != q.mean.size()) return HUGE_VAL;
   double most = 0;
-  for (std::size_t n = 0; n < p.mean.size(); ++n) {
-    const auto [weak, strong] = std::minmax(p.mean[n].modulation, q.mean[n].modulation);
-    const double shift = weak == strong ? 0 : 0.5 * std::min(1.0, strong * strong / (weak * weak) - 1);
-    most = std::max(most, std::abs((q.mean[n].value - p.mean[n].value).imag()) + shift);
-  }
+  for (std::size_t n = 0; n < p.mean.size(); ++n) most = std::max(most, moved(p.mean[n], q.mean[n]));
   return most;
 }
 
