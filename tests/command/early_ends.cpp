@@ -28,6 +28,15 @@ TEST_F(EarlyEnds, CtrlCPrintsTheBranchesThatAreThere) {
   EXPECT_EQ(out.find("--time-limit"), std::string::npos) << out;
 }
 
+TEST_F(EarlyEnds, ACheckWithoutAnAnswerSaysSoInJson) {
+  const CommandResult cut = hb("check " + scene("six_link") + " --rpm 300 --json --time-limit 0.002");
+  EXPECT_EQ(cut.status, 3);
+  const auto found = nlohmann::json::parse(cut.out, nullptr, false);
+  ASSERT_FALSE(found.is_discarded()) << cut.out;
+  EXPECT_EQ(found["status"], "tolerance not reached");
+  EXPECT_NE(found["notes"][0].get<std::string>().find("before there was an answer"), std::string::npos);
+}
+
 class OnePart : public hb::Work {
  public:
   void for_each(std::size_t count, const std::function<void(std::size_t)>& task) const override {

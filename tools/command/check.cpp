@@ -117,7 +117,7 @@ int run_check(const CheckFlags& flags) {
     request.done = [&](double) { progress.end(); };
     found = check(scene, request, SharedWork(out.threads, nullptr, {}, early_end(out.folder.has_value())));
   }
-  if (found.speeds.empty()) return stopped_status();
+  if (found.speeds.empty()) return stopped_status(out.json);
   nlohmann::ordered_json document = check_json(found);
   if (out.stats) document["accuracy"] = accuracy_json(found.settings);
   Delivery delivery;

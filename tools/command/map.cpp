@@ -60,7 +60,7 @@ int run_map(const MapCommandFlags& flags) {
 
   std::optional<Map> map;
   KeptRun run("map", out.folder, earlier, map_key(task), out.threads);
-  if (!run.run([&](SharedWork& work) { map = task.compute(work); })) return stopped_status();
+  if (!run.run([&](SharedWork& work) { map = task.compute(work); })) return stopped_status(out.json);
 
   const MapDocument document = document_of(*map);
   Delivery delivery;

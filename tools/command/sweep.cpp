@@ -81,7 +81,7 @@ int run_sweep_command(const SweepFlags& flags) {
   if (!flags.measured.empty()) (void)read_measured(flags.measured, measured_axis(swept), measured_quantities(swept));
   say_forecast_of(swept, out);
   KeptRun run("sweep", out.folder, earlier, sweep_key(swept), out.threads);
-  if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status();
+  if (!run.run([&](SharedWork& work) { result = run_sweep(swept, work); })) return stopped_status(out.json);
   std::vector<SweepBand> bands;
   if (!bands_asked.empty()) {
     SharedWork work(out.threads);

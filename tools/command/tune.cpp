@@ -71,7 +71,7 @@ int run_tune(const TuneFlags& flags) {
     found = tune(task, SharedWork(out.threads));
   } catch (const RequestError&) {  // no design yet
     if (!asked_to_end()) throw;
-    return stopped_status();
+    return stopped_status(out.json);
   }
   const TuneResult& result = *found;
   if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");

@@ -300,9 +300,11 @@ void KeptRun::delivered() {
 
 std::function<bool()> early_end(bool folder) { return folder ? time_is_up : asked_to_end; }
 
-int stopped_status() {
+int stopped_status(bool json) {
   if (interrupted()) return exit_interrupted;
-  fmt::print(stderr, "{}: the time limit was reached before there was an answer\n", speaker());
+  constexpr const char* note = "the time limit was reached before there was an answer";
+  fmt::print(stderr, "{}: {}\n", speaker(), note);
+  if (json) fmt::print("{{\"status\":\"tolerance not reached\",\"notes\":[\"{}\"]}}\n", note);
   return exit_not_reached;
 }
 

@@ -77,8 +77,8 @@ class KeptRun {
 // What ends work on the way to an answer that has to be given as far as it is there; with `folder` only the time: then
 // what is finished is kept at Ctrl-C.
 [[nodiscard]] std::function<bool()> early_end(bool folder);
-// Exit status of work that was stopped, after the words that belong to it.
-[[nodiscard]] int stopped_status();
+// Exit status of work that was stopped, after the words that belong to it; `json`: as a document too.
+[[nodiscard]] int stopped_status(bool json);
 // Status of an answer: 130 after Ctrl-C, else `status`.
 [[nodiscard]] int ended_status(int status);
 
