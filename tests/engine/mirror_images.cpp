@@ -90,13 +90,11 @@ TEST(UndampedLocks, LastOnlyWhereNoGapIs) {
     HillSystem system = two_modes(1, 0, modulation);
     system.stiffness[0].c(2, 2) = system.stiffness[0].c(1, 2);
     const SystemAt at = [&](double x) { return scale_system(system, x); };
-    const SweepOptions options;
-    const Encounters encounters(at, options);
     for (const int intervals : {40, 130}) {
       Places places;
       for (int k = 0; k <= intervals; ++k) {
         const double speed = 0.4 + 2.2 * k / intervals;
-        places.emplace(speed, encounters.place(sample_of(system, speed)));
+        places.emplace(speed, place_of(sample_of(system, speed), at));
       }
       for (auto p = places.begin(), q = std::next(p); q != places.end(); ++p, ++q) {
         unstable += p->second.unstable && q->second.unstable;
@@ -118,11 +116,9 @@ TEST(UndampedLocks, AreNotToldOfWithDamping) {
   HillSystem system = two_modes(1, 1e-6);
   system.stiffness[0].c(2, 2) = system.stiffness[0].c(1, 2);
   const SystemAt at = [&](double x) { return scale_system(system, x); };
-  const SweepOptions options;
-  const Encounters encounters(at, options);
   Places places;
   for (const double speed : {1.97, 1.98, 1.99, 2.0, 2.01, 2.02})
-    places.emplace(speed, encounters.place(sample_of(system, speed)));
+    places.emplace(speed, place_of(sample_of(system, speed), at));
   EXPECT_TRUE(places.at(1.99).unstable && places.at(2.0).unstable);
   EXPECT_FALSE(doubtful_while_locked(places, places.at(1.99), places.at(2.0)));
 }

@@ -12,8 +12,6 @@ namespace {
 
 using cplx = std::complex<double>;
 
-constexpr double safety = 3;  // the last term of an interpolation is taken so many times
-
 // prod (w - roots_j) but for root `without`: coefficients of w^0 .. w^(n-1), 1.
 std::vector<cplx> polynomial(std::span<const cplx> roots, std::size_t without) {
   std::vector<cplx> c = {1};
@@ -95,14 +93,15 @@ ClusterModel::Bounds ClusterModel::operator()(double x, double told) const {
   const auto at_ends = [&](double at_p, double at_q) { return (1 - part) * at_p + part * at_q; };
   const auto [growth, growth_change] =
       interpolated<double>(nodes_, x, [](const ClusterNode& node) { return node.growth; });
-  const double mean = growth + safety * growth_change + at_ends(nodes_[0].growth_error, nodes_[1].growth_error);
+  const double mean =
+      growth + interpolation_safety * growth_change + at_ends(nodes_[0].growth_error, nodes_[1].growth_error);
   std::vector<cplx> c(n - 1);
   std::vector<double> error(n - 1);
   for (std::size_t k = 0; k < n - 1; ++k) {
     const auto [coefficient, change] =
         interpolated<cplx>(nodes_, x, [k](const ClusterNode& node) { return node.c[k]; });
     c[k] = real ? coefficient.real() : coefficient;
-    error[k] = safety * change + at_ends(nodes_[0].c_error[k], nodes_[1].c_error[k]);
+    error[k] = interpolation_safety * change + at_ends(nodes_[0].c_error[k], nodes_[1].c_error[k]);
   }
   // Each component of the discs |w - w_j| <= n |p(w_j)|/prod_(k != j) |w_j - w_k| has as many zeros as discs.
   const std::vector<cplx> w = roots(c, nodes_[part < 0.5 ? 0 : 1].w);

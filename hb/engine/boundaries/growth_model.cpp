@@ -11,7 +11,6 @@ namespace hb {
 namespace {
 
 using cplx = std::complex<double>;
-constexpr double safety = 3;  // the last term of an interpolation is taken so many times
 
 }  // namespace
 
@@ -61,7 +60,7 @@ GrowthBounds GrowthModel::operator()(double x) const {
   const auto [growth, growth_change] =
       interpolated<double>(nodes_, x, [](const GrowthNode& node) { return node.growth; });
   const auto [Q, Q_change] = interpolated<cplx>(nodes_, x, [](const GrowthNode& node) { return node.Q; });
-  double growth_error = safety * growth_change, E = safety * Q_change;
+  double growth_error = interpolation_safety * growth_change, E = interpolation_safety * Q_change;
   // Errors at the two ends count in proportion; what they do to higher terms these show.
   const double part = (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);
   growth_error += (1 - part) * nodes_[0].growth_error + part * nodes_[1].growth_error;

@@ -9,6 +9,8 @@
 
 namespace hb {
 
+constexpr double interpolation_safety = 3;  // the last term is taken so many times for the error
+
 // of(node) at x by Newton's divided differences, and the last term; the last place is the farthest. Where one of the
 // places beyond the first two, between which x lies, belongs to something else, leaving that one out tells it: half of
 // what that changes counts if it is more. The last difference may vanish by chance: it is taken for a tenth of the one

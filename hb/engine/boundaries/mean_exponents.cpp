@@ -204,13 +204,18 @@ double shift_by_modulation(const MeanExponent& mean) {
   return mean.coupling * mean.coupling / (margin * margin * detuning);
 }
 
+double frequency(const MeanExponent& mean) { return mean.frozen != 0 ? mean.frozen : mean.value.imag(); }
+
+double most_shift(const MeanExponent& mean) {
+  return mean.frozen != 0 ? 0 : std::min(shift_by_modulation(mean), mean.modulation);
+}
+
 double moved(const MeanExponent& p, const MeanExponent& q) {
   if (p.frozen != 0 && q.frozen != 0) return std::abs(q.frozen - p.frozen);
   const MeanExponent &weak = p.modulation < q.modulation ? p : q, &strong = p.modulation < q.modulation ? q : p;
   const double mean = std::abs((q.value - p.value).imag());
   if (weak.modulation == strong.modulation) return mean;
-  const double shift = std::max(0.5, std::min(shift_by_modulation(weak), weak.modulation)),
-               ratio = strong.modulation / weak.modulation;
+  const double shift = std::max({0.5, most_shift(p), most_shift(q)}), ratio = strong.modulation / weak.modulation;
   return mean + shift * std::min(1.0, ratio * ratio - 1);
 }
 

@@ -33,6 +33,10 @@ struct MeanExponent {
 // What modulation may shift an exponent by, of second order: hb/engine/README.md (B4).
 [[nodiscard]] double shift_by_modulation(const MeanExponent& mean);
 
+// The frequency that a mean exponent stands for, and how far from it modulation may shift the exponent.
+[[nodiscard]] double frequency(const MeanExponent& mean);
+[[nodiscard]] double most_shift(const MeanExponent& mean);
+
 // How far an exponent moves along the imaginary axis between two places where its mean one is p and q, with what
 // modulation may shift it, at most half a turn or (B4) where that is more: hb/engine/README.md (B10).
 [[nodiscard]] double moved(const MeanExponent& p, const MeanExponent& q);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hb/engine/boundaries/cluster_model.hpp"
-#include "hb/engine/boundaries/encounters.hpp"
+#include "hb/engine/boundaries/place.hpp"
 #include "hb/engine/boundaries/growth_model.hpp"
 #include "hb/engine/boundaries/separate_pair.hpp"
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "hb/engine/boundaries/encounters.hpp"
+#include "hb/engine/boundaries/place.hpp"
 
 namespace hb {
 
