@@ -225,7 +225,7 @@ bool Doubts::level_lock(const Place& p, const Place& q) const {
     if (it->first - q.x() <= farthest * width) places.push_back(&it->second);
     break;
   }
-  if (places.size() < 4) return false;
+  if (places.size() < 4 || !locks_.undisturbed(p, 0, q) || !locks_.undisturbed(q, 0, p)) return false;
   double low = HUGE_VAL, high = 0;
   for (const Place* place : places) {
     if (!place->unstable || !locked_alike(*place, p)) return false;

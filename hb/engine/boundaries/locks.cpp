@@ -58,7 +58,34 @@ BoundaryKind kind_of(const Strand& strand) {
   return turn <= slack ? BoundaryKind::plus_one : turn >= 0.5 - slack ? BoundaryKind::minus_one : BoundaryKind::complex;
 }
 
+// The growth that strand k has about where c comes next to it, Q being linear in between; the less as that is not known
+// to more than a part of the way.
+double growth_beside(const Place& p, std::size_t k, std::size_t c, const Place& q) {
+  constexpr double part = 0.2;
+  const std::vector<std::size_t>& at_q = onward(p, q);
+  const double g = p.strands.all[k].s.real();
+  if (at_q[k] == no_strand || at_q[c] == no_strand) return g;
+  const double h = std::max(0.0, q.strands.all[at_q[k]].s.real());
+  const double here = apart(p.strands, k, c), there = apart(q.strands, at_q[k], at_q[c]);
+  const double nearest = here + there > 0 ? here / (here + there) : 0.5;
+  return std::sqrt(std::lerp(g * g, h * h, std::clamp(nearest + (g < h ? -part : part), 0.0, 1.0)));
+}
+
 }  // namespace
+
+// One that ends a growth of g is coupled by g/2 or more, so that what it changes of Q is as wide in delta: it shows at
+// p or q if it moves by less.
+bool Locks::undisturbed(const Place& p, std::size_t k, const Place& q) const {
+  const std::vector<double> motion = motions(p, q);
+  const std::size_t b = p.strands.all[k].partner;
+  for (std::size_t c = 0; c < motion.size(); ++c) {
+    const double most = motion[k] + motion[c];
+    if (c == k || c == b || apart(p.strands, k, c) > most) continue;
+    const double g = growth_beside(p, k, c, q);
+    if (most > 0.5 * g && coupling_.ended(p, q, k, c, g)) return false;
+  }
+  return true;
+}
 
 // The pair of strand k of p and that of strand l of q are the same: of one kind, and no others that could take its
 // place with half of what both grow are about to lock or have just unlocked beside it.
@@ -117,6 +144,7 @@ bool Locks::leading_holds(const Place& p, const Place& q) const {
          coupling_.quenched(*place, other, 0, b)))
       return false;
   }
+  if (!undisturbed(p, 0, q) || !undisturbed(q, 0, p)) return false;
   if (same(p, 0, q, 0) && same(q, 0, p, 0)) return true;
   return throughout(p, 0, q) || throughout(q, 0, p);
 }
@@ -139,7 +167,8 @@ bool Locks::hold(const Place& p, const Place& q) const {
   const std::vector<std::size_t> at_p = growing(p), at_q = growing(q);
   for (const std::size_t k : at_p)
     for (const std::size_t l : at_q)
-      if ((k != 0 || l != 0) && same(p, k, q, l) && same(q, l, p, k)) return true;
+      if ((k != 0 || l != 0) && undisturbed(p, k, q) && undisturbed(q, l, p) && same(p, k, q, l) && same(q, l, p, k))
+        return true;
   return false;
 }
 

@@ -17,6 +17,9 @@ class Locks {
   // others that grow at both places.
   bool hold(const Place& p, const Place& q) const;
 
+  // No third strand comes near strand k of p on the way to q that may end its growth.
+  bool undisturbed(const Place& p, std::size_t k, const Place& q) const;
+
  private:
   bool same(const Place& p, std::size_t k, const Place& q, std::size_t l) const;
   bool throughout(const Place& p, std::size_t k, const Place& q) const;

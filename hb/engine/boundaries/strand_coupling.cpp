@@ -120,4 +120,18 @@ bool StrandCoupling::quenched(const Place& p, const Place& q, std::size_t a, std
   return motion_towards(p, q, a, b, std::sqrt(g * d), Effect::quenches) >= 0;
 }
 
+// What the lock gives is of the size of its kappa, which a third one of half of that changes as much as (B2) tells.
+bool StrandCoupling::ended(const Place& p, const Place& q, std::size_t a, std::size_t c, double g) const {
+  const double d = std::max(0.0, -growth_by_itself(p.strands, c));
+  const auto all_grow = [](const Strands& at, std::size_t i, std::size_t j) {
+    return at.all[i].s.real() + at.all[j].s.real() +
+           (at.all[i].partner == no_strand ? 0 : at.all[at.all[i].partner].s.real());
+  };
+  const std::vector<std::size_t>& at_q = onward(p, q);
+  if (at_q[a] != no_strand && at_q[c] != no_strand &&
+      grow_together(all_grow(p.strands, a, c), all_grow(q.strands, at_q[a], at_q[c])))
+    return false;
+  return motion_towards(p, q, a, c, std::sqrt(g * std::max(d, 0.25 * g)), Effect::quenches) >= 0;
+}
+
 }  // namespace hb

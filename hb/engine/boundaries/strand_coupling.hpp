@@ -37,6 +37,9 @@ class StrandCoupling {
   }
   // Strand a grows, b decays and may take its growth away on the way to q.
   bool quenched(const Place& p, const Place& q, std::size_t a, std::size_t b) const;
+  // Strand a grows, alone or locked to another one, like g where a third one, c, comes next to it, which may end that:
+  // as above, or where nothing decays by taking its partner.
+  bool ended(const Place& p, const Place& q, std::size_t a, std::size_t c, double g) const;
 
  private:
   double motion_towards(const Place& p, const Place& q, std::size_t a, std::size_t b, double needed,
