@@ -177,15 +177,18 @@ Tally run_line(int family, std::uint64_t number, const Options& options) {
   for (std::size_t r = 0; r < line.rods.size(); ++r) {
     Truth truth{SingleVerdicts(line.rods[r], line.from, line.to), {}};
     truth.verdicts.grid(options.grid);
-    for (const Sweep& s : sweeps) {
-      const std::vector<UnstableBand>& bands = s.rods[r].bands;
-      for (std::size_t k = 0; k < bands.size(); ++k) {
-        std::vector<double> places = {bands[k].fastest_x, 0.5 * (bands[k].from + bands[k].to)};
-        if (k > 0) places.push_back(0.5 * (bands[k - 1].to + bands[k].from));
-        for (const double x : places)
-          if (x > line.from && x < line.to) (void)truth.verdicts.at(x);
+    // Whatever a sweep says is looked at: where growth is largest, and between all ends that any of them has.
+    std::vector<double> places, ends;
+    for (const Sweep& s : sweeps)
+      for (const UnstableBand& band : s.rods[r].bands) {
+        places.push_back(band.fastest_x);
+        ends.insert(ends.end(), {band.from, band.to});
       }
-    }
+    std::ranges::sort(ends);
+    for (std::size_t k = 1; k < ends.size(); ++k)
+      if (ends[k] - ends[k - 1] > 1e-11 * ends[k]) places.push_back(0.5 * (ends[k - 1] + ends[k]));
+    for (const double x : places)
+      if (x > line.from && x < line.to) (void)truth.verdicts.at(x);
     truth.bands = truth.verdicts.bands();
     for (std::size_t k = 0; k < truth.bands.size(); ++k) {
       tally.bands += counts(truth.bands[k], truth.verdicts.speed(truth.bands[k].to));

@@ -120,7 +120,7 @@ bool StrandCoupling::quenched(const Place& p, const Place& q, std::size_t a, std
   return motion_towards(p, q, a, b, std::sqrt(g * d), Effect::quenches) >= 0;
 }
 
-// What the lock gives is of the size of its kappa, which a third one of half of that changes as much as (B2) tells.
+// kappa^2 >= g max(d, g/4), hb/engine/README.md (B21).
 bool StrandCoupling::ended(const Place& p, const Place& q, std::size_t a, std::size_t c, double g) const {
   const double d = std::max(0.0, -growth_by_itself(p.strands, c));
   const auto all_grow = [](const Strands& at, std::size_t i, std::size_t j) {
