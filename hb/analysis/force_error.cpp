@@ -12,8 +12,7 @@ struct Largest {
 
 // Bound on the largest value over the turn of a difference.
 double difference(const FourierSeries& a, const FourierSeries& b) {
-  const Eigen::Index H = std::max(a.num_harmonics(), b.num_harmonics());
-  const FourierSeries series(fourier::resized(a, H).c - fourier::resized(b, H).c);
+  const FourierSeries series = fourier::difference(a, b);
   double largest = 0;
   for (Eigen::Index c = 0; c < series.num_components(); ++c)
     largest = std::max(largest, fourier::wiener_norm(series, c));

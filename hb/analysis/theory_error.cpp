@@ -178,10 +178,8 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
   Index H = linear.torque.num_harmonics();
   for (const JointForce& joint : linear.joints) H = std::max(H, joint.elastic.num_harmonics());
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    const FourierSeries& dq = errors.rods[r].correction;
-    const Index longest = std::max(dq.num_harmonics(), rods[r].q->num_harmonics());
-    corrected.emplace_back(fourier::resized(*rods[r].q, longest).c + fourier::resized(dq, longest).c);
-    H = std::max(H, longest);
+    corrected.push_back(fourier::sum(*rods[r].q, errors.rods[r].correction));
+    H = std::max(H, corrected.back().num_harmonics());
   }
   const CrankAngles angles(model.linkage(), fourier::fast_length(2 * H + 2));
   const ForceSamples exact = exact_forces(model, speed, angles, ritz_samples(corrected, speed, angles.size()));
@@ -244,8 +242,8 @@ std::vector<FourierSeries> moved_by(const std::vector<FourierSeries>& q, const s
                                     Index N) {
   std::vector<FourierSeries> moved;
   for (std::size_t r = 0; r < q.size(); ++r) {
-    const Index H = std::min((N - 1) / 2, std::max(q[r].num_harmonics(), dq[r].num_harmonics()));
-    moved.emplace_back(fourier::resized(q[r], H).c + fourier::resized(dq[r], H).c);
+    const FourierSeries all = fourier::sum(q[r], dq[r]);
+    moved.push_back(fourier::resized(all, std::min((N - 1) / 2, all.num_harmonics())));
   }
   return moved;
 }
@@ -263,9 +261,7 @@ double difference(const std::vector<FourierSeries>& from, const std::vector<Four
                   const Measure& measure) {
   double largest = 0;
   for (std::size_t r = 0; r < from.size(); ++r) {
-    const Index H = std::max(from[r].num_harmonics(), to[r].num_harmonics());
-    const FourierSeries change(fourier::resized(to[r], H).c - fourier::resized(from[r], H).c);
-    largest = std::max(largest, ratio(measure(change), measure(to[r])));
+    largest = std::max(largest, ratio(measure(fourier::difference(to[r], from[r])), measure(to[r])));
   }
   return largest;
 }
@@ -329,8 +325,7 @@ std::optional<std::vector<FourierSeries>> change_by_newton(const ExactModel& mod
   std::vector<FourierSeries> dq;
   for (std::size_t r = 0; r < q.size(); ++r) {
     const FourierSeries found(motion.q.c.middleRows(model.first_mode(r), q[r].num_components()));
-    const Index longest = std::max(H, found.num_harmonics());
-    dq.emplace_back(fourier::resized(found, longest).c - fourier::resized(q[r], longest).c);
+    dq.push_back(fourier::difference(found, q[r]));
   }
   return dq;
 }

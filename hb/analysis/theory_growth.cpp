@@ -64,9 +64,7 @@ PeriodicMotion corrected_motion(double speed, std::span<const LinearRod> rods, c
                                 const std::vector<Index>& num_modes, const GrowthLook& look) {
   std::vector<FourierSeries> bent;
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    const FourierSeries &q = *rods[r].q, &dq = errors.rods[r].correction;
-    const Index H = std::max(q.num_harmonics(), dq.num_harmonics());
-    const FourierSeries moved(fourier::resized(q, H).c + fourier::resized(dq, H).c);
+    const FourierSeries moved = fourier::sum(*rods[r].q, errors.rods[r].correction);
     const FourierSeries kept = fourier::resized(moved, fourier::significant_harmonics(moved, look.negligible));
     bent.emplace_back(Eigen::MatrixXcd(kept.c.topRows(num_modes[r])));
   }

@@ -198,6 +198,24 @@ FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics) {
   return result;
 }
 
+FourierSeries sum(const FourierSeries& f, const FourierSeries& g) {
+  FourierSeries result = resized(f, std::max(f.num_harmonics(), g.num_harmonics()));
+  result.c.leftCols(g.c.cols()) += g.c;
+  return result;
+}
+
+FourierSeries difference(const FourierSeries& f, const FourierSeries& g) {
+  FourierSeries result = resized(f, std::max(f.num_harmonics(), g.num_harmonics()));
+  result.c.leftCols(g.c.cols()) -= g.c;
+  return result;
+}
+
+double mean_product(const FourierSeries& f, const FourierSeries& g) {
+  const Eigen::Index count = std::min(f.c.cols(), g.c.cols());
+  const auto products = (f.c.leftCols(count).conjugate().cwiseProduct(g.c.leftCols(count))).real();
+  return 2 * products.sum() - products.col(0).sum();
+}
+
 Eigen::Index significant_harmonics(const FourierSeries& series, double relative) {
   if (series.c.size() == 0) return 0;
   const Eigen::VectorXd squares = (unit_of(series.c) * series.c).cwiseAbs2().colwise().maxCoeff();

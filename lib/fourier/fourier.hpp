@@ -51,6 +51,13 @@ namespace fourier {
 // Same series with harmonics 0..num_harmonics (cut or padded with zeros).
 [[nodiscard]] FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics);
 
+// f + g and f - g, with as many harmonics as the longer one.
+[[nodiscard]] FourierSeries sum(const FourierSeries& f, const FourierSeries& g);
+[[nodiscard]] FourierSeries difference(const FourierSeries& f, const FourierSeries& g);
+
+// Mean over the turn of sum_i f_i g_i.
+[[nodiscard]] double mean_product(const FourierSeries& f, const FourierSeries& g);
+
 // Smallest H such that every |c_k|, k > H, is <= relative * max|c| (per component's own maximum if
 // `per_component`).
 [[nodiscard]] Eigen::Index significant_harmonics(const FourierSeries& series, double relative);

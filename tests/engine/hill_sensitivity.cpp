@@ -99,10 +99,10 @@ TEST(HillSensitivity, AdjointGivesTheDerivativeOfTheResponse) {
     const FourierSeries q = steady(family.base, speed);
     const FourierSeries g = point_functional(I, q.num_harmonics(), mode, tau);
     const double value = fourier::evaluate(q, tau)(mode);
-    EXPECT_NEAR(mean_product(g, q), value, 1e-13 * q.c.cwiseAbs().sum());
+    EXPECT_NEAR(fourier::mean_product(g, q), value, 1e-13 * q.c.cwiseAbs().sum());
     const auto lambda = solve_adjoint(family.base, speed, g, q.num_harmonics());
     ASSERT_TRUE(lambda);
-    const double derivative = mean_product(*lambda, residual_slope(family, speed, q));
+    const double derivative = fourier::mean_product(*lambda, residual_slope(family, speed, q));
     expect_derivative(
         derivative, [&](double p) { return fourier::evaluate(steady(family.at(p), speed), tau)(mode); }, 1e-4,
         1e-12 * q.c.cwiseAbs().sum());
@@ -117,7 +117,7 @@ TEST(HillSensitivity, AdjointAndLinearisedSolutionAgreeToRounding) {
     const FourierSeries g = point_functional(I, H, 0, 0.3 * seed), r = residual_slope(family, 1.1, q);
     const auto lambda = solve_adjoint(family.base, 1.1, g, H), slope = solve_linearised(family.base, 1.1, r, H);
     ASSERT_TRUE(lambda && slope);
-    const double by_adjoint = mean_product(*lambda, r), directly = mean_product(g, *slope);
+    const double by_adjoint = fourier::mean_product(*lambda, r), directly = fourier::mean_product(g, *slope);
     EXPECT_NEAR(by_adjoint, directly, 1e-9 * slope->c.cwiseAbs().sum());
   }
 }
@@ -183,7 +183,7 @@ TEST(HillSensitivity, RodFunctionalIsTheFieldOfTheRod) {
         const auto value = [&](RodQuantity quantity) {
           const RodFunctional f = rod_functional(link, coefficients.rods[r], speed, 4, q.num_harmonics(), quantity,
                                                  x(i), 2 * M_PI * static_cast<double>(j) / 7);
-          return f.offset + mean_product(f.g, q);
+          return f.offset + fourier::mean_product(f.g, q);
         };
         EXPECT_NEAR(value(RodQuantity::deflection), field.w(i, j), 1e-12 * w);
         EXPECT_NEAR(value(RodQuantity::bending_moment), field.bending_moment(i, j), 1e-12 * moment);

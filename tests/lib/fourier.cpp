@@ -86,6 +86,20 @@ TEST(Fourier, RangeChoosesTheHigherOfTwoNearlyEqualPeaks) {
   EXPECT_NEAR(peak.crank_angle, t0, 1e-7);
 }
 
+TEST(Fourier, SumsDifferencesAndMeansOfProductsAreThoseOfTheFunctions) {
+  const FourierSeries f = sampled([](double t) { return 0.5 + std::cos(t) + 0.2 * std::sin(3 * t); }, 16),
+                      g = sampled([](double t) { return 2 - 3 * std::cos(t); }, 5);
+  const FourierSeries sum = fourier::sum(f, g), back = fourier::difference(g, f);
+  EXPECT_EQ(sum.num_harmonics(), f.num_harmonics());
+  EXPECT_EQ(back.num_harmonics(), f.num_harmonics());
+  for (const double t : {0.0, 0.7, 4.0}) {
+    const double at_f = 0.5 + std::cos(t) + 0.2 * std::sin(3 * t), at_g = 2 - 3 * std::cos(t);
+    EXPECT_NEAR(fourier::evaluate(sum, t)(0), at_f + at_g, 1e-15 * 8);
+    EXPECT_NEAR(fourier::evaluate(back, t)(0), at_g - at_f, 1e-15 * 8);
+  }
+  EXPECT_NEAR(fourier::mean_product(f, g), 0.5 * 2 - 0.5 * 3, 1e-15);
+}
+
 TEST(Fourier, ConstantHasEqualExtremaAndZeroSeriesHasZeroMaximum) {
   FourierSeries constant(1, 0);
   constant.c(0, 0) = -2.5;

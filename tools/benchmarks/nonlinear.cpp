@@ -34,8 +34,7 @@ Mechanism six_link() {
 
 double error_of(const NonlinearSystem& system, const PeriodicMotion& motion) {
   const PeriodicMotion exact = solve_periodic_motion(system, motion.parameter, motion.q, {.tolerance = 1e-11});
-  const Eigen::Index H = std::max(exact.q.num_harmonics(), motion.q.num_harmonics());
-  const FourierSeries difference(Eigen::MatrixXcd(fourier::resized(exact.q, H).c - fourier::resized(motion.q, H).c));
+  const FourierSeries difference = fourier::difference(exact.q, motion.q);
   double error = 0, size = 0;
   for (Eigen::Index i = 0; i < difference.num_components(); ++i) {
     error = std::max(error, fourier::max_abs(difference, i).value);

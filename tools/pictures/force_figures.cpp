@@ -13,8 +13,7 @@ namespace hb::tools {
 namespace {
 
 double largest_change(const FourierSeries& elastic, const FourierSeries& rigid) {
-  const Eigen::Index H = std::max(elastic.num_harmonics(), rigid.num_harmonics());
-  const FourierSeries change(fourier::resized(elastic, H).c - fourier::resized(rigid, H).c);
+  const FourierSeries change = fourier::difference(elastic, rigid);
   double largest = 0;
   for (Eigen::Index c = 0; c < change.num_components(); ++c)
     largest = std::max(largest, fourier::max_abs(change, c).value);

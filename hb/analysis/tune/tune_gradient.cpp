@@ -104,11 +104,12 @@ OptionalVector shape_gradient(Neighbourhood& near, const Metric& metric, const M
   const std::optional<FourierSeries> lambda =
       solve_adjoint(rod.system, speed, on_unknowns(J.g, rod.system.num_modes()), H);
   if (!lambda) return std::nullopt;
-  const double sign = J.offset + mean_product(J.g, q) < 0 ? -1 : 1;
+  const double sign = J.offset + fourier::mean_product(J.g, q) < 0 ? -1 : 1;
   return near.gradient([&](const Neighbour& other, const VectorXd&) {
     const RodFunctional K = functional(other.model);
-    const double lagrangian = K.offset + mean_product(K.g, q) +
-                              mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *unknowns));
+    const double lagrangian =
+        K.offset + fourier::mean_product(K.g, q) +
+        fourier::mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *unknowns));
     return sign * factor(other) * lagrangian;
   });
 }
@@ -140,13 +141,14 @@ OptionalVector whole_stress_gradient(Neighbourhood& near, const Metric& metric, 
   const std::optional<FourierSeries> lambda =
       solve_adjoint(rod.system, speed, on_unknowns(J.g, rod.system.num_modes()), q.num_harmonics());
   if (!lambda) return std::nullopt;
-  const double at = J.offset + mean_product(J.g, q), sign = at < 0 ? -1 : 1;
+  const double at = J.offset + fourier::mean_product(J.g, q), sign = at < 0 ? -1 : 1;
   // Of a safety n = 1/usage: d n = -n^2 d usage.
   const double factor = metric.kind == MetricKind::safety ? -1 / (at * at) : in_megapascal(here.model.scene.units);
   return near.gradient([&](const Neighbour& other, const VectorXd&) {
     const RodFunctional K = functional(other);
-    const double lagrangian = K.offset + mean_product(K.g, q) +
-                              mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *unknowns));
+    const double lagrangian =
+        K.offset + fourier::mean_product(K.g, q) +
+        fourier::mean_product(*lambda, equation_residual(other.model.rods[r].system, speed, *unknowns));
     return sign * factor * lagrangian;
   });
 }

@@ -185,7 +185,7 @@ void seek_jointly(MetricValue& value, const SceneModel& model, const SpeedSpan& 
     const RodFunctional J =
         rod_functional(link, coefficients, speed, response->num_components(), response->num_harmonics(),
                        stress ? RodQuantity::bending_moment : RodQuantity::deflection, x(0) * link.length, x(1));
-    return value.factor * std::abs(J.offset + mean_product(J.g, *response));
+    return value.factor * std::abs(J.offset + fourier::mean_product(J.g, *response));
   };
   // A neighbourhood: what lies further away was seen speed by speed.
   constexpr double part = 0.02, angle = 0.05, ratio = 0.002;

@@ -135,12 +135,6 @@ std::optional<FourierSeries> solve_adjoint(const HillSystem& system, double spee
   return mu;
 }
 
-double mean_product(const FourierSeries& a, const FourierSeries& b) {
-  const Index count = std::min(a.c.cols(), b.c.cols());
-  const auto products = (a.c.leftCols(count).conjugate().cwiseProduct(b.c.leftCols(count))).real();
-  return 2 * products.sum() - products.col(0).sum();
-}
-
 FourierSeries point_functional(Index num_modes, Index num_harmonics, Index mode, double crank_angle) {
   FourierSeries g(num_modes, num_harmonics);
   for (Index k = 0; k <= num_harmonics; ++k) g.c(mode, k) = std::polar(1.0, -static_cast<double>(k) * crank_angle);

@@ -28,9 +28,6 @@ namespace hb {
 [[nodiscard]] std::optional<FourierSeries> solve_adjoint(const HillSystem& system, double speed, FourierSeries g,
                                                          Eigen::Index num_harmonics);
 
-// Mean over the turn of sum_i a_i b_i.
-[[nodiscard]] double mean_product(const FourierSeries& a, const FourierSeries& b);
-
 // q_i(crank_angle) = <g, q> for every q with up to num_harmonics.
 [[nodiscard]] FourierSeries point_functional(Eigen::Index num_modes, Eigen::Index num_harmonics, Eigen::Index mode,
                                              double crank_angle);

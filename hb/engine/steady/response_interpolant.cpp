@@ -124,9 +124,7 @@ FourierSeries ResponseInterpolant::slope(double x) const {
 // What is left out is nearly in proportion to T_N, which is 1 or -1 at c; each value has an error of its own.
 double ResponseInterpolant::error(const FourierSeries& at_c) const {
   constexpr double own = 4;
-  const FourierSeries q = (*this)(c_);
-  const Index H = std::max(q.num_harmonics(), at_c.num_harmonics());
-  const FourierSeries off(MatrixXcd(fourier::resized(q, H).c - fourier::resized(at_c, H).c));
+  const FourierSeries off = fourier::difference((*this)(c_), at_c);
   return own * fourier::wiener_norm(off, 0) + rounding * fourier::wiener_norm(at_c, 0);
 }
 

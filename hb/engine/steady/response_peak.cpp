@@ -16,18 +16,6 @@ constexpr double pole_distance = 2e-6;  // relative: so near a pole has to show
 
 double height(const FourierSeries& response) { return fourier::max_abs(response, 0).value; }
 
-// Mean of a.b over the turn.
-double product(const FourierSeries& a, const FourierSeries& b) {
-  const Eigen::Index H = std::min(a.num_harmonics(), b.num_harmonics()) + 1;
-  const auto terms = a.c.leftCols(H).conjugate().cwiseProduct(b.c.leftCols(H)).real();
-  return 2 * terms.sum() - terms(0);
-}
-
-FourierSeries difference(const FourierSeries& a, const FourierSeries& b) {
-  const Eigen::Index H = std::max(a.num_harmonics(), b.num_harmonics());
-  return FourierSeries(Eigen::MatrixXcd(fourier::resized(a, H).c - fourier::resized(b, H).c));
-}
-
 // q = A/(x - x0) + B beside a pole: x0 from three places, A along what q changes between them; the next place lies as
 // far beside it as the last one was off, but no nearer than `nearest`, where a pole has to show. Empty where they do
 // not come to agree to the tolerance.
@@ -48,8 +36,9 @@ std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double about, d
   double x0 = about, changed = 3 * distance;
   for (int step = 0; step < most_steps; ++step) {
     const Seen *p = &seen.end()[-3], *q = &seen.end()[-2], *r = &seen.end()[-1];
-    const FourierSeries A = difference(r->q, q->q);
-    const double first = product(A, difference(p->q, q->q)), second = product(A, difference(q->q, r->q));
+    const FourierSeries A = fourier::difference(r->q, q->q);
+    const double first = fourier::mean_product(A, fourier::difference(p->q, q->q)),
+                 second = fourier::mean_product(A, fourier::difference(q->q, r->q));
     // (r - x0)/(p - x0)
     const double ratio = first / second * (r->x - q->x) / (q->x - p->x), next = (r->x - ratio * p->x) / (1 - ratio);
     const double change = std::abs(next - x0), error = change + 4 * eps * std::abs(next);
