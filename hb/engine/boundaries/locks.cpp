@@ -58,17 +58,20 @@ BoundaryKind kind_of(const Strand& strand) {
   return turn <= slack ? BoundaryKind::plus_one : turn >= 0.5 - slack ? BoundaryKind::minus_one : BoundaryKind::complex;
 }
 
-// The growth that strand k has about where c comes next to it, Q being linear in between; the less as that is not known
-// to more than a part of the way.
-double growth_beside(const Place& p, std::size_t k, std::size_t c, const Place& q) {
+// Strand c beside strand k, which grows, on the way from p to q.
+struct Passing {
+  double here, there;  // how far apart they are at either end, along the axis
+  double growth;  // of k where c is nearest, Q being linear in between; the less as that is known to a part of the way
+};
+Passing passing(const Place& p, std::size_t k, std::size_t c, const Place& q) {
   constexpr double part = 0.2;
   const std::vector<std::size_t>& at_q = onward(p, q);
-  const double g = p.strands.all[k].s.real();
-  if (at_q[k] == no_strand || at_q[c] == no_strand) return g;
-  const double h = std::max(0.0, q.strands.all[at_q[k]].s.real());
-  const double here = apart(p.strands, k, c), there = apart(q.strands, at_q[k], at_q[c]);
+  const double g = p.strands.all[k].s.real(), here = apart(p.strands, k, c);
+  if (at_q[k] == no_strand || at_q[c] == no_strand) return {here, 0, g};
+  const double h = std::max(0.0, q.strands.all[at_q[k]].s.real()), there = apart(q.strands, at_q[k], at_q[c]);
   const double nearest = here + there > 0 ? here / (here + there) : 0.5;
-  return std::sqrt(std::lerp(g * g, h * h, std::clamp(nearest + (g < h ? -part : part), 0.0, 1.0)));
+  const double beside = std::clamp(nearest + (g < h ? -part : part), 0.0, 1.0);
+  return {here, there, std::sqrt(std::lerp(g * g, h * h, beside))};
 }
 
 }  // namespace
@@ -79,10 +82,10 @@ bool Locks::undisturbed(const Place& p, std::size_t k, const Place& q) const {
   const std::vector<double> motion = motions(p, q);
   const std::size_t b = p.strands.all[k].partner;
   for (std::size_t c = 0; c < motion.size(); ++c) {
+    if (c == k || c == b) continue;
+    const Passing by = passing(p, k, c, q);
     const double most = motion[k] + motion[c];
-    if (c == k || c == b || apart(p.strands, k, c) > most) continue;
-    const double g = growth_beside(p, k, c, q);
-    if (most > 0.5 * g && coupling_.ended(p, q, k, c, g)) return false;
+    if (by.here + by.there <= most && most > 0.5 * by.growth && coupling_.ended(p, q, k, c, by.growth)) return false;
   }
   return true;
 }
