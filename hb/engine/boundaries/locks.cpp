@@ -77,15 +77,16 @@ Passing passing(const Place& p, std::size_t k, std::size_t c, const Place& q) {
 }  // namespace
 
 // One that ends a growth of g is coupled by g/2 or more, so that what it changes of Q is as wide in delta: it shows at
-// p or q if it moves by less.
+// p or q if it moves by less, which `motions` count three times. The slower one of another lock is farther off than the
+// faster one.
 bool Locks::undisturbed(const Place& p, std::size_t k, const Place& q) const {
   const std::vector<double> motion = motions(p, q);
-  const std::size_t b = p.strands.all[k].partner;
+  const std::vector<Strand>& all = p.strands.all;
   for (std::size_t c = 0; c < motion.size(); ++c) {
-    if (c == k || c == b) continue;
+    if (c == k || c == all[k].partner || (locked(p, c) && all[c].partner < c)) continue;
     const Passing by = passing(p, k, c, q);
     const double most = motion[k] + motion[c];
-    if (by.here + by.there <= most && most > 0.5 * by.growth && coupling_.ended(p, q, k, c, by.growth)) return false;
+    if (by.here + by.there <= most && most > 1.5 * by.growth && coupling_.ended(p, q, k, c, by.growth)) return false;
   }
   return true;
 }
