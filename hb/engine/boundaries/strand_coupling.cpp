@@ -123,9 +123,11 @@ bool StrandCoupling::quenched(const Place& p, const Place& q, std::size_t a, std
 // kappa^2 >= g max(d, g/4), hb/engine/README.md (B21).
 bool StrandCoupling::ended(const Place& p, const Place& q, std::size_t a, std::size_t c, double g) const {
   const double d = std::max(0.0, -growth_by_itself(p.strands, c));
-  const auto all_grow = [](const Strands& at, std::size_t i, std::size_t j) {
-    return at.all[i].s.real() + at.all[j].s.real() +
-           (at.all[i].partner == no_strand ? 0 : at.all[at.all[i].partner].s.real());
+  const auto with_partner = [](const Strands& at, std::size_t k) {
+    return (at.all[k].partner == no_strand ? 1 : 2) * growth_by_itself(at, k);
+  };
+  const auto all_grow = [&](const Strands& at, std::size_t i, std::size_t j) {
+    return with_partner(at, i) + with_partner(at, j);
   };
   const std::vector<std::size_t>& at_q = onward(p, q);
   if (at_q[a] != no_strand && at_q[c] != no_strand &&
