@@ -70,7 +70,7 @@ class Search {
     const std::optional<ScaledSystem> system = at_(x);
     if (!system) return false;
     const auto above = places_.lower_bound(x);
-    if (leading_suffices_ && evaluate_leading(*system, x)) return true;
+    if (suffices_ && evaluate_leading(*system, x)) return true;
     StabilityOptions options = options_.stability;
     if (above != places_.end() && above != places_.begin() && is_far_from_zero(above->second.growth()) &&
         is_far_from_zero(std::prev(above)->second.growth())) {
@@ -93,10 +93,12 @@ class Search {
     const StabilitySample sample = stability_sample(system, x, options);
     if (sample.stability.verdict == Verdict::undecided) return false;
     const Place place = place_of(sample, at_);
-    if (!is_apart(place)) return false;
+    if (!suffices(place)) return false;
     places_.emplace(x, place);
     return true;
   }
+
+  bool suffices(const Place& place) const { return is_apart(place, Apart::pair) || is_apart(place, *suffices_); }
 
   // All exponents at a place where the leading ones are known.
   void complete(Place& place) {
@@ -150,7 +152,9 @@ class Search {
     const std::vector<const Place*> places = apart_beside(places_, p, q, Apart::pair);
     const BoundaryLocation found = locate(at_, p.sample, q.sample, located_, expected_change(places));
     StabilityBoundary boundary = found.boundary;
-    leading_suffices_ = is_apart(p) && is_apart(q);
+    suffices_.reset();
+    for (const Apart what : {Apart::alone, Apart::pair})
+      if (is_apart(p, what) && is_apart(q, what)) suffices_ = what;
     for (const auto* sample : {&found.below, &found.above})
       if (*sample && std::abs((*sample)->x - boundary.x) < 16 * beyond(boundary, cell)) keep(**sample);
     const double left = beside(boundary, cell, -1), right = beside(boundary, cell, 1);
@@ -172,7 +176,7 @@ class Search {
     if (!system || sample.stability.verdict == Verdict::undecided) return;
     sample.mean = mean_exponents(*system);
     const Place place = place_of(sample, at_);
-    if (is_partial(sample) ? leading_suffices_ && is_apart(place) : place.strands.all.size() == place.mean.size())
+    if (is_partial(sample) ? suffices_ && suffices(place) : place.strands.all.size() == place.mean.size())
       places_.emplace(sample.x, place);
   }
 
@@ -227,19 +231,19 @@ class Search {
     for (const Apart what : {Apart::pair, Apart::alone})
       if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())
         if (const std::optional<double> x = doubtful_while_apart(places, what, options_.least_growth)) {
-          leading_suffices_ = true;
+          suffices_ = what;
           return std::isnan(*x) ? unforetold(p, q, places, what) : *x;
         }
-    leading_suffices_ = false;
+    suffices_.reset();
     if (const std::optional<double> x = doubtful_while_locked(places_, p, q)) return *x;
     complete_near(p, q);
     return p.unstable ? doubts_.while_unstable(p, q) : doubts_.while_stable(p, q);
   }
 
-  // A lock may end and begin again with the multiplier of another exponent: unless the others are too far off, what is
-  // foretold has to hold half way. NaN: it does.
+  // A lock may end and begin again, with its own multiplier or that of another exponent: unless the others are too far
+  // off, and both of the pair are known, what is foretold has to hold half way. NaN: it does.
   double unforetold(const Place& p, const Place& q, const std::vector<const Place*>& places, Apart what) {
-    if (stays_leading(p, q, what)) return nan;
+    if (what == Apart::pair && stays_leading(p, q)) return nan;
     const double middle = 0.5 * (p.x() + q.x());
     if (!evaluate(middle)) return middle;
     return foretold(places, what, places_.at(middle)) ? nan : middle;
@@ -312,7 +316,7 @@ class Search {
   StrandCoupling coupling_;
   Doubts doubts_;
   std::set<double> completed_;  // places with all exponents that could be found
-  bool leading_suffices_ = false;  // at the next place
+  std::optional<Apart> suffices_;  // at the next place
   std::priority_queue<Cell> cells_;  // the widest first
   std::vector<StabilityBoundary> boundaries_;
   std::vector<std::array<double, 2>> not_excluded_;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "hb/engine/boundaries/cluster_model.hpp"
-#include "hb/engine/boundaries/place.hpp"
 #include "hb/engine/boundaries/growth_model.hpp"
+#include "hb/engine/boundaries/place.hpp"
 #include "hb/engine/boundaries/separate_pair.hpp"
 
 namespace hb {

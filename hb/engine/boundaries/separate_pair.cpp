@@ -117,8 +117,8 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   return std::clamp(where, p.x() + margin, q.x() - margin);
 }
 
-bool stays_leading(const Place& p, const Place& q, Apart what) {
-  const LeadingPair &a = *pair_of(p, what), &b = *pair_of(q, what);
+bool stays_leading(const Place& p, const Place& q) {
+  const LeadingPair &a = *p.pair, &b = *q.pair;
   if (std::min(a.half_trace, b.half_trace) < -1 && std::max(a.half_trace, b.half_trace) > 1) return false;
   return std::min(a.lower, b.lower) - std::abs(a.lower - b.lower) > others_between(a, b);
 }

@@ -26,9 +26,9 @@ enum class Apart { pair, alone };
 [[nodiscard]] std::optional<double> doubtful_while_apart(const std::vector<const Place*>& places, Apart what,
                                                          double least);
 
-// What is apart stays so between two places even where all exponents change as much again as from one to the other; not
+// The pair stays apart between two places even where all exponents change as much again as from one to the other; not
 // told of multipliers that change their sign.
-[[nodiscard]] bool stays_leading(const Place& p, const Place& q, Apart what);
+[[nodiscard]] bool stays_leading(const Place& p, const Place& q);
 
 // Whether the growth that these places foretell at one between the first two holds there.
 [[nodiscard]] bool foretold(const std::vector<const Place*>& places, Apart what, const Place& between);
