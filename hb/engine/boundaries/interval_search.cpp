@@ -240,10 +240,10 @@ class Search {
     return p.unstable ? doubts_.while_unstable(p, q) : doubts_.while_stable(p, q);
   }
 
-  // A lock may end and begin again, with its own multiplier or that of another exponent: unless the others are too far
-  // off, and both of the pair are known, what is foretold has to hold half way. NaN: it does.
+  // A lock may end and begin again, with its own multiplier or that of another exponent: unless that is excluded what
+  // is foretold has to hold half way. NaN: it does.
   double unforetold(const Place& p, const Place& q, const std::vector<const Place*>& places, Apart what) {
-    if (what == Apart::pair && stays_leading(p, q)) return nan;
+    if (stays_leading(places, what)) return nan;
     const double middle = 0.5 * (p.x() + q.x());
     if (!evaluate(middle)) return middle;
     return foretold(places, what, places_.at(middle)) ? nan : middle;

@@ -83,6 +83,23 @@ Motion motion_between(const Place& p, const Place& q) {
   return followed ? Motion::followed : pair <= most_too_far * most_turns ? Motion::too_far : Motion::unknown;
 }
 
+// The growth at either end of the interval is no more than the straight line from the nearest place beyond the other
+// end foretells. Two zeros of c next to each other between p and q, whose logarithm the growth contains, turn it
+// upwards.
+bool is_concave(const std::vector<const Place*>& places) {
+  const Place &p = *places[0], &q = *places[1];
+  const auto below_line = [&](const Place& from, const Place& by, const Place& to) {
+    const double slope = (by.growth() - from.growth()) / (by.x() - from.x());
+    return to.growth() <= by.growth() + slope * (to.x() - by.x());
+  };
+  const auto beside = [&](bool above) {
+    return std::find_if(places.begin() + 2, places.end(), [&](const Place* r) { return (r->x() > q.x()) == above; });
+  };
+  const auto left = beside(false), right = beside(true);
+  if (left == places.end() || right == places.end()) return false;
+  return below_line(**left, p, q) && below_line(**right, q, p);
+}
+
 }  // namespace
 
 bool is_apart(const Place& place, Apart what) { return is_apart(pair_of(place, what), what, place.sample); }
@@ -117,9 +134,10 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   return std::clamp(where, p.x() + margin, q.x() - margin);
 }
 
-bool stays_leading(const Place& p, const Place& q) {
-  const LeadingPair &a = *p.pair, &b = *q.pair;
+bool stays_leading(const std::vector<const Place*>& places, Apart what) {
+  const LeadingPair &a = *pair_of(*places[0], what), &b = *pair_of(*places[1], what);
   if (std::min(a.half_trace, b.half_trace) < -1 && std::max(a.half_trace, b.half_trace) > 1) return false;
+  if (what == Apart::alone && !is_concave(places)) return false;
   return std::min(a.lower, b.lower) - std::abs(a.lower - b.lower) > others_between(a, b);
 }
 

@@ -26,9 +26,10 @@ enum class Apart { pair, alone };
 [[nodiscard]] std::optional<double> doubtful_while_apart(const std::vector<const Place*>& places, Apart what,
                                                          double least);
 
-// The pair stays apart between two places even where all exponents change as much again as from one to the other; not
-// told of multipliers that change their sign.
-[[nodiscard]] bool stays_leading(const Place& p, const Place& q);
+// What is apart stays so between the first two places even where all exponents change as much again as from one to the
+// other; not told of multipliers that change their sign, nor of a leading one alone whose growth may have a notch
+// there.
+[[nodiscard]] bool stays_leading(const std::vector<const Place*>& places, Apart what);
 
 // Whether the growth that these places foretell at one between the first two holds there.
 [[nodiscard]] bool foretold(const std::vector<const Place*>& places, Apart what, const Place& between);
