@@ -101,8 +101,20 @@ bool keeps_apart(const Place& p, const Place& q, Lock lock) {
   return away(lock.rank, lock.rank + 1) && std::min(one, other) - std::abs(one - other) > 1;
 }
 
+// No other exponent, which is on the axis, comes as far as where these are locked; `motions` count three times what
+// they move.
+bool none_comes(const Place& p, const Place& q, double sign) {
+  const std::vector<double> motion = motions(p, q);
+  for (std::size_t k = 0; k < motion.size(); ++k) {
+    const Strand& strand = p.strands.all[k];
+    const double turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn;
+    if (strand.partner == no_strand && !(away > 0.5 * motion[k])) return false;
+  }
+  return true;
+}
+
 bool lasts(const Places& places, const Place& p, const Place& q, Lock lock) {
-  if (!keeps_apart(p, q, lock)) return false;
+  if (!keeps_apart(p, q, lock) || !none_comes(p, q, lock.sign) || !none_comes(q, p, lock.sign)) return false;
   std::vector<PairNode> nodes = lock_nodes(places, p, q, lock);
   if (nodes.size() < fewest_locks) return false;
   const PairModel model(std::move(nodes));
