@@ -8,8 +8,6 @@ namespace hb {
 
 namespace {
 
-using cplx = std::complex<double>;
-
 // Growth of the exponents that belong to a mean exponent, or may belong to it where decays do not tell; -infinite:
 // none.
 struct MeanGrowth {

@@ -9,8 +9,6 @@ namespace hb {
 
 namespace {
 
-using cplx = std::complex<double>;
-
 // What a strand is locked to, or nearly so: with unlike damping two go on exciting each other some way apart.
 std::size_t companion(const Strands& strands, std::size_t a) {
   constexpr double farthest = 0.05;
