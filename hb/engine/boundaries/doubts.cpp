@@ -62,6 +62,20 @@ double clamped(double x, const Place& p, const Place& q, double part = 0.02) {
 
 }  // namespace
 
+// Where two meet at an end of the interval and growth is doubtful next to that: three places close to each other, there
+// and on either side, show how Q turns. NaN: they are there.
+double Doubts::beside_centre(const Place& p, const Place& q, double centre, double doubtful) const {
+  constexpr double least = 3e-4, next_to = 0.15, close = 8;
+  const double width = q.x() - p.x(), known = std::min(centre - p.x(), q.x() - centre);
+  const bool at_p = centre - p.x() < q.x() - centre;
+  const double end = at_p ? p.x() : q.x(), step = std::max(least * width, 3 * known);
+  if (known > near_centre * width || std::abs(doubtful - end) > next_to * width) return nan;
+  const auto at = places_.find(end);
+  const auto beyond = at_p ? (at == places_.begin() ? places_.end() : std::prev(at)) : std::next(at);
+  if (beyond != places_.end() && std::abs(beyond->first - end) <= close * step) return nan;
+  return at_p ? end + step : end - step;
+}
+
 double Doubts::while_stable(const Place& p, const Place& q) const {
   const double middle = 0.5 * (p.x() + q.x());
   if (p.strands.all.empty() || q.strands.all.empty()) return middle;
@@ -85,7 +99,10 @@ double Doubts::while_stable(const Place& p, const Place& q) const {
     if (inside && model->rise() > 0.25 * far * far && (known > near_centre * width || (*model)(centre).low > told))
       return centre;
     if (high > told) {
-      where = inside && known > near_centre * width ? centre : clamped(x, p, q, margin_towards(told, high));
+      const double closely = beside_centre(p, q, centre, x);
+      where = !std::isnan(closely)                    ? closely
+              : inside && known > near_centre * width ? centre
+                                                      : clamped(x, p, q, margin_towards(told, high));
       worst = high;
     }
   }

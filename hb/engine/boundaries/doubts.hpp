@@ -23,6 +23,7 @@ class Doubts {
 
  private:
   double least_growth(const Place& p, const Place& q) const;
+  double beside_centre(const Place& p, const Place& q, double centre, double doubtful) const;
   double in_crowds(const Place& p, const Place& q, const std::vector<Meeting>& meetings, double told) const;
   bool level(const Place& p, const Place& q, double least) const;
   bool level_lock(const Place& p, const Place& q) const;

@@ -15,6 +15,7 @@ namespace {
 // A lock may be that of any mode, none of which turns farther from place to place; twice that where it is divided.
 constexpr double lock_turns = 0.4, lock_too_far = 2;
 constexpr std::size_t fewest_locks = 4, locks_beside = 2;
+constexpr double slack = 1e-12;  // of a turn, beside a multiplier +1 or -1
 
 // The stiffness is symmetric at all angles and nothing damps: exponents are s, -s in pairs.
 bool is_undamped(const Place& place) {
@@ -24,7 +25,6 @@ bool is_undamped(const Place& place) {
 
 // Half traces cosh 2 pi s beyond 1, of multipliers of one sign, descending.
 std::vector<LeadingPair> locks_of(const Place& place, double sign) {
-  constexpr double slack = 1e-12;
   std::vector<LeadingPair> locks;
   for (const Strand& strand : place.strands.all) {
     const double g = strand.s.real(), turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn;
@@ -101,24 +101,28 @@ bool keeps_apart(const Place& p, const Place& q, Lock lock) {
   return away(lock.rank, lock.rank + 1) && std::min(one, other) - std::abs(one - other) > 1;
 }
 
-// No other exponent, which is on the axis, comes as far as where these are locked; `motions` count three times what
-// they move.
-bool none_comes(const Place& p, const Place& q, double sign) {
+// Growth that what comes to that multiplier between p and q may have there: an exponent that starts `away` from it,
+// locks there and is gone at q moves by kappa + sqrt(kappa^2 + away^2) by itself, (B2). `motions` count three times
+// what they move.
+double growth_of_comers(const Place& p, const Place& q, double sign) {
   const std::vector<double> motion = motions(p, q);
+  double most = 0;
   for (std::size_t k = 0; k < motion.size(); ++k) {
     const Strand& strand = p.strands.all[k];
-    const double turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn;
-    if (strand.partner == no_strand && !(away > 0.5 * motion[k])) return false;
+    const double turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn, reach = 0.5 * motion[k];
+    if (away > slack && away < reach)
+      most = std::max(most, std::max(0.0, strand.s.real()) + 0.5 * (reach - away * away / reach));
   }
-  return true;
+  return most;
 }
 
 bool lasts(const Places& places, const Place& p, const Place& q, Lock lock) {
-  if (!keeps_apart(p, q, lock) || !none_comes(p, q, lock.sign) || !none_comes(q, p, lock.sign)) return false;
+  if (!keeps_apart(p, q, lock)) return false;
   std::vector<PairNode> nodes = lock_nodes(places, p, q, lock);
   if (nodes.size() < fewest_locks) return false;
   const PairModel model(std::move(nodes));
-  return std::ranges::all_of(model.telling(), [&](double x) { return model.leading(x).low > 0; });
+  const double others = std::max(growth_of_comers(p, q, lock.sign), growth_of_comers(q, p, lock.sign));
+  return std::ranges::all_of(model.telling(), [&](double x) { return model.leading(x).low > others; });
 }
 
 }  // namespace
