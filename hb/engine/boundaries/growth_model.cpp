@@ -39,6 +39,15 @@ GrowthModel::GrowthModel(std::vector<GrowthNode> nodes) : nodes_(std::move(nodes
     real_ = real_ && std::abs(node.Q.imag()) <= 4 * node.Q_error + 1e-14 * std::abs(node.Q);
     node.angle -= std::round(node.angle - nodes_.front().angle);
   }
+  if (nodes_.size() < 3) return;
+  constexpr double beside = 0.05, together = 0.01;
+  const GrowthNode &p = nodes_[0], &q = nodes_[1], &third = nodes_[2];
+  const bool at_p = std::abs(third.x - p.x) < std::abs(third.x - q.x);
+  const GrowthNode &near = at_p ? p : q, &other = at_p ? q : p;
+  const auto passes = [&](const GrowthNode& node) {
+    return node.Q.real() <= node.Q_error && std::abs(node.Q) <= together * std::abs(other.Q);
+  };
+  pass_beside_ = real_ && std::abs(third.x - near.x) <= beside * std::abs(q.x - p.x) && passes(near) && passes(third);
 }
 
 bool GrowthModel::consistent() const {
@@ -59,7 +68,8 @@ bool GrowthModel::consistent() const {
 GrowthBounds GrowthModel::operator()(double x) const {
   const auto [growth, growth_change] =
       interpolated<double>(nodes_, x, [](const GrowthNode& node) { return node.growth; });
-  const auto [Q, Q_change] = interpolated<cplx>(nodes_, x, [](const GrowthNode& node) { return node.Q; });
+  const auto [Q, Q_change] = interpolated<cplx>(
+      nodes_, x, [](const GrowthNode& node) { return node.Q; }, pass_beside_);
   double growth_error = interpolation_safety * growth_change, E = interpolation_safety * Q_change;
   // Errors at the two ends count in proportion; what they do to higher terms these show.
   const double part = (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);

@@ -52,6 +52,8 @@ class GrowthModel {
  private:
   std::vector<GrowthNode> nodes_;
   bool real_ = true;  // Q is real: a conjugate pair modulo i
+  // The two pass each other, without a lock, at one of the two places and at a third one beside it.
+  bool pass_beside_ = false;
 };
 
 }  // namespace hb

@@ -10,15 +10,14 @@
 namespace hb {
 
 constexpr double interpolation_safety = 3;  // the last term is taken so many times for the error
-// A place beyond the first two that is as near to one of them as this part of their distance belongs to the same.
-constexpr double same_place = 0.05;
 
 // of(node) at x by Newton's divided differences, and the last term; the last place is the farthest. Where one of the
 // places beyond the first two, between which x lies, belongs to something else, leaving that one out tells it: half of
 // what that changes counts if it is more. The last difference may vanish by chance: it is taken for a tenth of the one
-// before over the distance of the places at least.
+// before over the distance of the places at least. `third_belongs`: the third place is known to belong to the same.
 template <class Value, class Node, class Of>
-[[nodiscard]] std::pair<Value, double> interpolated(const std::vector<Node>& nodes, double x, const Of& of) {
+[[nodiscard]] std::pair<Value, double> interpolated(const std::vector<Node>& nodes, double x, const Of& of,
+                                                    bool third_belongs = false) {
   constexpr double least_part = 0.1;
   const std::size_t n = nodes.size();
   std::array<Value, 4> d{};
@@ -32,10 +31,8 @@ template <class Value, class Node, class Of>
   }
   if (n < 4) return {sum, HUGE_VAL};
   const double near = std::abs(x - nodes[2].x), far = std::abs(x - nodes[3].x);
-  const double beside = std::min(std::abs(nodes[2].x - nodes[0].x), std::abs(nodes[2].x - nodes[1].x));
-  const bool certain = beside <= same_place * std::abs(nodes[1].x - nodes[0].x);
   const double without_one =
-      std::abs((x - nodes[0].x) * (x - nodes[1].x)) * (certain ? near : std::max(near, 0.5 * far));
+      std::abs((x - nodes[0].x) * (x - nodes[1].x)) * (third_belongs ? near : std::max(near, 0.5 * far));
   const auto [low, high] = std::ranges::minmax(nodes, {}, &Node::x);
   return {sum, std::max(std::abs(d[3]), least_part * std::abs(d[2]) / (high.x - low.x)) * without_one};
 }
