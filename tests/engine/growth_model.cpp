@@ -37,9 +37,9 @@ TEST(GrowthModel, TellsThatTwoPassEachOtherByTwoPlacesThere) {
 // The third place, next to the first, tells of the lock that ends there; the second one and the fourth of another. What
 // leaving out the third changes counts.
 TEST(GrowthModel, DoubtsALockThatMayEndBesideAPlace) {
-  const double edge = 0.02, slope = 0.08;  // growth^2 = slope (edge - x)
+  const double edge = 0.02, slope = 0.001;  // growth^2 = slope (edge - x)
   const auto ends = [&](double x) { return locked(x, std::sqrt(slope * (edge - x))); };
-  const GrowthModel model({ends(0), locked(1, 0.2), ends(-0.04), locked(2, 0.21)});
+  const GrowthModel model({ends(0), locked(1, 0.1), ends(-0.02), locked(2, 0.2)});
   bool doubtful = false;
   for (double x = edge; x < 0.3; x += 0.002) doubtful = doubtful || model(x).low <= 0;
   EXPECT_TRUE(doubtful);
