@@ -263,6 +263,13 @@ TEST_F(Sweep, PeaksAreFoundWhereThePointsHaveNoMaximum) {
   EXPECT_NEAR(last[0], 1095.60471, 1e-4);
   EXPECT_NEAR(first[0], 1095.60471, 1e-4);
 
+  // A top on a shoulder, not far enough from the next point for another step: that point tells that it is one.
+  const std::string four = scene("four_bar") + " --only steady,stability --rpm ";
+  const std::vector<double> coarse = critical(four + "420:600:20"), fine = critical(four + "420:600:2");
+  ASSERT_EQ(coarse.size(), 3u);
+  ASSERT_EQ(fine.size(), 3u);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(coarse[k], fine[k], 1e-6);
+
   write("band.toml",
         "[hill]\nmass = [[1.0]]\nstiffness = [{ harmonic = 0, cos = [[8.85]] }, { harmonic = 1, cos = [[0.0146]] }]\n"
         "load = [{ harmonic = 1, cos = [0.5] }]\n");

@@ -21,8 +21,8 @@ std::optional<ResponseSample> sample_at(const RodAlong& rod, double x) {
   return sample;
 }
 
-// Samples on both flanks and on top of q_j, about x and, where it still climbs there, a few steps beyond; none where no
-// linkage, no response or no top is.
+// Samples on both flanks and on top of q_j, about x and, where it still climbs there, a few steps beyond, as far as the
+// ends of the interval, whose own values tell the rest; none where no linkage, no response or no top is.
 std::vector<ResponseSample> round_top(const RodAlong& rod, double x, double flank, double low, double high,
                                       std::size_t j) {
   constexpr int most_steps = 3;
@@ -40,7 +40,8 @@ std::vector<ResponseSample> round_top(const RodAlong& rod, double x, double flan
     const bool first = top == samples.begin(), last = top + 1 == samples.end();
     if (!first && !last) return samples;
     const double next = first ? samples.front().x - flank : samples.back().x + flank;
-    if (!(next > low && next < high) || !add(next)) return {};
+    if (!(next > low && next < high)) return samples;
+    if (!add(next)) return {};
   }
   return {};
 }
