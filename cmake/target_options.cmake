@@ -49,7 +49,7 @@ function(hb_lightly_optimised)
   foreach(target IN LISTS ARGN)
     if(TARGET ${target})
       # At -O1 alone GCC leaves the upper halves of vector registers in use behind, which makes every SSE instruction of
-      # the mathematical functions wait on processors with AVX-512: the search of a sweep of Mathieu's equation took four
+      # the mathematical functions wait on Intel's processors with AVX-512: the search of a sweep of Mathieu's equation took four
       # times as long. Products and sums stay apart as at -O1: a place of a grid at zero is zero.
       target_compile_options(${target} PRIVATE
         $<$<CONFIG:Release>:-O1 $<$<CXX_COMPILER_ID:GNU>:-fexpensive-optimizations -ffp-contract=off>>)

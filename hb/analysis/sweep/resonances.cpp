@@ -21,8 +21,8 @@ std::optional<ResponseSample> sample_at(const RodAlong& rod, double x) {
   return sample;
 }
 
-// Samples on both flanks and on top of q_j, about x and, where it still climbs there, a few steps beyond, as far as the
-// ends of the interval, whose own values tell the rest; none where no linkage, no response or no top is.
+// Samples of q_j about x, on both flanks, and where it still climbs there a few steps beyond, as far as the ends of the
+// interval: whether there is a top the values at these tell, too. None where no linkage or no response is.
 std::vector<ResponseSample> round_top(const RodAlong& rod, double x, double flank, double low, double high,
                                       std::size_t j) {
   constexpr int most_steps = 3;
@@ -38,12 +38,11 @@ std::vector<ResponseSample> round_top(const RodAlong& rod, double x, double flan
   for (int step = 0; step <= most_steps; ++step) {
     const auto top = std::ranges::max_element(samples, {}, height);
     const bool first = top == samples.begin(), last = top + 1 == samples.end();
-    if (!first && !last) return samples;
     const double next = first ? samples.front().x - flank : samples.back().x + flank;
-    if (!(next > low && next < high)) return samples;
+    if ((!first && !last) || !(next > low && next < high)) break;
     if (!add(next)) return {};
   }
-  return {};
+  return samples;
 }
 
 // Frequency of mode j of the averaged system over the speed; NaN where there is none.

@@ -102,15 +102,16 @@ bool keeps_apart(const Place& p, const Place& q, Lock lock) {
 }
 
 // Growth that what comes to that multiplier between p and q may have there: an exponent that starts `away` from it,
-// locks there and is gone at q moves by kappa + sqrt(kappa^2 + away^2) by itself, (B2). `motions` count three times
-// what they move.
+// locks there and is gone at q moves by kappa + sqrt(kappa^2 + away^2) by itself, (B22), and may grow already by a lock
+// elsewhere. `motions` count three times what they move.
 double growth_of_comers(const Place& p, const Place& q, double sign) {
   const std::vector<double> motion = motions(p, q);
   double most = 0;
   for (std::size_t k = 0; k < motion.size(); ++k) {
     const Strand& strand = p.strands.all[k];
     const double turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn, reach = 0.5 * motion[k];
-    if (away > slack && away < reach)
+    const bool locked_there = strand.partner != no_strand && away <= slack;
+    if (!locked_there && away < reach)
       most = std::max(most, std::max(0.0, strand.s.real()) + 0.5 * (reach - away * away / reach));
   }
   return most;
