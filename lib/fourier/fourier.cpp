@@ -279,11 +279,8 @@ class FftwPlans {
 // own transform, which is ready at once; FFTW, which plans for up to milliseconds, serves the others.
 class Plans {
  public:
-  explicit Plans(int N) : N_(N) {
-    if (ShortTransform::serves(at(N)))
-      short_.emplace(at(N));
-    else
-      fftw_.emplace(N);
+  explicit Plans(int N) : N_(N), short_(ShortTransform::of_length(at(N))) {
+    if (!short_) fftw_.emplace(N);
   }
 
   // `columns` arrays of N and N/2 + 1 numbers after each other, aligned as FFTW's own; forward with the factor 1/N.
@@ -306,7 +303,7 @@ class Plans {
   static std::size_t at(int n) { return static_cast<std::size_t>(n); }
 
   int N_;
-  std::optional<ShortTransform> short_;
+  const ShortTransform* short_;
   std::optional<FftwPlans> fftw_;
 };
 

@@ -1,8 +1,11 @@
 #include "lib/fourier/short_transform.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <numbers>
 #include <utility>
@@ -181,6 +184,14 @@ ShortTransform::ShortTransform(size_t num_samples) : N_(num_samples), M_(num_sam
   }
 }
 
+const ShortTransform* ShortTransform::of_length(size_t num_samples) {
+  if (!serves(num_samples)) return nullptr;
+  static std::map<size_t, ShortTransform> made;
+  static std::mutex making;
+  const std::lock_guard lock(making);
+  return &made.try_emplace(num_samples, num_samples).first->second;
+}
+
 // Stockham's autosort transform, decimation in frequency.
 void ShortTransform::transform(double*& re, double*& im, double*& other_re, double*& other_im) const {
   for (const Pass& pass : passes_) {
@@ -243,6 +254,26 @@ void ShortTransform::backward(const std::complex<double>* spectrum, double* samp
     Lanes{*this}.backward(reinterpret_cast<const double*>(spectrum + first * (M_ + 1)), samples + first * N_, count);
   });
   for (; c < columns; ++c) backward(spectrum + c * (M_ + 1), samples + c * N_);
+}
+
+std::size_t ShortTransform::lane_width() { return lanes::width; }
+
+void ShortTransform::forward(const double* samples, double* re, double* im, std::size_t apart, double factor,
+                             std::size_t columns) const {
+  for (std::size_t c = 0; c < columns; c += lanes::width)
+    Lanes{*this}.forward(samples + c * N_, factor, std::min(lanes::width, columns - c),
+                         [&](std::size_t k, lanes::Vector real, lanes::Vector imaginary) {
+                           lanes::store(re + k * apart + c, real);
+                           lanes::store(im + k * apart + c, imaginary);
+                         });
+}
+
+void ShortTransform::backward(const double* re, const double* im, std::size_t apart, double* samples,
+                              std::size_t columns) const {
+  for (std::size_t c = 0; c < columns; c += lanes::width)
+    Lanes{*this}.backward([&](std::size_t k) { return lanes::load(re + k * apart + c); },
+                          [&](std::size_t k) { return lanes::load(im + k * apart + c); }, samples + c * N_,
+                          std::min(lanes::width, columns - c));
 }
 
 }  // namespace hb::fourier

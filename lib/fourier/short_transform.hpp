@@ -14,6 +14,8 @@ class ShortTransform {
   // N = 2^k or 3 2^k, from 8 to 4096.
   [[nodiscard]] static bool serves(std::size_t num_samples);
   explicit ShortTransform(std::size_t num_samples);
+  // One per length serves the process; none where N is not such a length.
+  [[nodiscard]] static const ShortTransform* of_length(std::size_t num_samples);
 
   // N samples -> N/2 + 1 coefficients times `factor`.
   void forward(const double* samples, std::complex<double>* spectrum, double factor) const;
@@ -24,6 +26,13 @@ class ShortTransform {
   // vectors hold numbers. The bits of one column may depend on how many there are.
   void forward(const double* samples, std::complex<double>* spectrum, double factor, std::size_t columns) const;
   void backward(const std::complex<double>* spectrum, double* samples, std::size_t columns) const;
+
+  // The same with real and imaginary parts apart, those of all columns side by side: of harmonic k at re + k apart and
+  // im + k apart, `apart` a multiple of lane_width() not below `columns`. N is a multiple of lane_width(), too.
+  void forward(const double* samples, double* re, double* im, std::size_t apart, double factor,
+               std::size_t columns) const;
+  void backward(const double* re, const double* im, std::size_t apart, double* samples, std::size_t columns) const;
+  [[nodiscard]] static std::size_t lane_width();
 
  private:
   // One pass of the autosort transform of M = N/2 complex numbers: sub-transforms of length n, radix r, stride M/n.

@@ -28,12 +28,12 @@ struct Aligned {
   void operator()(Vector* block) const { ::operator delete (block, std::align_val_t{64}); }
 };
 
-// 4 M + 2 vectors per thread.
+// 4 M + 4 vectors per thread.
 inline Vector* scratch(size_t M) {
   thread_local std::unique_ptr<Vector, Aligned> block;
   thread_local size_t size = 0;
-  if (4 * M + 2 > size) {
-    size = 4 * M + 2;
+  if (4 * M + 4 > size) {
+    size = 4 * M + 4;
     block.reset(static_cast<Vector*>(::operator new (size * sizeof(Vector), std::align_val_t{64})));
   }
   return block.get();
@@ -98,6 +98,9 @@ inline void radix_2(size_t m, size_t s, const Vector* re, const Vector* im, cons
     }
 }
 
+inline Vector load(const double* numbers) { return Eigen::internal::ploadu<Vector>(numbers); }
+inline void store(double* numbers, Vector v) { Eigen::internal::pstoreu(numbers, v); }
+
 // Calls all(first column, how many) as often as is worth it, at most `width` at once; returned is how many are done.
 template <class All>
 std::size_t in_lanes(std::size_t N, std::size_t columns, const All& all) {
@@ -140,24 +143,51 @@ struct ShortTransform::Lanes {
     return from;
   }
 
-  void forward(const double* samples, double* spectrum, double factor, std::size_t count) const {
+  // store(k, real parts, imaginary parts of all), k <= M.
+  template <class Store>
+  void forward(const double* samples, double factor, std::size_t count, const Store& store) const {
     lanes::gather(samples, N, count, N, [&](std::size_t j, Vector f) { second[j % 2 * M + j / 2] = f; });
     const Vector* x = transform(false, second, first);
-    const Vector* y = x + M;
+    const Vector *y = x + M, none = 0.0 * x[0];
     const double half = 0.5 * factor;
-    const std::size_t apart = N + 2;
-    Vector* out = x == second ? first : second;
-    out[0] = factor * (x[0] + y[0]);
-    out[1] = 0.0 * x[0];
+    store(0, factor * (x[0] + y[0]), none);
     for (std::size_t k = 1; k < M; ++k) {
       const Vector odd_re = y[k] + y[M - k], odd_im = x[M - k] - x[k];
       const double c = half * of.cosines_[k], s = half * of.sines_[k];
-      out[2 * k] = half * (x[k] + x[M - k]) + (c * odd_re + s * odd_im);
-      out[2 * k + 1] = half * (y[k] - y[M - k]) + (c * odd_im - s * odd_re);
+      store(k, half * (x[k] + x[M - k]) + (c * odd_re + s * odd_im),
+            half * (y[k] - y[M - k]) + (c * odd_im - s * odd_re));
     }
+    store(M, factor * (x[0] - y[0]), none);
+  }
+
+  // re(k), im(k) of all, k <= M.
+  template <class Real, class Imaginary>
+  void backward(const Real& re, const Imaginary& im, double* samples, std::size_t count) const {
+    Vector *x = second, *y = second + M;
+    x[0] = re(0) + re(M);
+    y[0] = re(0) - re(M);
+    for (std::size_t k = 1; k < M; ++k) {
+      const Vector a = re(k), b = im(k), d = re(M - k), e = im(M - k);
+      const Vector odd_re = a - d, odd_im = b + e;
+      const double c = of.cosines_[k], s = of.sines_[k];
+      x[k] = (a + d) - (c * odd_im + s * odd_re);
+      y[k] = (b - e) + (c * odd_re - s * odd_im);
+    }
+    const Vector* z = transform(true, second, first);
+    lanes::scatter([&](std::size_t place) { return z[place % 2 * M + place / 2]; }, N, samples, N, count);
+  }
+
+  // Spectra one after the other.
+  void forward(const double* samples, double* spectrum, double factor, std::size_t count) const {
+    const std::size_t apart = N + 2;
+    Vector* out = of.passes_.size() % 2 != 0 ? second : first;  // where the transform does not end
+    forward(samples, factor, count, [&](std::size_t k, Vector re, Vector im) {
+      out[2 * k] = re;
+      out[2 * k + 1] = im;
+    });
     lanes::scatter([&](std::size_t place) { return out[place]; }, N, spectrum, apart, count);
     double last[width];
-    Eigen::internal::pstoreu(last, Vector(factor * (x[0] - y[0])));
+    Eigen::internal::pstoreu(last, out[N]);
     for (std::size_t c = 0; c < count; ++c) {
       spectrum[c * apart + 1] = 0;
       spectrum[c * apart + N] = last[c];
@@ -171,18 +201,8 @@ struct ShortTransform::Lanes {
     double last[width];
     for (std::size_t c = 0; c < width; ++c) last[c] = spectrum[std::min(c, count - 1) * apart + N];
     first[N] = Eigen::internal::ploadu<Vector>(last);
-    Vector *x = second, *y = second + M;
-    x[0] = first[0] + first[N];
-    y[0] = first[0] - first[N];
-    for (std::size_t k = 1; k < M; ++k) {
-      const Vector a = first[2 * k], b = first[2 * k + 1], d = first[2 * (M - k)], e = first[2 * (M - k) + 1];
-      const Vector odd_re = a - d, odd_im = b + e;
-      const double c = of.cosines_[k], s = of.sines_[k];
-      x[k] = (a + d) - (c * odd_im + s * odd_re);
-      y[k] = (b - e) + (c * odd_re - s * odd_im);
-    }
-    const Vector* z = transform(true, second, first);
-    lanes::scatter([&](std::size_t place) { return z[place % 2 * M + place / 2]; }, N, samples, N, count);
+    backward([&](std::size_t k) { return first[2 * k]; }, [&](std::size_t k) { return first[2 * k + 1]; }, samples,
+             count);
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <initializer_list>
 
 #include "lib/constants.hpp"
 
@@ -11,9 +13,30 @@ namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
+using cplx = std::complex<double>;
 
-ArrayXd sampled(const FourierSeries& series, Index N) {
-  return fourier::synthesise(series, N).row(0).transpose().array();
+// One function and how often it is differentiated.
+struct Derivative {
+  const FourierSeries& series;
+  int order;
+};
+
+// At N nodes, a column each.
+Eigen::ArrayXXd sampled(std::initializer_list<Derivative> functions, Index N) {
+  fourier::RealTransform& transform = fourier::thread_transform(N, Index(functions.size()));
+  auto spectrum = transform.spectrum();
+  Index column = 0;
+  for (const Derivative& f : functions) {
+    auto to = spectrum.col(column++);
+    const Index H = f.series.num_harmonics();
+    to.tail(to.size() - H - 1).setZero();
+    for (Index k = 0; k <= H; ++k) {
+      const double n = double(k), x = f.series.c(0, k).real(), y = f.series.c(0, k).imag();
+      to(k) = f.order == 0 ? cplx(x, y) : f.order == 1 ? cplx(-n * y, n * x) : cplx(-n * n * x, -n * n * y);
+    }
+  }
+  transform.backward();
+  return transform.samples().array();
 }
 
 // Harmonics up to the last one above rounding; what is cut away is added to `error`.
@@ -23,10 +46,8 @@ FourierSeries above_rounding(const FourierSeries& series, double& error) {
   return fourier::resized(series, H);
 }
 
-// -psi''/(2 psi) + 3/4 (psi'/psi)^2 = -L''/2 + L'^2/4 with L = ln psi, at N nodes.
-ArrayXd schwarzian(const FourierSeries& L, Index N) {
-  return -0.5 * sampled(fourier::derivative(L, 2), N) + 0.25 * sampled(fourier::derivative(L), N).square();
-}
+// -psi''/(2 psi) + 3/4 (psi'/psi)^2 = -L''/2 + L'^2/4 with L = ln psi, from L' and L''.
+ArrayXd schwarzian(const ArrayXd& L1, const ArrayXd& L2) { return -0.5 * L2 + 0.25 * L1.square(); }
 
 // Mean over the turn, and how much half the nodes change it.
 struct Mean {
@@ -43,16 +64,7 @@ struct PhaseFunction {
   // left: how much the last correction differed.
   PhaseFunction(double sigma, double left, const FourierSeries& L, const FourierSeries& alpha,
                 const FourierSeries& beta, Index M)
-      : sigma(sigma),
-        left(left),
-        a(sampled(alpha, M)),
-        b(sampled(beta, M)),
-        b1(sampled(fourier::derivative(beta), M)),
-        psi(sampled(L, M).exp()),
-        psi2(psi.square()),
-        correction(schwarzian(L, M)),
-        defect((psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)).abs().maxCoeff()),
-        frequency(psi) {}
+      : PhaseFunction(sigma, left, sampled({{alpha, 0}, {beta, 0}, {beta, 1}, {L, 0}, {L, 1}, {L, 2}}, M)) {}
 
   [[nodiscard]] ExponentPair exponents(double alpha_error, double beta_error) const {
     return sigma > 0 ? oscillating(alpha_error, beta_error) : overdamped(alpha_error, beta_error);
@@ -64,6 +76,19 @@ struct PhaseFunction {
   Mean frequency;
 
  private:
+  // alpha, beta, beta', L, L', L''.
+  PhaseFunction(double sigma, double left, const Eigen::ArrayXXd& at)
+      : sigma(sigma),
+        left(left),
+        a(at.col(0)),
+        b(at.col(1)),
+        b1(at.col(2)),
+        psi(at.col(3).exp()),
+        psi2(psi.square()),
+        correction(schwarzian(at.col(4), at.col(5))),
+        defect((psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)).abs().maxCoeff()),
+        frequency(psi) {}
+
   [[nodiscard]] ExponentPair oscillating(double alpha_error, double beta_error) const;
   [[nodiscard]] ExponentPair overdamped(double alpha_error, double beta_error) const;
 
@@ -127,8 +152,8 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
   const FourierSeries alpha = above_rounding(given_alpha, alpha_error), beta = above_rounding(given_beta, beta_error);
   const Index start = fourier::fast_length(4 * std::max({alpha.num_harmonics(), beta.num_harmonics(), Index(8)}) + 4);
   for (Index N = start; N <= 4 * start; N *= 2) {
-    ArrayXd a = sampled(alpha, N), b = sampled(beta, N), b1 = sampled(fourier::derivative(beta), N);
-    const ArrayXd Q = a - b.square() / 4 - b1 / 2;
+    const Eigen::ArrayXXd given = sampled({{alpha, 0}, {beta, 0}, {beta, 1}}, N);
+    const ArrayXd Q = given.col(0) - given.col(1).square() / 4 - given.col(2) / 2;
     // sigma = +1: oscillating, psi real; sigma = -1: overdamped, psi = -i chi with chi real.
     const double sigma = Q.minCoeff() > 0 ? 1 : -1;
     if (!((sigma * Q).minCoeff() > 0)) return std::nullopt;
@@ -139,7 +164,8 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
     double left = HUGE_VAL;
     for (int iteration = 0; iteration < 40; ++iteration) {
       const FourierSeries log_psi = fourier::analyse((0.5 * next.log()).matrix().transpose());
-      const ArrayXd term = schwarzian(log_psi, N);
+      const Eigen::ArrayXXd slopes = sampled({{log_psi, 1}, {log_psi, 2}}, N);
+      const ArrayXd term = schwarzian(slopes.col(0), slopes.col(1));
       const double change = (term - correction).abs().maxCoeff();
       if (!(change < 0.7 * left)) break;  // rounding reached, or an asymptotic expansion at its best
       left = change;

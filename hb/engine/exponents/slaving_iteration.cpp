@@ -61,16 +61,18 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       back_(N_, 4 * n_ * m_),
       forward_(N_, 4 * n_ * m_),
       A_(back_.samples().data(), N_, n_ * m_),
-      A1_(A_.data() + A_.size(), N_, n_ * m_),
-      C_(A1_.data() + A_.size(), N_, n_ * m_),
-      C1_(C_.data() + A_.size(), N_, n_ * m_),
+      C_(A_.data() + A_.size(), N_, n_ * m_),
+      A1_(C_.data() + A_.size(), N_, n_ * m_),
+      C1_(A1_.data() + A_.size(), N_, n_ * m_),
       P_(forward_.samples().data(), N_, n_ * m_),
       R_(P_.data() + P_.size(), N_, n_ * m_),
-      x_(VectorXd::Zero(n_ * m_ * 2 * 2 * (H_ + 1))) {
-  alpha_.setZero();
-  beta_.setZero();
-  P_.setZero();
-  R_.setZero();
+      x_(VectorXd::Zero(4 * n_ * m_ * (H_ + 1))) {
+  if (!diagonal_damping_) {  // what alpha and beta, which depend on P and R, are found from first
+    alpha_.setZero();
+    beta_.setZero();
+    P_.setZero();
+    R_.setZero();
+  }
   const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
   for (const Index s : S_) weight_.push_back(std::max(1.0, std::abs(root(b(s), w2(s)))));
   // kappa: what an error of A does to alpha.
@@ -79,26 +81,47 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
     for (Index j = 0; j < n_; ++j) sum += largest_K(S_[s], F_[j]) + std::abs(G_(S_[s], F_[j])) * H_;
     kappa_ = std::max(kappa_, sum);
   }
-  residual_ = MatrixXd::Zero(2, n_ * m_);
-  // Inverse of the constant part per (j, l, k); see below.
-  inverse_.resize(std::size_t(n_ * m_ * (H_ + 1)));
-  for (Index l = 0; l < m_; ++l)
-    for (Index j = 0; j < n_; ++j)
-      for (Index k = 0; k <= H_; ++k) {
-        const double wg = w2(S_[l]), bg = b(S_[l]), wj = w2(F_[j]), bj = b(F_[j]);
-        const cplx ik(0, double(k));
-        // P = ik a - wg c, R = a + (ik - bg) c:
-        //   (ik + bj) P - wg R + wj a = -r1,   P + (ik - bg + bj) R + wj c = -r2.
-        Eigen::Matrix2cd A;
-        A << (ik + bj) * ik - wg + wj, -(ik + bj) * wg - wg * (ik - bg),  //
-            ik + (ik - bg + bj), -wg + (ik - bg + bj) * (ik - bg) + wj;
-        const cplx factor = -1.0 / (A(0, 0) * A(1, 1) - A(0, 1) * A(1, 0));
-        inverse_[slot(j, l, k)] << factor * A(1, 1), -factor * A(0, 1), -factor * A(1, 0), factor * A(0, 0);
-      }
-  const auto all = Eigen::Map<const Eigen::VectorXcd>(inverse_.data()->data(), 4 * Index(inverse_.size()));
-  inverse_moduli_.resize(4, Index(inverse_.size()));
-  inverse_moduli_.reshaped() = moduli(all);
+  residual_ = MatrixXd::Zero(n_ * m_, 2);
+  invert_constant_part(system);
   weigh_residuals();
+}
+
+// With P = ik a - wg c, R = a + (ik - bg) c:
+//   (ik + bj) P - wg R + wj a = -r1,   P + (ik - bg + bj) R + wj c = -r2,
+// for every harmonic k: in a and c
+//   a11 = wj - wg - k^2 + ik bj,   a12 = -wg ((bj - bg) + 2 ik),   a21 = (bj - bg) + 2 ik,
+//   a22 = wj - wg - k^2 - bg (bj - bg) + ik (bj - 2 bg).
+void Iteration::invert_constant_part(const ScaledSystem& system) {
+  const Index nm = n_ * m_;
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
+  Eigen::ArrayXd wg(nm), bg(nm), wj(nm), bj(nm), weight(nm);
+  for (Index q = 0; q < nm; ++q) {
+    const Index slow = S_[std::size_t(q / n_)], fast = F_[std::size_t(q % n_)];
+    wg(q) = w2(slow), bg(q) = b(slow), wj(q) = w2(fast), bj(q) = b(fast);
+    weight(q) = weight_[std::size_t(q / n_)];
+  }
+  inverse_.resize(8 * nm, H_ + 1);
+  inverse_size_.resize(2 * nm, H_ + 1);
+  for (Index k = 0; k <= H_; ++k) {
+    const double n = double(k);
+    double* __restrict M = inverse_.col(k).data();
+    double* __restrict size = inverse_size_.col(k).data();
+    for (Index q = 0; q < nm; ++q) {
+      const double apart = bj(q) - bg(q), near = wj(q) - wg(q) - n * n, v = weight(q);
+      const double x11 = near, y11 = n * bj(q), x21 = apart, y21 = 2 * n;
+      const double x12 = -wg(q) * x21, y12 = -wg(q) * y21, x22 = near - bg(q) * apart, y22 = n * (bj(q) - 2 * bg(q));
+      const double x = x11 * x22 - y11 * y22 - (x12 * x21 - y12 * y21);
+      const double y = x11 * y22 + y11 * x22 - (x12 * y21 + y12 * x21);
+      const double inverse = 1 / (x * x + y * y), fx = -x * inverse, fy = y * inverse;  // -1/determinant
+      const double a = fx * x22 - fy * y22, b1 = fx * y22 + fy * x22, c = fy * y12 - fx * x12, d = -fx * y12 - fy * x12;
+      const double e = v * (fy * y21 - fx * x21), f = v * (-fx * y21 - fy * x21);
+      const double g = v * (fx * x11 - fy * y11), h = v * (fx * y11 + fy * x11);
+      M[q] = a, M[nm + q] = b1, M[2 * nm + q] = c, M[3 * nm + q] = d;
+      M[4 * nm + q] = e, M[5 * nm + q] = f, M[6 * nm + q] = g, M[7 * nm + q] = h;
+      size[q] = std::sqrt(a * a + b1 * b1) + std::sqrt(e * e + f * f);
+      size[nm + q] = std::sqrt(c * c + d * d) + std::sqrt(g * g + h * h);
+    }
+  }
 }
 
 // What a residual of the invariance equations does to alpha, hb/engine/README.md (E7): with the constant part's
@@ -107,24 +130,21 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
 // A residual in another harmonic than the resonant one is carried there by the modulation of the mode itself, so that
 // |M_k r_k| alone, which is what the iteration changes by, would be too small where M is large in one harmonic only.
 void Iteration::weigh_residuals() {
-  MatrixXd gain(2, n_ * m_), rate(2, n_ * m_);  // of A, C and of their rates of change
-  for (Index l = 0; l < m_; ++l)
-    for (Index j = 0; j < n_; ++j) {
-      const Index q = j + n_ * l;
-      gain.col(q).setZero();
-      rate.col(q).setZero();
-      for (Index k = 0; k <= H_; ++k)
-        for (Index c = 0; c < 2; ++c) {
-          const double size = inverse_size(c, j, l, k);
-          gain(c, q) = std::max(gain(c, q), size);
-          rate(c, q) = std::max(rate(c, q), size * (double(k) + weight_[std::size_t(l)]));
-        }
-    }
+  const Index nm = n_ * m_;
+  Eigen::ArrayXd weight(2 * nm);
+  for (Index q = 0; q < 2 * nm; ++q) weight(q) = weight_[std::size_t(q % nm / n_)];
+  // Of A, C and of their rates of change.
+  Eigen::ArrayXd gain = Eigen::ArrayXd::Zero(2 * nm), rate = gain;
+  for (Index k = 0; k <= H_; ++k) {
+    const auto size = inverse_size_.col(k).array();
+    gain = gain.max(size);
+    rate = rate.max(size * (double(k) + weight));
+  }
   MatrixXd through = MatrixXd::Identity(n_, n_);  // 1 - g |K_FF| off the diagonal
   VectorXd direct = VectorXd::Zero(n_), damped = VectorXd::Zero(n_);
   for (Index j = 0; j < n_; ++j) {
     double largest = 0;
-    for (Index l = 0; l < m_; ++l) largest = std::max(largest, gain(0, j + n_ * l));
+    for (Index l = 0; l < m_; ++l) largest = std::max(largest, gain(j + n_ * l));
     for (Index i = 0; i < n_; ++i)
       if (i != j) through(j, i) = -largest * largest_K(F_[j], F_[i]);
     for (Index s = 0; s < m_; ++s) {
@@ -135,17 +155,15 @@ void Iteration::weigh_residuals() {
   VectorXd l = dense::Lu<double>(MatrixXd(through.transpose())).solve(direct);
   if (!(l.minCoeff() >= 0 && l.allFinite())) l.setConstant(direct.maxCoeff());
   l = l.cwiseMax(direct);
-  effect_.resize(2, n_ * m_);
-  for (Index q = 0; q < n_ * m_; ++q)
-    effect_.col(q) = (l(q % n_) * gain.col(q) + damped(q % n_) * rate.col(q)) * double(m_);
+  effect_.resize(nm, 2);
+  for (Index q = 0; q < 2 * nm; ++q)
+    effect_(q % nm, q / nm) = (l(q % n_) * gain(q) + damped(q % n_) * rate(q)) * double(m_);
 }
 
 void Iteration::start_from(const Iteration& coarse) {
   amplification_ = coarse.amplification_;
   change_ = coarse.change_;
-  for (Index half = 0; half < 2 * n_ * m_; ++half)
-    x_.segment(half * 2 * (H_ + 1), 2 * (coarse.H_ + 1)) =
-        coarse.x_.segment(half * 2 * (coarse.H_ + 1), 2 * (coarse.H_ + 1));
+  x_.head(coarse.x_.size()) = coarse.x_;
 }
 
 bool Iteration::solved_by_start(double tolerance) {
@@ -159,7 +177,7 @@ bool Iteration::solved_by_start(double tolerance) {
 
 bool Iteration::run(double tolerance, int& iterations) {
   constexpr int most_iterations = 80, window = 8;
-  VectorXd f(x_.size()), last_x, last_f, difference;
+  VectorXd f(x_.size()), last_x, last_f;
   VectorXd& x = x_;
   Anderson anderson;
   bool mixing = false;
@@ -171,8 +189,8 @@ bool Iteration::run(double tolerance, int& iterations) {
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     ++iterations;
     correction(x, f);
-    if (!f.allFinite()) return false;
     const double change = alpha_change();
+    if (!std::isfinite(change)) return false;
     const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
     const double goal = std::max(2 * eps, tolerance) * scale;
     const double rho = change / previous;
@@ -180,10 +198,8 @@ bool Iteration::run(double tolerance, int& iterations) {
     best = std::min(best, change);
     // What a residual f means for x: |dx|/|df| of the last steps, as far as they stand above rounding.
     if (last_x.size() > 0) {
-      difference = f - last_f;
-      const double df = norm(difference);
-      difference = x - last_x;
-      if (kappa_ * df > 100 * eps * scale) secants.push_back(norm(difference) / df);
+      const double df = distance(f, last_f);
+      if (kappa_ * df > 100 * eps * scale) secants.push_back(distance(x, last_x) / df);
       if (secants.size() > 6) secants.erase(secants.begin());
     }
     last_x = x;
@@ -275,35 +291,39 @@ MatrixXd Iteration::start() const {
   return states;
 }
 
-double Iteration::norm(const VectorXd& x) const {
-  double largest = 0;
-  for (Index part = 0; part < n_ * m_; ++part) {
-    double sum = 0;
-    for (Index half = 2 * part; half < 2 * part + 2; ++half) {
-      const double* z = x.data() + half * 2 * (H_ + 1);
-      for (Index k = 0; k <= H_; ++k) sum += std::sqrt(z[2 * k] * z[2 * k] + z[2 * k + 1] * z[2 * k + 1]);
+double Iteration::distance(const VectorXd& x, const VectorXd& y) const {
+  const Index both = 2 * n_ * m_;
+  Eigen::ArrayXd total = Eigen::ArrayXd::Zero(both);
+  double* __restrict sum = total.data();
+  for (Index k = 0; k <= H_; ++k) {
+    const double *__restrict a = x.data() + 2 * both * k, *__restrict b = y.data() + 2 * both * k;
+    for (Index q = 0; q < both; ++q) {
+      const double real = a[q] - b[q], imaginary = a[both + q] - b[both + q];
+      sum[q] += std::sqrt(real * real + imaginary * imaginary);
     }
-    largest = std::max(largest, 2 * sum);
   }
-  return largest;
+  return 2 * (total.head(both / 2) + total.tail(both / 2)).maxCoeff();
 }
 
 void Iteration::sample(const VectorXd& x) {
-  const Index nm = n_ * m_;
-  auto spectrum = back_.spectrum();
-  spectrum.setZero();
-  for (Index q = 0; q < nm; ++q) {
-    const double inverse_weight = 1 / weight_[std::size_t(q / n_)];
-    const auto a = A_of(x, q), c = C_of(x, q);
-    for (Index k = 0; k <= H_; ++k) {
-      const double n = double(k);
-      const cplx scaled = c(k) * inverse_weight;
-      spectrum(k, q) = a(k);
-      spectrum(k, nm + q) = {-n * a(k).imag(), n * a(k).real()};
-      spectrum(k, 2 * nm + q) = scaled;
-      spectrum(k, 3 * nm + q) = {-n * scaled.imag(), n * scaled.real()};
+  const Index both = 2 * n_ * m_;
+  Eigen::ArrayXd scale = Eigen::ArrayXd::Ones(both);
+  for (Index q = both / 2; q < both; ++q) scale(q) = 1 / weight_[std::size_t((q - both / 2) / n_)];
+  auto re = back_.re(), im = back_.im();
+  for (Index k = 0; k <= H_; ++k) {
+    const double n = double(k);
+    const double* __restrict from = x.data() + 2 * both * k;
+    double *__restrict real = re.col(k).data(), *__restrict imaginary = im.col(k).data();
+    for (Index q = 0; q < both; ++q) {
+      const double a = scale(q) * from[q], b = scale(q) * from[both + q];
+      real[q] = a;
+      imaginary[q] = b;
+      real[both + q] = -n * b;
+      imaginary[both + q] = n * a;
     }
   }
+  re.rightCols(N_ / 2 - H_).setZero();
+  im.rightCols(N_ / 2 - H_).setZero();
   back_.backward();
 }
 
@@ -391,26 +411,25 @@ void Iteration::sample_residual() {
 void Iteration::push_through(VectorXd& f) {
   const Index nm = n_ * m_;
   forward_.forward();
-  const auto spectrum = forward_.spectrum();
-
-  cplx* data = reinterpret_cast<cplx*>(f.data());
-  for (Index l = 0; l < m_; ++l)
-    for (Index j = 0; j < n_; ++j) {
-      const Index q = j + n_ * l;
-      double sum1 = 0, sum2 = 0;
-      for (Index k = 0; k <= H_; ++k) {
-        const double n = double(k);
-        const cplx p = spectrum(k, q), r = spectrum(k, nm + q);
-        const cplx r1 = spectrum(k, 2 * nm + q) + cplx(-n * p.imag(), n * p.real());
-        const cplx r2 = spectrum(k, 3 * nm + q) + cplx(-n * r.imag(), n * r.real());
-        sum1 += (k > 0 ? 2 : 1) * modulus(r1);
-        sum2 += (k > 0 ? 2 : 1) * modulus(r2);
-        const Eigen::Matrix2cd& M = inverse_[slot(j, l, k)];
-        data[q * 2 * (H_ + 1) + k] = M(0, 0) * r1 + M(0, 1) * r2;
-        data[(q * 2 + 1) * (H_ + 1) + k] = weight_[std::size_t(l)] * (M(1, 0) * r1 + M(1, 1) * r2);
-      }
-      residual_.col(q) << sum1, sum2;
+  const auto re = forward_.re(), im = forward_.im();
+  residual_.setZero();
+  double *__restrict sum1 = residual_.col(0).data(), *__restrict sum2 = residual_.col(1).data();
+  for (Index k = 0; k <= H_; ++k) {
+    const double n = double(k), signs = k > 0 ? 2 : 1;
+    const double *__restrict x = re.col(k).data(), *__restrict y = im.col(k).data();
+    const double* __restrict M = inverse_.col(k).data();
+    double* __restrict to = f.data() + 4 * nm * k;
+    for (Index q = 0; q < nm; ++q) {
+      const double x1 = x[2 * nm + q] - n * y[q], y1 = y[2 * nm + q] + n * x[q];
+      const double x2 = x[3 * nm + q] - n * y[nm + q], y2 = y[3 * nm + q] + n * x[nm + q];
+      sum1[q] += signs * std::sqrt(x1 * x1 + y1 * y1);
+      sum2[q] += signs * std::sqrt(x2 * x2 + y2 * y2);
+      to[q] = M[q] * x1 - M[nm + q] * y1 + M[2 * nm + q] * x2 - M[3 * nm + q] * y2;
+      to[2 * nm + q] = M[q] * y1 + M[nm + q] * x1 + M[2 * nm + q] * y2 + M[3 * nm + q] * x2;
+      to[nm + q] = M[4 * nm + q] * x1 - M[5 * nm + q] * y1 + M[6 * nm + q] * x2 - M[7 * nm + q] * y2;
+      to[3 * nm + q] = M[4 * nm + q] * y1 + M[5 * nm + q] * x1 + M[6 * nm + q] * y2 + M[7 * nm + q] * x2;
     }
+  }
 }
 
 }  // namespace hb::slaving

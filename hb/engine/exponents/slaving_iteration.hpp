@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hb/engine/exponents/slaving.hpp"
+#include "lib/fourier/split_transform.hpp"
 
 namespace hb::slaving {
 
@@ -54,11 +55,6 @@ class Iteration {
   double largest_K(Eigen::Index i, Eigen::Index j) const { return samples_.largest(i + I_ * j); }
   double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
 
-  // |M_1c| + weight |M_2c| of the inverse M of the constant part, c = 0 and 1.
-  double inverse_size(Eigen::Index c, Eigen::Index j, Eigen::Index l, Eigen::Index k) const {
-    const auto place = Eigen::Index(slot(j, l, k));
-    return inverse_moduli_(2 * c, place) + weight_[std::size_t(l)] * inverse_moduli_(2 * c + 1, place);
-  }
   void weigh_residuals();
   // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
   double alpha_change() const { return effect_.cwiseProduct(residual_).sum(); }
@@ -67,33 +63,22 @@ class Iteration {
   double others_below() const;
   Eigen::MatrixXd start() const;
 
-  std::size_t slot(Eigen::Index j, Eigen::Index l, Eigen::Index k) const {
-    return std::size_t((j + n_ * l) * (H_ + 1) + k);
-  }
-
-  // The vector x holds A_k then weight * C_k for every (j, l): real and imaginary parts.
-  Eigen::Map<const Eigen::VectorXcd> A_of(const Eigen::VectorXd& x, Eigen::Index q) const {
-    return {reinterpret_cast<const std::complex<double>*>(x.data()) + q * 2 * (H_ + 1), H_ + 1};
-  }
-  Eigen::Map<const Eigen::VectorXcd> C_of(const Eigen::VectorXd& x, Eigen::Index q) const {
-    return {reinterpret_cast<const std::complex<double>*>(x.data()) + (q * 2 + 1) * (H_ + 1), H_ + 1};
-  }
-
-  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k.
-  double norm(const Eigen::VectorXd& x) const;
+  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k, of x - y.
+  double distance(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
 
   // Residual of the two invariance equations, pushed through the inverse of their constant part:
   //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
   //   x_F'  = P x_S + R x_S',             P = A' - C alpha,   R = A + C' - C beta
   //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
   void correction(const Eigen::VectorXd& x, Eigen::VectorXd& f);
-  // A, A', C, C' over the turn.
+  // A, C, A', C' over the turn.
   void sample(const Eigen::VectorXd& x);
   // alpha, beta, P and R over the turn; false if they are not found.
   bool reduce();
   // The residuals over the turn.
   void sample_residual();
   void push_through(Eigen::VectorXd& f);
+  void invert_constant_part(const ScaledSystem& system);
 
   std::vector<Eigen::Index> S_, F_;
   Eigen::Index m_, n_, N_, H_;
@@ -103,13 +88,17 @@ class Iteration {
   Eigen::Index I_;
   const SampledStiffness::Samples& samples_;
   Eigen::MatrixXd alpha_, beta_;  // N x m*m
-  fourier::RealTransform back_, forward_;
-  Eigen::Map<Eigen::MatrixXd> A_, A1_, C_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
-  Eigen::VectorXd x_;  // see A_of, C_of
+  // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
+  fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2
+  Eigen::Map<Eigen::MatrixXd> A_, C_, A1_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
+  // Of each harmonic k: real parts of A_k, of weight C_k, then the imaginary parts.
+  Eigen::VectorXd x_;  // 4 n*m (H+1)
   std::vector<double> weight_;
-  std::vector<Eigen::Matrix2cd> inverse_;
-  Eigen::Matrix4Xd inverse_moduli_;  // |M_1c|, |M_2c| of both c
-  Eigen::MatrixXd residual_, effect_;  // 2 x n*m: sum_k |r_k| of both invariance equations, and what each does to alpha
+  // Inverse M of the constant part, per harmonic: M_11, M_12, weight M_21, weight M_22, of each the real parts, then
+  // the imaginary ones.
+  Eigen::MatrixXd inverse_;  // 8 n*m x (H+1)
+  Eigen::MatrixXd inverse_size_;  // |M_1c| + weight |M_2c|, c = 1, then c = 2; 2 n*m x (H+1)
+  Eigen::MatrixXd residual_, effect_;  // n*m x 2: sum_k |r_k| of both invariance equations, and what each does to alpha
   double kappa_ = 0, change_ = 0, amplification_ = 1;
 };
 

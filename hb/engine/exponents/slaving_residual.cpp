@@ -9,7 +9,6 @@ namespace hb::slaving {
 
 using Eigen::Index;
 using Eigen::VectorXd;
-using cplx = std::complex<double>;
 
 namespace {
 
@@ -54,7 +53,7 @@ void reached(const VectorXd& size, const VectorXd& carried, VectorXd& result) {
 }  // namespace
 
 double Iteration::carried_change(const FourierSeries& alpha) {
-  const auto spectrum = forward_.spectrum();
+  const auto re = forward_.re(), im = forward_.im();
   const Index nm = n_ * m_;
   double sum = 0, squares = 0;
   VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1), phase(H_), carried, back, part;
@@ -68,12 +67,12 @@ double Iteration::carried_change(const FourierSeries& alpha) {
       for (Index s = 0; s < m_; ++s)
         phase += alpha.c.row(s + m_ * l).segment(1, H_).cwiseAbs2().cwiseSqrt().transpose() / weight_[std::size_t(l)];
       for (Index k = 0; k <= H_; ++k) {
-        const cplx ik(0, double(k));
-        r1(k) = modulus(spectrum(k, 2 * nm + q) + ik * spectrum(k, q));
-        r2(k) = modulus(spectrum(k, 3 * nm + q) + ik * spectrum(k, nm + q));
-        const double rate = diagonal_damping_ ? 1 : double(k) + weight_[std::size_t(l)];
-        size1(k) = rate * inverse_size(0, j, l, k);
-        size2(k) = rate * inverse_size(1, j, l, k);
+        const double n = double(k);
+        r1(k) = modulus({re(2 * nm + q, k) - n * im(q, k), im(2 * nm + q, k) + n * re(q, k)});
+        r2(k) = modulus({re(3 * nm + q, k) - n * im(nm + q, k), im(3 * nm + q, k) + n * re(nm + q, k)});
+        const double rate = diagonal_damping_ ? 1 : n + weight_[std::size_t(l)];
+        size1(k) = rate * inverse_size_(q, k);
+        size2(k) = rate * inverse_size_(nm + q, k);
       }
       carried_by(phase, back, carried);
       const auto add = [&](const VectorXd& r, const VectorXd& gain, double effect) {
@@ -85,8 +84,8 @@ double Iteration::carried_change(const FourierSeries& alpha) {
           squares += (k > 0 ? 2 : 1) * change * change;
         }
       };
-      add(r1, size1, effect_(0, q));
-      add(r2, size2, effect_(1, q));
+      add(r1, size1, effect_(q, 0));
+      add(r2, size2, effect_(q, 1));
     }
   }
   // Rounding of harmonics is independent for the most part, what is not yet solved is not.
