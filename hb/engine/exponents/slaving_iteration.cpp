@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
@@ -21,6 +22,34 @@ cplx root(double b, double w2) {
   const cplx r = std::sqrt(cplx(b * b / 4 - w2, 0));
   return b >= 0 && r.imag() == 0 ? cplx(-w2 / (b / 2 + r.real()), 0) : -b / 2 + r;
 }
+
+namespace {
+
+// So many neighbouring numbers.
+template <int width>
+using Numbers = Eigen::Array<double, width, 1>;
+template <int width>
+Eigen::Map<const Numbers<width>> at(const double* numbers) {
+  return Eigen::Map<const Numbers<width>>(numbers);
+}
+template <int width>
+Eigen::Map<Numbers<width>> at(double* numbers) {
+  return Eigen::Map<Numbers<width>>(numbers);
+}
+
+// Calls some(width, first) for all of 0..count - 1, several at once: the width is known when it is compiled.
+template <class Some>
+void in_groups(Index count, const Some& some) {
+  Index q = 0;
+  for (; q + 4 <= count; q += 4) some(std::integral_constant<int, 4>(), q);
+  if (q + 2 <= count) {
+    some(std::integral_constant<int, 2>(), q);
+    q += 2;
+  }
+  if (q < count) some(std::integral_constant<int, 1>(), q);
+}
+
+}  // namespace
 
 Partition partition(Index I, std::span<const Index> slow) {
   Partition p{{slow.begin(), slow.end()}, {}};
@@ -104,23 +133,26 @@ void Iteration::invert_constant_part(const ScaledSystem& system) {
   inverse_size_.resize(2 * nm, H_ + 1);
   for (Index k = 0; k <= H_; ++k) {
     const double n = double(k);
-    double* __restrict M = inverse_.col(k).data();
-    double* __restrict size = inverse_size_.col(k).data();
-    for (Index q = 0; q < nm; ++q) {
-      const double apart = bj(q) - bg(q), near = wj(q) - wg(q) - n * n, v = weight(q);
-      const double x11 = near, y11 = n * bj(q), x21 = apart, y21 = 2 * n;
-      const double x12 = -wg(q) * x21, y12 = -wg(q) * y21, x22 = near - bg(q) * apart, y22 = n * (bj(q) - 2 * bg(q));
-      const double x = x11 * x22 - y11 * y22 - (x12 * x21 - y12 * y21);
-      const double y = x11 * y22 + y11 * x22 - (x12 * y21 + y12 * x21);
-      const double inverse = 1 / (x * x + y * y), fx = -x * inverse, fy = y * inverse;  // -1/determinant
-      const double a = fx * x22 - fy * y22, b1 = fx * y22 + fy * x22, c = fy * y12 - fx * x12, d = -fx * y12 - fy * x12;
-      const double e = v * (fy * y21 - fx * x21), f = v * (-fx * y21 - fy * x21);
-      const double g = v * (fx * x11 - fy * y11), h = v * (fx * y11 + fy * x11);
-      M[q] = a, M[nm + q] = b1, M[2 * nm + q] = c, M[3 * nm + q] = d;
-      M[4 * nm + q] = e, M[5 * nm + q] = f, M[6 * nm + q] = g, M[7 * nm + q] = h;
-      size[q] = std::sqrt(a * a + b1 * b1) + std::sqrt(e * e + f * f);
-      size[nm + q] = std::sqrt(c * c + d * d) + std::sqrt(g * g + h * h);
-    }
+    double *M = inverse_.col(k).data(), *size = inverse_size_.col(k).data();
+    in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
+      using V = Numbers<width>;
+      const auto of = [q](const Eigen::ArrayXd& numbers) { return at<width>(numbers.data() + q); };
+      const V apart = of(bj) - of(bg), near = of(wj) - of(wg) - n * n, v = of(weight);
+      const V y11 = n * of(bj), x12 = -of(wg) * apart, y12 = -2 * n * of(wg);
+      const double y21 = 2 * n;
+      const V x22 = near - of(bg) * apart, y22 = n * (of(bj) - 2 * of(bg));
+      const V x = near * x22 - y11 * y22 - (x12 * apart - y12 * y21);
+      const V y = near * y22 + y11 * x22 - (x12 * y21 + y12 * apart);
+      const V norm = x * x + y * y, fx = -x / norm, fy = y / norm;  // -1/determinant
+      const V M11 = fx * x22 - fy * y22, N11 = fx * y22 + fy * x22;
+      const V M12 = fy * y12 - fx * x12, N12 = -fx * y12 - fy * x12;
+      const V M21 = v * (fy * y21 - fx * apart), N21 = v * (-fx * y21 - fy * apart);
+      const V M22 = v * (fx * near - fy * y11), N22 = v * (fx * y11 + fy * near);
+      Index entry = 0;
+      for (const V* part : {&M11, &N11, &M12, &N12, &M21, &N21, &M22, &N22}) at<width>(M + nm * entry++ + q) = *part;
+      at<width>(size + q) = (M11.square() + N11.square()).sqrt() + (M21.square() + N21.square()).sqrt();
+      at<width>(size + nm + q) = (M12.square() + N12.square()).sqrt() + (M22.square() + N22.square()).sqrt();
+    });
   }
 }
 
@@ -293,35 +325,35 @@ MatrixXd Iteration::start() const {
 
 double Iteration::distance(const VectorXd& x, const VectorXd& y) const {
   const Index both = 2 * n_ * m_;
-  Eigen::ArrayXd total = Eigen::ArrayXd::Zero(both);
-  double* __restrict sum = total.data();
-  for (Index k = 0; k <= H_; ++k) {
-    const double *__restrict a = x.data() + 2 * both * k, *__restrict b = y.data() + 2 * both * k;
-    for (Index q = 0; q < both; ++q) {
-      const double real = a[q] - b[q], imaginary = a[both + q] - b[both + q];
-      sum[q] += std::sqrt(real * real + imaginary * imaginary);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(both);
+  in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
+    Numbers<width> total = Numbers<width>::Zero();
+    for (Index k = 0; k <= H_; ++k) {
+      const double *a = x.data() + 2 * both * k + q, *b = y.data() + 2 * both * k + q;
+      total += ((at<width>(a) - at<width>(b)).square() + (at<width>(a + both) - at<width>(b + both)).square()).sqrt();
     }
-  }
-  return 2 * (total.head(both / 2) + total.tail(both / 2)).maxCoeff();
+    at<width>(sum.data() + q) = total;
+  });
+  return 2 * (sum.head(both / 2) + sum.tail(both / 2)).maxCoeff();
 }
 
 void Iteration::sample(const VectorXd& x) {
   const Index both = 2 * n_ * m_;
-  Eigen::ArrayXd scale = Eigen::ArrayXd::Ones(both);
-  for (Index q = both / 2; q < both; ++q) scale(q) = 1 / weight_[std::size_t((q - both / 2) / n_)];
+  Eigen::ArrayXd scales = Eigen::ArrayXd::Ones(both);
+  for (Index q = 0; q < both / 2; ++q) scales(both / 2 + q) = 1 / weight_[std::size_t(q / n_)];
   auto re = back_.re(), im = back_.im();
-  for (Index k = 0; k <= H_; ++k) {
-    const double n = double(k);
-    const double* __restrict from = x.data() + 2 * both * k;
-    double *__restrict real = re.col(k).data(), *__restrict imaginary = im.col(k).data();
-    for (Index q = 0; q < both; ++q) {
-      const double a = scale(q) * from[q], b = scale(q) * from[both + q];
-      real[q] = a;
-      imaginary[q] = b;
-      real[both + q] = -n * b;
-      imaginary[both + q] = n * a;
+  in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
+    const Numbers<width> scale = at<width>(scales.data() + q);
+    for (Index k = 0; k <= H_; ++k) {
+      const double* from = x.data() + 2 * both * k + q;
+      double *real = &re(q, k), *imaginary = &im(q, k);
+      const Numbers<width> a = scale * at<width>(from), b = scale * at<width>(from + both);
+      at<width>(real) = a;
+      at<width>(imaginary) = b;
+      at<width>(real + both) = -double(k) * b;
+      at<width>(imaginary + both) = double(k) * a;
     }
-  }
+  });
   re.rightCols(N_ / 2 - H_).setZero();
   im.rightCols(N_ / 2 - H_).setZero();
   back_.backward();
@@ -412,24 +444,26 @@ void Iteration::push_through(VectorXd& f) {
   const Index nm = n_ * m_;
   forward_.forward();
   const auto re = forward_.re(), im = forward_.im();
-  residual_.setZero();
-  double *__restrict sum1 = residual_.col(0).data(), *__restrict sum2 = residual_.col(1).data();
-  for (Index k = 0; k <= H_; ++k) {
-    const double n = double(k), signs = k > 0 ? 2 : 1;
-    const double *__restrict x = re.col(k).data(), *__restrict y = im.col(k).data();
-    const double* __restrict M = inverse_.col(k).data();
-    double* __restrict to = f.data() + 4 * nm * k;
-    for (Index q = 0; q < nm; ++q) {
-      const double x1 = x[2 * nm + q] - n * y[q], y1 = y[2 * nm + q] + n * x[q];
-      const double x2 = x[3 * nm + q] - n * y[nm + q], y2 = y[3 * nm + q] + n * x[nm + q];
-      sum1[q] += signs * std::sqrt(x1 * x1 + y1 * y1);
-      sum2[q] += signs * std::sqrt(x2 * x2 + y2 * y2);
-      to[q] = M[q] * x1 - M[nm + q] * y1 + M[2 * nm + q] * x2 - M[3 * nm + q] * y2;
-      to[2 * nm + q] = M[q] * y1 + M[nm + q] * x1 + M[2 * nm + q] * y2 + M[3 * nm + q] * x2;
-      to[nm + q] = M[4 * nm + q] * x1 - M[5 * nm + q] * y1 + M[6 * nm + q] * x2 - M[7 * nm + q] * y2;
-      to[3 * nm + q] = M[4 * nm + q] * y1 + M[5 * nm + q] * x1 + M[6 * nm + q] * y2 + M[7 * nm + q] * x2;
+  in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
+    using V = Numbers<width>;
+    V sum1 = V::Zero(), sum2 = V::Zero();
+    for (Index k = 0; k <= H_; ++k) {
+      const double n = double(k), signs = k > 0 ? 2 : 1;
+      const auto x = [&](Index column) { return at<width>(&re(nm * column + q, k)); };
+      const auto y = [&](Index column) { return at<width>(&im(nm * column + q, k)); };
+      const auto M = [&](Index entry) { return at<width>(&inverse_(nm * entry + q, k)); };
+      const auto to = [&](Index part) { return at<width>(&f(nm * (4 * k + part) + q)); };
+      const V x1 = x(2) - n * y(0), y1 = y(2) + n * x(0), x2 = x(3) - n * y(1), y2 = y(3) + n * x(1);
+      sum1 += signs * (x1.square() + y1.square()).sqrt();
+      sum2 += signs * (x2.square() + y2.square()).sqrt();
+      to(0) = M(0) * x1 - M(1) * y1 + M(2) * x2 - M(3) * y2;
+      to(1) = M(4) * x1 - M(5) * y1 + M(6) * x2 - M(7) * y2;
+      to(2) = M(0) * y1 + M(1) * x1 + M(2) * y2 + M(3) * x2;
+      to(3) = M(4) * y1 + M(5) * x1 + M(6) * y2 + M(7) * x2;
     }
-  }
+    at<width>(&residual_(q, 0)) = sum1;
+    at<width>(&residual_(q, 1)) = sum2;
+  });
 }
 
 }  // namespace hb::slaving
