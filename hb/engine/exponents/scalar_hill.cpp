@@ -158,6 +158,8 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
     const double sigma = Q.minCoeff() > 0 ? 1 : -1;
     if (!((sigma * Q).minCoeff() > 0)) return std::nullopt;
 
+    // Part of the error allowed that the next correction may be.
+    constexpr double unseen = 0.01;
     // psi2 = sigma (Q + correction) leaves the defect `left` at the nodes: how much the next correction differs.
     FourierSeries L;
     ArrayXd correction = ArrayXd::Zero(N), next = sigma * Q;
@@ -173,6 +175,7 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
       correction = term;
       next = sigma * (Q + term);
       if (!next.allFinite() || !(next.minCoeff() > 0)) break;
+      if (left <= unseen * tolerance * std::sqrt(next.minCoeff())) break;
     }
     if (!std::isfinite(left)) return std::nullopt;
     // From here on psi = exp(L), L a trigonometric polynomial, is what it is; its defect at twice the nodes says how
