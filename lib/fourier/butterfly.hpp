@@ -24,6 +24,14 @@ inline Butterfly<V> butterfly(V ar, V ai, V br, V bi, V cr, V ci, V dr, V di, do
           c2 * vr + s2 * vi, c2 * vi - s2 * vr, c3 * xr + s3 * xi, c3 * xi - s3 * xr};
 }
 
+// With all twiddles 1.
+template <class V>
+inline Butterfly<V> butterfly(V ar, V ai, V br, V bi, V cr, V ci, V dr, V di) {
+  const V pr = ar + cr, pi = ai + ci, qr = ar - cr, qi = ai - ci;
+  const V rr = br + dr, ri = bi + di, tr = br - dr, ti = bi - di;
+  return {pr + rr, pi + ri, qr + ti, qi - tr, pr - rr, pi - ri, qr - ti, qi + tr};
+}
+
 // The last pass: no twiddles are left. From s numbers each at 0, s, 2 s of `re`, `im` to those of `y`, `z`.
 template <class In, class Out>
 inline void last_radix_3(std::size_t s, In re, In im, Out y, Out z) {

@@ -39,60 +39,75 @@ inline Vector* scratch(size_t M) {
   return block.get();
 }
 
-// `count` <= width columns `apart` numbers from each other: to put(j, numbers j of all), j < length, a multiple of
-// width.
+// `count` <= width columns `apart` numbers from each other: to put(j, numbers j .. j + width - 1 of all), j < length, a
+// multiple of width.
 template <class Put>
 void gather(const double* columns, size_t apart, size_t count, size_t length, const Put& put) {
+  size_t first[width];
+  for (size_t c = 0; c < width; ++c) first[c] = std::min(c, count - 1) * apart;
   Block block;
   for (size_t j = 0; j < length; j += width) {
-    for (size_t c = 0; c < width; ++c)
-      block.packet[c] = Eigen::internal::ploadu<Vector>(columns + std::min(c, count - 1) * apart + j);
+    for (size_t c = 0; c < width; ++c) block.packet[c] = Eigen::internal::ploadu<Vector>(columns + first[c] + j);
     Eigen::internal::ptranspose(block);
-    for (size_t i = 0; i < width; ++i) put(j + i, block.packet[i]);
+    put(j, block.packet);
   }
 }
 
-// And back, from in(j).
-template <class Numbers>
-void scatter(const Numbers& in, size_t length, double* columns, size_t apart, size_t count) {
+// And back, from fill(j, numbers).
+template <class Fill>
+void scatter(const Fill& fill, size_t length, double* columns, size_t apart, size_t count) {
   Block block;
   for (size_t j = 0; j < length; j += width) {
-    for (size_t i = 0; i < width; ++i) block.packet[i] = in(j + i);
+    fill(j, block.packet);
     Eigen::internal::ptranspose(block);
     for (size_t c = 0; c < count; ++c) Eigen::internal::pstoreu(columns + c * apart + j, block.packet[c]);
   }
 }
 
-inline void radix_4(size_t m, size_t s, const Vector* re, const Vector* im, const double* w, Vector* y, Vector* z) {
+// Numbers `apart` from each other.
+inline void put(const Butterfly<Vector>& b, size_t apart, Vector* __restrict y, Vector* __restrict z) {
+  y[0] = b.y0;
+  y[apart] = b.y1;
+  y[2 * apart] = b.y2;
+  y[3 * apart] = b.y3;
+  z[0] = b.z0;
+  z[apart] = b.z1;
+  z[2 * apart] = b.z2;
+  z[3 * apart] = b.z3;
+}
+
+inline void radix_4(size_t m, size_t s, const Vector* __restrict re, const Vector* __restrict im, const double* w,
+                    Vector* __restrict y, Vector* __restrict z) {
   const size_t far = s * m;
-  for (size_t p = 0; p < m; ++p) {
+  for (size_t q = 0; q < s; ++q) {
+    const Vector *a = re + q, *b = im + q;
+    put(butterfly(a[0], b[0], a[far], b[far], a[2 * far], b[2 * far], a[3 * far], b[3 * far]), s, y + q, z + q);
+  }
+  for (size_t p = 1; p < m; ++p) {
     const double c1 = w[p], c2 = w[p + m], c3 = w[p + 2 * m], s1 = w[p + 3 * m], s2 = w[p + 4 * m], s3 = w[p + 5 * m];
-    for (size_t q = 0; q < s; ++q) {
-      const Vector *a = re + s * p + q, *b = im + s * p + q;
-      const Butterfly<Vector> to =
-          butterfly(a[0], b[0], a[far], b[far], a[2 * far], b[2 * far], a[3 * far], b[3 * far], c1, c2, c3, s1, s2, s3);
-      Vector *u = y + 4 * s * p + q, *v = z + 4 * s * p + q;
-      u[0] = to.y0;
-      v[0] = to.z0;
-      u[s] = to.y1;
-      v[s] = to.z1;
-      u[2 * s] = to.y2;
-      v[2 * s] = to.z2;
-      u[3 * s] = to.y3;
-      v[3 * s] = to.z3;
+    for (size_t q = s * p; q < s * (p + 1); ++q) {
+      const Vector *a = re + q, *b = im + q;
+      put(butterfly(a[0], b[0], a[far], b[far], a[2 * far], b[2 * far], a[3 * far], b[3 * far], c1, c2, c3, s1, s2, s3),
+          s, y + 3 * s * p + q, z + 3 * s * p + q);
     }
   }
 }
 
-inline void radix_2(size_t m, size_t s, const Vector* re, const Vector* im, const double* w, Vector* y, Vector* z) {
+inline void radix_2(size_t m, size_t s, const Vector* __restrict re, const Vector* __restrict im, const double* w,
+                    Vector* __restrict y, Vector* __restrict z) {
   const size_t far = s * m;
-  for (size_t p = 0; p < m; ++p)
-    for (size_t q = 0; q < s; ++q) {
-      const Vector *a = re + s * p + q, *b = im + s * p + q;
-      const Vector ur = a[0] - a[far], ui = b[0] - b[far];
-      Vector *u = y + 2 * s * p + q, *v = z + 2 * s * p + q;
-      u[0] = a[0] + a[far];
-      v[0] = b[0] + b[far];
+  for (size_t q = 0; q < s; ++q) {
+    y[q] = re[q] + re[q + far];
+    z[q] = im[q] + im[q + far];
+    y[q + s] = re[q] - re[q + far];
+    z[q + s] = im[q] - im[q + far];
+  }
+  for (size_t p = 1; p < m; ++p)
+    for (size_t q = s * p; q < s * (p + 1); ++q) {
+      const Vector ur = re[q] - re[q + far], ui = im[q] - im[q + far];
+      Vector *u = y + s * p + q, *v = z + s * p + q;
+      u[0] = re[q] + re[q + far];
+      v[0] = im[q] + im[q + far];
       u[s] = w[p] * ur + w[p + m] * ui;
       v[s] = w[p] * ui - w[p + m] * ur;
     }
@@ -143,19 +158,27 @@ struct ShortTransform::Lanes {
     return from;
   }
 
-  // store(k, real parts, imaginary parts of all), k <= M.
+  // store(k, real parts, imaginary parts of all), k <= M. Harmonics k and M - k are made of the same sums: their
+  // cosines of 2 pi k/N have opposite signs, their sines are equal.
   template <class Store>
   void forward(const double* samples, double factor, std::size_t count, const Store& store) const {
-    lanes::gather(samples, N, count, N, [&](std::size_t j, Vector f) { second[j % 2 * M + j / 2] = f; });
+    lanes::gather(samples, N, count, N, [re = second, im = second + M](std::size_t j, const Vector* f) {
+      for (std::size_t i = 0; i < width; i += 2) {
+        re[(j + i) / 2] = f[i];
+        im[(j + i) / 2] = f[i + 1];
+      }
+    });
     const Vector* x = transform(false, second, first);
     const Vector *y = x + M, none = 0.0 * x[0];
     const double half = 0.5 * factor;
     store(0, factor * (x[0] + y[0]), none);
-    for (std::size_t k = 1; k < M; ++k) {
+    for (std::size_t k = 1; k <= M / 2; ++k) {
       const Vector odd_re = y[k] + y[M - k], odd_im = x[M - k] - x[k];
       const double c = half * of.cosines_[k], s = half * of.sines_[k];
-      store(k, half * (x[k] + x[M - k]) + (c * odd_re + s * odd_im),
-            half * (y[k] - y[M - k]) + (c * odd_im - s * odd_re));
+      const Vector even_re = half * (x[k] + x[M - k]), turned_re = c * odd_re + s * odd_im;
+      const Vector even_im = half * (y[k] - y[M - k]), turned_im = c * odd_im - s * odd_re;
+      store(k, even_re + turned_re, even_im + turned_im);
+      store(M - k, even_re - turned_re, turned_im - even_im);
     }
     store(M, factor * (x[0] - y[0]), none);
   }
@@ -166,15 +189,25 @@ struct ShortTransform::Lanes {
     Vector *x = second, *y = second + M;
     x[0] = re(0) + re(M);
     y[0] = re(0) - re(M);
-    for (std::size_t k = 1; k < M; ++k) {
+    for (std::size_t k = 1; k <= M / 2; ++k) {
       const Vector a = re(k), b = im(k), d = re(M - k), e = im(M - k);
       const Vector odd_re = a - d, odd_im = b + e;
       const double c = of.cosines_[k], s = of.sines_[k];
-      x[k] = (a + d) - (c * odd_im + s * odd_re);
-      y[k] = (b - e) + (c * odd_re - s * odd_im);
+      const Vector turned_re = c * odd_im + s * odd_re, turned_im = c * odd_re - s * odd_im;
+      x[k] = (a + d) - turned_re;
+      y[k] = (b - e) + turned_im;
+      x[M - k] = (a + d) + turned_re;
+      y[M - k] = turned_im - (b - e);
     }
     const Vector* z = transform(true, second, first);
-    lanes::scatter([&](std::size_t place) { return z[place % 2 * M + place / 2]; }, N, samples, N, count);
+    lanes::scatter(
+        [z, w = z + M](std::size_t j, Vector* f) {
+          for (std::size_t i = 0; i < width; i += 2) {
+            f[i] = z[(j + i) / 2];
+            f[i + 1] = w[(j + i) / 2];
+          }
+        },
+        N, samples, N, count);
   }
 
   // Spectra one after the other.
@@ -185,7 +218,7 @@ struct ShortTransform::Lanes {
       out[2 * k] = re;
       out[2 * k + 1] = im;
     });
-    lanes::scatter([&](std::size_t place) { return out[place]; }, N, spectrum, apart, count);
+    lanes::scatter([out](std::size_t j, Vector* f) { std::copy_n(out + j, width, f); }, N, spectrum, apart, count);
     double last[width];
     Eigen::internal::pstoreu(last, out[N]);
     for (std::size_t c = 0; c < count; ++c) {
@@ -197,7 +230,8 @@ struct ShortTransform::Lanes {
 
   void backward(const double* spectrum, double* samples, std::size_t count) const {
     const std::size_t apart = N + 2;
-    lanes::gather(spectrum, apart, count, N, [&](std::size_t j, Vector c) { first[j] = c; });
+    lanes::gather(spectrum, apart, count, N,
+                  [to = first](std::size_t j, const Vector* f) { std::copy_n(f, width, to + j); });
     double last[width];
     for (std::size_t c = 0; c < width; ++c) last[c] = spectrum[std::min(c, count - 1) * apart + N];
     first[N] = Eigen::internal::ploadu<Vector>(last);
