@@ -40,6 +40,23 @@ MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
   return transform.samples()(Eigen::all, from);
 }
 
+// All modes kept, in their own order.
+ReducedSystem unreduced(const ScaledSystem& system) {
+  const Index I = system.num_modes();
+  ReducedSystem all;
+  all.converged = true;
+  all.others_below = -HUGE_VAL;
+  all.start = MatrixXd::Identity(2 * I, 2 * I);
+  all.num_modes = I;
+  all.alpha = system.K;
+  all.beta = FourierSeries(I * I, 0);
+  all.beta.c.col(0).real() = system.G.reshaped();
+  all.alpha_error = slaving::given_rounding * system.K_rounding;
+  all.beta_error = 2 * eps * system.G.cwiseAbs() + system.G_error;
+  slaving::drop_tail(all.alpha, all.alpha_error);
+  return all;
+}
+
 }  // namespace
 
 // Slaving asks for twice as many angles in the end: these show the others, too.
@@ -64,24 +81,7 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   const ScaledSystem& system = stiffness.system();
   const Index I = system.num_modes();
   const Partition p = slaving::partition(I, slow);
-  if (p.F.empty()) {
-    ReducedSystem all;
-    all.converged = true;
-    all.others_below = -HUGE_VAL;
-    all.start = MatrixXd::Identity(2 * I, 2 * I);
-    all.num_modes = I;
-    all.alpha = FourierSeries(I * I, system.K.num_harmonics());
-    all.beta = FourierSeries(I * I, 0);
-    for (Index l = 0; l < I; ++l)
-      for (Index s = 0; s < I; ++s) {
-        all.alpha.c.row(s + I * l) = system.K.c.row(p.S[s] + I * p.S[l]);
-        all.beta.c(s + I * l, 0) = system.G(p.S[s], p.S[l]);
-      }
-    all.alpha_error = slaving::given_rounding * system.K_rounding(p.S, p.S);
-    all.beta_error = 2 * eps * system.G(p.S, p.S).cwiseAbs() + system.G_error(p.S, p.S);
-    slaving::drop_tail(all.alpha, all.alpha_error);
-    return all;
-  }
+  if (p.F.empty()) return unreduced(system);
   ReducedSystem reduced;
   // Few samples for the iteration; twice as many judge what it gave.
   constexpr Index fewest_samples = 32, most_samples = 8192;
