@@ -23,10 +23,8 @@ struct RoughSolver::Impl {
   }
 };
 
-RoughSolver::RoughSolver(const HillSystem& system, double speed) {
-  const HillSystem unloaded{system.mass, system.damping, system.stiffness, {}};
-  impl_ = std::make_unique<Impl>(scale_system(unloaded, speed), system.mass);
-}
+RoughSolver::RoughSolver(const HillSystem& system, double speed)
+    : impl_(std::make_unique<Impl>(scale_unloaded(system, speed), system.mass)) {}
 
 RoughSolver::~RoughSolver() = default;
 RoughSolver::RoughSolver(RoughSolver&&) noexcept = default;

@@ -68,8 +68,7 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
     }
   double largest = 1;
   for (int step = 0; step < 2; ++step) {
-    const Spectrum u = rhs.cwiseQuotient(A.magnitude().cast<std::complex<double>>());
-    const double size = size_in_q(u, T);
+    const double size = weigh(wiener(moduli(rhs).cwiseQuotient(A.magnitude())), T);
     // A random load holds the direction nearest to resonance by about 1/sqrt(unknowns): solved well below that. The
     // second holds it fully.
     inverse.solve(rhs, step == 0 ? 1e-3 : 1e-2, z);
@@ -153,7 +152,7 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   Eigen::VectorXd sizes = Eigen::VectorXd::Zero(I);
   for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
   result.outside = weigh(sizes, T);
-  for (Index k = R + 1; k < r.rows(); ++k) result.outside += 2 * tail_row(A, r, k, T);
+  if (r.rows() > R + 1) result.outside += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
   // Rows beyond R feel the tail through K, and answer it.
   double reaching = 0, nearest = HUGE_VAL;
   for (Index i = 0; i < I; ++i) {
@@ -164,13 +163,13 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   return result;
 }
 
-double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T) {
-  Eigen::VectorXd sizes(r.cols());
-  for (Index i = 0; i < r.cols(); ++i) {
-    const double size = modulus(r(k, i));
-    sizes(i) = size > 0 ? size / modulus(A.system().D(i, k)) : 0;
-  }
-  return weigh(sizes, T);
+Eigen::VectorXd sizes_of_rows(const WeightedSystem& system, const Spectrum& rows, Index first,
+                              const Eigen::MatrixXd& T) {
+  Eigen::MatrixXd sizes = moduli(rows);
+  for (Index i = 0; i < sizes.cols(); ++i)
+    for (Index k = 0; k < sizes.rows(); ++k)
+      if (sizes(k, i) > 0) sizes(k, i) /= modulus(system.D(i, first + k));
+  return (sizes * T.cwiseAbs().transpose()).rowwise().maxCoeff();
 }
 
 // Coupling E shifts w^2 by about E^2/|D(k +- m)|, |D(k +- m)| >= k.

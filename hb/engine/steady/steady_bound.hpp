@@ -32,8 +32,9 @@ struct Correction {
 [[nodiscard]] Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response,
                                     const Eigen::MatrixXd& T, double enough = HUGE_VAL);
 
-// Row k > H of the residual, divided by |D(k)|, in q.
-[[nodiscard]] double tail_row(const Operator& A, const Spectrum& r, Eigen::Index k, const Eigen::MatrixXd& T);
+// Sizes in q of rows of a residual divided by |D(k)|, those of harmonics k = first, first + 1, ...
+[[nodiscard]] Eigen::VectorXd sizes_of_rows(const WeightedSystem& system, const Spectrum& rows, Eigen::Index first,
+                                            const Eigen::MatrixXd& T);
 
 // Guess of what rows outside do beyond r/D: feed back into the window, and couple among themselves. For choosing the
 // number of harmonics only.

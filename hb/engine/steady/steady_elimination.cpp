@@ -12,12 +12,11 @@ using Index = Eigen::Index;
 Index factor_harmonics(const WeightedSystem& system) {
   constexpr double factor_accuracy = 1e-10;
   Index P = system.P;
+  const Eigen::ArrayXd scale = factor_accuracy * (1 + system.mean.array().abs());
   const auto negligible = [&](Index m) {
     for (Index j = 0; j < system.I; ++j)
-      for (Index i = 0; i < system.I; ++i) {
-        const double scale = std::sqrt((1 + std::abs(system.mean(i))) * (1 + std::abs(system.mean(j))));
-        if (!(std::abs(system.K(i + system.I * j, m)) <= factor_accuracy * scale)) return false;
-      }
+      for (Index i = 0; i < system.I; ++i)
+        if (!(std::norm(system.K(i + system.I * j, m)) <= scale(i) * scale(j))) return false;
     return true;
   };
   while (P > 0 && negligible(P)) --P;

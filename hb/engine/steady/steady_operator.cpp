@@ -46,8 +46,10 @@ WeightedSystem weighted(const ScaledSystem& system) {
   const Eigen::VectorXd norms = moduli(s.K.col(0)) + 2 * moduli(s.K.rightCols(s.P)).rowwise().sum();
   Eigen::MatrixXd E = Eigen::Map<const Eigen::MatrixXd>(norms.data(), I, I);
   E.diagonal() -= s.mean.cwiseAbs();
-  s.own_coupling = E.diagonal();
   s.coupling = E.rowwise().sum();
+  s.symmetric = true;
+  for (Eigen::Index j = 0; j < I; ++j)
+    for (Eigen::Index i = j + 1; i < I; ++i) s.symmetric = s.symmetric && s.K.row(i + I * j) == s.K.row(j + I * i);
   return s;
 }
 
@@ -67,18 +69,34 @@ Operator::Operator(const WeightedSystem& system, Eigen::Index num_harmonics)
 const Operator::Nodes& Operator::nodes(Eigen::Index N) {
   Nodes& store = inner_.N == 0 || inner_.N == N ? inner_ : outer_;
   if (store.N == N) return store;
+  constexpr std::size_t at_once = 16;
   const Eigen::Index I = system_->I, P = system_->P;
   store.N = N;
-  store.E.resize(N, I * I);
-  fourier::RealTransform& fft = fourier::thread_transform(N, I);
-  for (Eigen::Index j = 0; j < I; ++j) {
+  store.E.resize(static_cast<std::size_t>(I * I * N / together));
+  const auto put = [&](Eigen::Index i, Eigen::Index j, const double* samples) {
+    for (Eigen::Index n = 0; n < N; n += together)
+      store.E[static_cast<std::size_t>(I * I * n / together + I * i + j)] = Eigen::Map<const Neighbours>(samples + n);
+  };
+  std::vector<std::pair<Eigen::Index, Eigen::Index>> entries;
+  for (Eigen::Index j = 0; j < I; ++j)
+    for (Eigen::Index i = system_->symmetric ? j : 0; i < I; ++i) entries.emplace_back(i, j);
+  for (std::size_t first = 0; first < entries.size(); first += at_once) {
     end_if_wished();
+    const auto count = static_cast<Eigen::Index>(std::min(at_once, entries.size() - first));
+    fourier::RealTransform& fft = fourier::thread_transform(N, count);
     auto spectrum = fft.spectrum();
-    spectrum.setZero();
-    spectrum.topRows(P + 1) = system_->K.middleRows(I * j, I).transpose();
-    spectrum(0, j) = 0;
+    spectrum.bottomRows(N / 2 - P).setZero();
+    for (Eigen::Index c = 0; c < count; ++c) {
+      const auto [i, j] = entries[first + static_cast<std::size_t>(c)];
+      spectrum.col(c).head(P + 1) = system_->K.row(i + I * j);
+      if (i == j) spectrum(0, c) = 0;
+    }
     fft.backward();
-    store.E.middleCols(I * j, I) = fft.samples();
+    for (Eigen::Index c = 0; c < count; ++c) {
+      const auto [i, j] = entries[first + static_cast<std::size_t>(c)];
+      put(i, j, fft.samples().col(c).data());
+      if (system_->symmetric && i != j) put(j, i, fft.samples().col(c).data());
+    }
   }
   return store;
 }
@@ -129,43 +147,47 @@ void Operator::multiply(const Spectrum& x, Eigen::Index num_rows, bool full, Spe
   // Harmonics reach X+P; what is folded back lands above num_rows when N > X + P + num_rows. One length for all
   // products with rows beyond the window.
   const Eigen::Index X = x.rows() - 1, widest = num_rows > H_ ? std::max(X, last_row()) : X;
-  const Eigen::Index N = fourier::fast_length(std::max(widest + P + num_rows + 1, 2 * P + 2));
+  const Eigen::Index N = fourier::fast_length(std::max({widest + P + num_rows + 1, 2 * P + 2, 2 * together}));
   const Nodes& at = nodes(N);
   fourier::RealTransform& fft = fourier::thread_transform(N, I);
   auto spectrum = fft.spectrum();
   spectrum.topRows(X + 1) = x;
   spectrum.bottomRows(N / 2 - X).setZero();
   fft.backward();
-  const auto samples = fft.samples();
-  product_.resize(N, I);
-  for (Eigen::Index i = 0; i < I; ++i) {
-    product_.col(i) = at.E.col(i).cwiseProduct(samples.col(0));
-    for (Eigen::Index j = 1; j < I; ++j) product_.col(i) += at.E.col(i + I * j).cwiseProduct(samples.col(j));
-  }
-  if (full)
-    for (Eigen::Index i = 0; i < I; ++i) {
-      Eigen::ArrayXd size = Eigen::ArrayXd::Zero(N);
-      for (Eigen::Index j = 0; j < I; ++j) size += (at.E.col(i + I * j).array() * samples.col(j).array()).abs();
-      noise_(i) = 2 * eps * (2 + std::log2(N)) / std::sqrt(N) * size.maxCoeff();
+  auto samples = fft.samples();
+  here_.resize(static_cast<std::size_t>(I));
+  if (full) noise_.setZero();
+  const Neighbours* E = at.E.data();
+  for (Eigen::Index n = 0; n < N; n += together) {
+    for (Eigen::Index j = 0; j < I; ++j)
+      here_[static_cast<std::size_t>(j)] = samples.col(j).segment<together>(n).array();
+    for (Eigen::Index i = 0; i < I; ++i, E += I) {
+      Neighbours sum = E[0] * here_[0];
+      for (Eigen::Index j = 1; j < I; ++j) sum += E[j] * here_[static_cast<std::size_t>(j)];
+      samples.col(i).segment<together>(n) = sum;
+      if (!full) continue;
+      Neighbours size = (E[0] * here_[0]).abs();
+      for (Eigen::Index j = 1; j < I; ++j) size += (E[j] * here_[static_cast<std::size_t>(j)]).abs();
+      noise_(i) = std::max(noise_(i), size.maxCoeff());
     }
-  fft.samples() = product_;
+  }
+  if (full) noise_ *= 2 * eps * (2 + std::log2(N)) / std::sqrt(N);
   fft.forward();
   result = fft.spectrum().topRows(num_rows + 1);
-  result.row(0) = result.row(0).real().cast<std::complex<double>>();
+  result.row(0).imag().setZero();
 }
 
 Spectrum Operator::residual(const Spectrum& x) {
-  Spectrum r;
-  couple(x, last_row(), r);
-  r.topRows(H_ + 1) += D_.cwiseProduct(x);
   const Eigen::Index F = system_->f.rows() - 1;
-  if (F > last_row()) {
-    const Eigen::Index have = r.rows();
-    r.conservativeResize(F + 1, Eigen::NoChange);
-    r.bottomRows(F + 1 - have).setZero();
+  Spectrum r = Spectrum::Zero(std::max(last_row(), F) + 1, system_->I), product;
+  r.topRows(F + 1) = system_->f;
+  if ((x.array() == 0.0).all()) {
+    noise_.setZero();
+    return r;
   }
-  r = -r;
-  r.topRows(F + 1) += system_->f;
+  couple(x, last_row(), product);
+  r.topRows(last_row() + 1) -= product;
+  r.topRows(H_ + 1) -= D_.cwiseProduct(x);
   return r;
 }
 

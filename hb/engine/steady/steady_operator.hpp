@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <complex>
+#include <vector>
 
 #include "hb/engine/system/scaled_system.hpp"
 
@@ -25,12 +26,12 @@ struct WeightedSystem {
   Eigen::MatrixXcd K;  // I*I x (P+1)
   Eigen::MatrixXd G, G_off;  // damping; the same without its diagonal
   bool diagonal_damping = true;
+  bool symmetric = false;  // K, exactly
   Eigen::VectorXd mean;  // w_i^2 = mean K_ii
   Spectrum f;  // (F+1) x I
   Eigen::MatrixXd K_rounding;  // sum over harmonics of |error| of K, entry by entry
   Eigen::VectorXd f_rounding;  // the same of f
   Eigen::VectorXd coupling;  // upper bound of sum_k max_tau |E_ik|, the largest part of row i
-  Eigen::VectorXd own_coupling;  // upper bound of max_tau |E_ii|
 
   std::complex<double> D(Eigen::Index i, Eigen::Index k) const {
     const double n = static_cast<double>(k);
@@ -74,9 +75,12 @@ class Operator {
   int num_products() const { return num_products_; }
 
  private:
+  // E at N nodes, `together` neighbours of every entry after each other: E_11, E_12, ... of those, then of the next.
+  static constexpr Eigen::Index together = 8;
+  using Neighbours = Eigen::Array<double, together, 1>;
   struct Nodes {
     Eigen::Index N = 0;
-    Eigen::MatrixXd E;  // N x I*I
+    std::vector<Neighbours> E;
   };
   const Nodes& nodes(Eigen::Index N);
   void convolve(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
@@ -87,13 +91,17 @@ class Operator {
   Spectrum D_;
   Eigen::MatrixXd magnitude_;
   Nodes inner_, outer_;
-  Eigen::MatrixXd product_;
+  std::vector<Neighbours> here_;  // of all components of x
   Eigen::VectorXd noise_;  // of the last exact residual
   int num_products_ = 0;
 };
 
 // Largest |x_i| at sample points (at least four per shortest wave): at most the maximum over the turn.
 [[nodiscard]] double largest_over_turn(const Spectrum& x, Eigen::Index* component = nullptr);
+
+// How it is known that a residual is as small as asked: from the residual itself or, where the next one is formed
+// anyway or an estimate will do, from what iterations have gained so far.
+enum class Reached { seen, expected };
 
 // Approximate inverse of A on the window.
 class Inverse {

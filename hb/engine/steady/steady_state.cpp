@@ -108,18 +108,21 @@ class Solver {
       Spectrum r;
       const bool solved = solve(A, *inverse, x, r);
       // The last harmonics that the exact residual shows: more of them first, whatever else is wrong.
+      const double largest = steady::largest_over_turn(x * T_.transpose());
+      Eigen::VectorXd beyond;
       if (solved && !last) {
-        wanted = harmonics_for(A, steady::largest_over_turn(x * T_.transpose()), r, A.noise(), 1);
+        beyond = rows_beyond(H, r, A.noise());
+        wanted = harmonics_for(A, largest, beyond, 1);
         if (wanted > H) return state;
       }
       if (solved && options_.without_bound) return unbounded(x, r, state);
       const double response = solved ? steady::response(A, *inverse, T_) : HUGE_VAL;
       if (std::isfinite(response)) {
         if (!last) {
-          wanted = harmonics_for(A, steady::largest_over_turn(x * T_.transpose()), r, A.noise(), response);
+          wanted = harmonics_for(A, largest, beyond, response);
           if (wanted > H) return state;
         }
-        assess(A, *inverse, x, r, response, state, wanted);
+        assess(A, *inverse, x, r, largest, response, state, wanted);
         if (wanted > H && !last) return state;
         if (state.status == SteadyStatus::converged) return state;
       }
@@ -153,7 +156,7 @@ class Solver {
       if (now <= relative * load) return true;
       if (!(now < 0.3 * last)) return now <= 1e-3 * load;
       last = now;
-      inverse.solve(r.topRows(H + 1), std::max(relative * load / now, 1e-15), change);
+      inverse.solve(r.topRows(H + 1), std::max(0.5 * relative * load / now, 1e-15), change);
       if (!change.allFinite()) return false;
       x += change;
       r = A.residual(x);
@@ -161,36 +164,41 @@ class Solver {
     return A.scaled_norm(r) <= 1e-3 * load;
   }
 
-  // Smallest window whose omitted residual rows, divided by |D|, stay within the share of the tolerance.
-  // Entries of r at or below `noise` are not counted.
-  Index harmonics_for(const steady::Operator& A, double largest, Spectrum r, const Eigen::VectorXd& noise,
-                      double response) const {
+  // Rows of r beyond harmonic H, divided by |D|, in q. Entries at or below `noise` are not counted, but for the load's
+  // own, which have none.
+  Eigen::VectorXd rows_beyond(Index H, const Spectrum& r, const Eigen::VectorXd& noise) const {
+    Spectrum rows = r.bottomRows(r.rows() - H - 1);
+    for (Index i = 0; i < rows.cols(); ++i)
+      for (Index k = H + 1; k < r.rows(); ++k) {
+        const bool loaded = k < system_.f.rows() && system_.f(k, i) != 0.0;
+        if (!loaded && modulus(r(k, i)) <= noise(i)) rows(k - H - 1, i) = 0;
+      }
+    return steady::sizes_of_rows(system_, rows, H + 1, T_);
+  }
+
+  // Smallest window whose omitted residual rows stay within the share of the tolerance.
+  Index harmonics_for(const steady::Operator& A, double largest, const Eigen::VectorXd& beyond, double response) const {
     const Index H = A.num_harmonics();
     const double allowed = truncation_share * options_.tolerance * largest;
-    const Index above = system_.f.rows();  // the load's own rows have no noise
-    for (Index k = H + 1; k < r.rows(); ++k)
-      for (Index i = 0; i < r.cols(); ++i)
-        if (modulus(r(k, i)) <= noise(i) && (k >= above || system_.f(k, i) == 0.0)) r(k, i) = 0;
     const double slack = steady::tail_slack(A, response);
     double sum = 0;
-    Index k = r.rows() - 1;
+    Index k = H + beyond.size();
     for (; k > H; --k) {
-      sum += 2 * slack * steady::tail_row(A, r, k, T_);
+      sum += 2 * slack * beyond(k - H - 1);
       if (!(sum <= allowed)) break;
     }
     return k > H ? std::max(k + 1, H + 2) : H;
   }
 
   // The claim is hb/engine/README.md (S7).
-  void assess(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, const Spectrum& r, double response,
-              SteadyState& state, Index& wanted) {
+  void assess(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, const Spectrum& r, double largest,
+              double response, SteadyState& state, Index& wanted) {
     const Index H = A.num_harmonics();
     state.resonance_distance = std::min(1.0, 1 / response);
     if (!(1 / response > singular_distance) || steady::resonant_beyond(system_, H)) {
       singular(state);
       return;
     }
-    const double largest = steady::largest_over_turn(x * T_.transpose());
     const double load = steady::wiener_norms(system_.f).sum();
     const double rounding = steady::amplified(A.rounding(x), response, T_);
     const auto in_given_units = [&] {
@@ -271,7 +279,8 @@ class Solver {
     for (int pass = 0; pass < 8; ++pass) {
       const Residual residual = extended_residual(u);
       if (pass == 0) {
-        wanted = harmonics_for(A, residual.largest, residual.r, Eigen::VectorXd::Zero(system_.I), response);
+        const Eigen::VectorXd beyond = rows_beyond(H, residual.r, Eigen::VectorXd::Zero(system_.I));
+        wanted = harmonics_for(A, residual.largest, beyond, response);
         if (wanted > H) return;
       }
       const steady::Correction correction = steady::correction(A, inverse, residual.r, response, T_);

@@ -11,9 +11,9 @@
 namespace hb {
 
 enum class SteadyMethod {
-  automatic,  // iterative by measured contraction, direct behind it
+  automatic,  // direct where it is cheap, else iterative with direct behind it
   direct,  // half-spectrum block elimination from the outer harmonics, refined by the residual
-  iterative,  // FFT products, per-harmonic diagonal preconditioner: fixed point, then GMRES with a small core
+  iterative,  // GMRES with FFT products, preconditioned mode by mode
 };
 
 enum class SteadyBound {

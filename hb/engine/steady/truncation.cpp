@@ -25,23 +25,31 @@ Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index 
   Index P_cut = P;
   while (P_cut > 0 && (K.col(P_cut).array() <= floor.array()).all()) --P_cut;
 
-  Eigen::MatrixXd a(I, std::min(most, F + 4 * P_cut + 64) + 1);
-  Eigen::VectorXd response(I);
+  // For row i of (S4) all |K_m,ij| after each other, m = 1, 2, ..., as a_k-m,j stand in `a`: the last one first.
+  Eigen::MatrixXd row_sums(I * P_cut, I);
+  for (Index m = 1; m <= P_cut; ++m) row_sums.middleRows(I * (m - 1), I) = K.col(m).reshaped(I, I).transpose();
+  Index room = std::min(most, F + 4 * P_cut + 64) + 1;
+  Eigen::VectorXd a(I * room), response(I);
   double largest = 0;
   Index H = 0;  // last harmonic that mattered
   for (Index k = 0; k <= most; ++k) {
     end_if_wished();
-    if (k == a.cols()) a.conservativeResize(Eigen::NoChange, std::min(most + 1, 2 * k));
-    response.setZero();
-    for (Index m = 1; m <= std::min(k, P_cut); ++m)
-      response.noalias() += K.col(m).reshaped(I, I).lazyProduct(a.col(k - m));
+    if (k == room) {
+      const Eigen::VectorXd kept = a;
+      room = std::min(most + 1, 2 * k);
+      a.resize(I * room);
+      a.tail(kept.size()) = kept;
+    }
+    const Index terms = I * std::min(k, P_cut);
+    response.noalias() = row_sums.topRows(terms).transpose() * a.segment(I * (room - k), terms);
+    auto here = a.segment(I * (room - 1 - k), I);
     for (Index i = 0; i < I; ++i) {
       const double d = std::max(modulus(system.D(i, k)), 1e-12 * system.magnitude(i, k));
       const double load = k <= F ? modulus(system.f(k, i)) : 0;
       largest = std::max(largest, load / d);
-      a(i, k) = std::min((load + response(i)) / d, largest);
+      here(i) = std::min((load + response(i)) / d, largest);
     }
-    if (!(a.col(k).maxCoeff() <= tolerance * largest)) H = k;
+    if (!(here.maxCoeff() <= tolerance * largest)) H = k;
     if (k >= F && k - H > std::max<Index>(P_cut, 2)) break;
   }
   return std::clamp<Index>(H + 1, std::min<Index>(2, most), most);

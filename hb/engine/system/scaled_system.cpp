@@ -64,12 +64,9 @@ FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
   const Eigen::Map<const Eigen::MatrixXd> largest(each.data(), I, I);
   const Eigen::VectorXd couplings = largest.rowwise().maxCoeff().cwiseMax(largest.colwise().maxCoeff().transpose());
   const Eigen::VectorXd scale = mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * 1e-8).cwiseSqrt();
-  const auto negligible = [&](Eigen::Index k) {
-    for (Eigen::Index j = 0; j < I; ++j)
-      for (Eigen::Index i = 0; i < I; ++i)
-        if (!(std::sqrt(std::norm(K.c(i + I * j, k))) <= 1e-17 * scale(i) * scale(j))) return false;
-    return true;
-  };
+  const Eigen::MatrixXd least = 1e-17 * scale * scale.transpose();
+  const Eigen::Map<const Eigen::ArrayXd> rounding(least.data(), I * I);
+  const auto negligible = [&](Eigen::Index k) { return (K.c.col(k).array().abs2().sqrt() <= rounding).all(); };
   Eigen::Index H = K.num_harmonics();
   while (H > 0 && negligible(H)) --H;
   return fourier::resized(K, H);
@@ -142,28 +139,8 @@ void add_given(const GivenErrors& given, const Eigen::MatrixXd& L, ScaledSystem&
   add(given.stiffness, 1 / (speed * speed), scaled.K_rounding);
 }
 
-}  // namespace
-
-Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
-
-Eigen::VectorXd ScaledSystem::mean_diagonal() const {
-  const Eigen::Index I = num_modes();
-  Eigen::VectorXd diagonal(I);
-  for (Eigen::Index i = 0; i < I; ++i) diagonal(i) = K.c(i * (I + 1), 0).real();
-  return diagonal;
-}
-
-Eigen::VectorXd ScaledSystem::squared_frequencies() const {
-  const Eigen::MatrixXd K0 = mean_stiffness();
-  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
-  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
-  Eigen::VectorXd values = dense::eigenvalues(K0).real();
-  std::sort(values.begin(), values.end());
-  return values;
-}
-
-// hb/engine/README.md (S2).
-ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given) {
+// hb/engine/README.md (S2) but for the load, and L. No bounds on rounding.
+ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::MatrixXd& L) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
   const Eigen::Index I = system.num_modes();
@@ -172,7 +149,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErr
   end_if_wished();
 
   // Left factor L and right factor T with L M T = 1.
-  Eigen::MatrixXd L, T;
+  Eigen::MatrixXd T;
   const bool diagonal_mass = is_diagonal(system.mass) && (system.mass.diagonal().array() > 0).all();
   if (diagonal_mass) {
     T = system.mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
@@ -211,6 +188,39 @@ ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErr
   scaled.K.c *= 1 / (speed * speed);
   end_if_wished();
   scaled.K = without_rounding(scaled.K, I);
+  return scaled;
+}
+
+}  // namespace
+
+Eigen::MatrixXd ScaledSystem::mean_stiffness() const { return mean_of(K, num_modes()); }
+
+Eigen::VectorXd ScaledSystem::mean_diagonal() const {
+  const Eigen::Index I = num_modes();
+  Eigen::VectorXd diagonal(I);
+  for (Eigen::Index i = 0; i < I; ++i) diagonal(i) = K.c(i * (I + 1), 0).real();
+  return diagonal;
+}
+
+Eigen::VectorXd ScaledSystem::squared_frequencies() const {
+  const Eigen::MatrixXd K0 = mean_stiffness();
+  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
+  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
+  Eigen::VectorXd values = dense::eigenvalues(K0).real();
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+ScaledSystem scale_unloaded(const HillSystem& system, double speed) {
+  Eigen::MatrixXd L;
+  return scaled_matrices(system, speed, L);
+}
+
+ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given) {
+  const Eigen::Index I = system.num_modes();
+  Eigen::MatrixXd L;
+  ScaledSystem scaled = scaled_matrices(system, speed, L);
+  const Eigen::MatrixXd& T = scaled.T;
   // Adding three powers, products with L and T (none but scaling when they are diagonal), and the cut.
   end_if_wished();
   const bool scaling = is_diagonal(L) && is_diagonal(T);

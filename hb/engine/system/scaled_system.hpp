@@ -42,5 +42,7 @@ struct GivenErrors {
 // if that leaves far less coupling in stiffness and damping. Otherwise T = 1 with M^-1 multiplied from the left.
 // Throws std::invalid_argument if the speed is not positive and finite.
 [[nodiscard]] ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given = {});
+// The same without the load, bounds and `conservative`.
+[[nodiscard]] ScaledSystem scale_unloaded(const HillSystem& system, double speed);
 
 }  // namespace hb

@@ -1,0 +1,44 @@
+// Preconditioner of the block Hill system: A without couplings between modes,
+//     (M x)_k = D(k) x_k + sum_{0 < |m| <= p} E_m x_{k-m},      |k| <= H,   x_-k = conj x_k,   E_-m = conj E_m,
+// for each mode with as many harmonics p of its own coupling as count beside those with others.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "hb/engine/steady/steady_operator.hpp"
+
+namespace hb::steady {
+
+class ModeFactors {
+ public:
+  explicit ModeFactors(const Operator& A);
+  void solve_in_place(Spectrum& x);  // x <- M^-1 x
+
+ private:
+  // Modes side by side, as many as the machine's vectors hold numbers; lanes that are left repeat the last one.
+  static constexpr int lanes = Eigen::internal::packet_traits<double>::size;
+  using Lanes = Eigen::Array<double, lanes, 1>;
+  struct Complex {
+    Lanes re, im;
+  };
+  // Of harmonics k = H, H-1, ..., -p a row each with columns k+p, ..., k-p of M = L U: left of the diagonal L, whose
+  // own is 1, right of it U, on it the inverse of U's. The outermost harmonics are eliminated first, down to p + 1;
+  // what this makes of rows -1 .. -p is the conjugate of what it makes of rows 1 .. p.
+  struct Band {
+    Eigen::Index first = 0, count = 0, p = 0;  // modes first .. first + count - 1
+    std::unique_ptr<Complex[]> rows;
+    Complex* row(Eigen::Index H, Eigen::Index k) const { return &rows[std::size_t((H - k) * (2 * p + 1) + p)]; }
+    Eigen::Index mode(Eigen::Index lane) const { return first + std::min(lane, count - 1); }
+  };
+  void assemble(const Operator& A, Band& band) const;
+  void factorise(const Operator& A, Band& band) const;
+  void substitute(const Band& band);
+
+  Eigen::Index H_;
+  std::vector<Band> bands_;
+  std::vector<Complex> unknowns_;  // of one band, harmonics H, H-1, ..., -p
+};
+
+}  // namespace hb::steady
