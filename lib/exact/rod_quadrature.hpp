@@ -12,10 +12,7 @@ struct RodQuadrature {
   Eigen::MatrixXd s, s1, s2;  // Q x I: sin(i pi x/l) and its first two derivatives in x
   // Q x Q: (integral g)_k is the integral from 0 to x_k of the polynomial through the values g at the points.
   Eigen::MatrixXd integral;
-  Eigen::MatrixXd integral_square;  // integral' W integral, W = diag(weight)
-  Eigen::VectorXd rest;  // integral' W 1 = weight (l - x): int_0^l (integral of g) dx = rest . g
-  Eigen::MatrixXd rest_s;  // Q x I: integral' W s
-  Eigen::VectorXd sum_s;  // I: int sin(i pi x/l) dx
+  Eigen::MatrixXd weighted_integral;  // W integral, W = diag(weight)
 
   // 2I + 16 points: with slopes up to 0.3 the integrals of the exact model are then right to rounding.
   RodQuadrature(double l, Eigen::Index num_modes, Eigen::Index num_points = 0);
