@@ -17,7 +17,7 @@ std::size_t place(Index k) { return static_cast<std::size_t>(k); }
 BentRod::BentRod(const RodQuadrature& rule, const RodConstants& rod)
     : rule_(rule),
       rod_(rod),
-      q_(3 * place(rule.num_modes())),
+      q_(place(rule.num_modes())),
       points_(place(rule.num_points())),
       slopes_(points_.size()),
       u_(points_.size()),
@@ -33,18 +33,19 @@ void BentRod::bend(const Samples& q, const Samples& q1, const Samples& q2, Index
     const auto at = [&](const Samples& samples) {
       return Lanes::of([&](Index lane) { return samples(i, std::min(first + lane, last)); });
     };
-    Lanes* own = &q_[place(3 * i)];
-    own[0] = at(q), own[1] = at(q1), own[2] = at(q2);
+    q_[place(i)] = {at(q), at(q1), at(q2)};
   }
   steepest_ = 0;
   for (Index n = 0; n < rule_.num_points(); ++n) {
-    Point& at = points_[place(n)];
-    at.w = at.w1 = at.w2 = at.a = at.a1 = at.a2 = at.b = at.b1 = 0;
+    Point at;
+    const RodQuadrature::Shape* shape = rule_.shapes_at(n);
+    const Along* own = q_.data();
     for (Index i = 0; i < I; ++i) {
-      const Lanes s = rule_.s(n, i), s1 = rule_.s1(n, i), s2 = rule_.s2(n, i), *own = &q_[place(3 * i)];
-      at.w += s * own[0], at.w1 += s * own[1], at.w2 += s * own[2];
-      at.a += s1 * own[0], at.a1 += s1 * own[1], at.a2 += s1 * own[2];
-      at.b += s2 * own[0], at.b1 += s2 * own[1];
+      const auto [s, s1, s2] = shape[i];
+      const auto [u, u1, u2] = own[i];
+      at.w += s * u, at.w1 += s * u1, at.w2 += s * u2;
+      at.a += s1 * u, at.a1 += s1 * u1, at.a2 += s1 * u2;
+      at.b += s2 * u, at.b1 += s2 * u1;
     }
     const Lanes square = 1 - at.a * at.a, cosine = sqrt(square), inverse = 1 / square;
     at.k = cosine * inverse;
@@ -56,52 +57,60 @@ void BentRod::bend(const Samples& q, const Samples& q1, const Samples& q2, Index
     at.psi2 = at.k * at.a2 - at.a * at.h1 * at.a1;
     slopes_[place(n)] = {-at.a * at.a / (1 + cosine), at.g1 * at.a1, at.g1 * at.a2 + at.h1 * at.a1};
     steepest_ = max(abs(at.a), steepest_);
+    points_[place(n)] = at;
   }
   at_0_ = at_l_ = 0;
   for (Index i = 0; i < I; ++i) {
     const double wave = pi / rule_.length * static_cast<double>(i + 1);
-    at_0_ += wave * q_[place(3 * i)];
-    at_l_ += (i % 2 == 0 ? -wave : wave) * q_[place(3 * i)];
+    at_0_ += wave * q_[place(i)].u;
+    at_l_ += (i % 2 == 0 ? -wave : wave) * q_[place(i)].u;
   }
   steepest_ = max(abs(at_0_), max(abs(at_l_), steepest_));
   integrate_shape();
 }
 
-// result_k = sum_m integral_km derivative_m, of so many columns at each point.
+// result_k = sum_m integral_km derivative_m, of so many columns at each point; two points k at a time.
 void BentRod::integrate(const std::vector<Along>& derivative, Index columns, std::vector<Along>& result) const {
   const Index Q = rule_.num_points();
-  for (Index k = 0; k < Q; ++k)
+  for (Index k = 0; k < Q; k += 2) {
+    const Index next = std::min(k + 1, Q - 1);
+    const double *factor = &rule_.integral(k, 0), *next_factor = &rule_.integral(next, 0);
     for (Index column = 0; column < columns; ++column) {
-      Along sum;
-      for (Index m = 0; m < Q; ++m) {
-        const Lanes factor = rule_.integral(k, m);
-        const Along& of = derivative[place(m * columns + column)];
-        sum.u += factor * of.u, sum.u1 += factor * of.u1, sum.u2 += factor * of.u2;
+      Along sum, next_sum;
+      const Along* of = &derivative[place(column)];
+      for (Index m = 0; m < Q; ++m, of += columns) {
+        const Lanes a = factor[m], b = next_factor[m];
+        sum.u += a * of->u, sum.u1 += a * of->u1, sum.u2 += a * of->u2;
+        next_sum.u += b * of->u, next_sum.u1 += b * of->u1, next_sum.u2 += b * of->u2;
       }
+      result[place(next * columns + column)] = next_sum;
       result[place(k * columns + column)] = sum;
     }
+  }
 }
 
 void BentRod::integrate_shape() {
   integrate(slopes_, 1, u_);
-  chord_ = {rule_.length, 0, 0};
-  shape_ = {};
+  Chord<Lanes> chord{rule_.length, 0, 0};
+  ShapeIntegrals sum;
   for (Index n = 0; n < rule_.num_points(); ++n) {
     const Lanes W = rule_.weight(n);
     const Along& slope = slopes_[place(n)];
-    chord_.c += W * slope.u, chord_.c1 += W * slope.u1, chord_.c2 += W * slope.u2;
+    chord.c += W * slope.u, chord.c1 += W * slope.u1, chord.c2 += W * slope.u2;
     const Point& at = points_[place(n)];
     Along& u = u_[place(n)];
     u.u += rule_.x(n);
     const Lanes X = W * u.u, w = W * at.w;
-    shape_.X += X, shape_.U1 += W * u.u1, shape_.U2 += W * u.u2;
-    shape_.W += w, shape_.W1 += W * at.w1, shape_.W2 += W * at.w2;
-    shape_.XX += X * u.u, shape_.WW += w * at.w;
-    shape_.X_U1_W_W1 += X * u.u1 + w * at.w1;
-    shape_.X_W1 += X * at.w1, shape_.W_U1 += w * u.u1;
-    shape_.X_W2_W_U2 += X * at.w2 - w * u.u2;
-    shape_.psi2 += W * at.psi2;
+    sum.X += X, sum.U1 += W * u.u1, sum.U2 += W * u.u2;
+    sum.W += w, sum.W1 += W * at.w1, sum.W2 += W * at.w2;
+    sum.XX += X * u.u, sum.WW += w * at.w;
+    sum.X_U1_W_W1 += X * u.u1 + w * at.w1;
+    sum.X_W1 += X * at.w1, sum.W_U1 += w * u.u1;
+    sum.X_W2_W_U2 += X * at.w2 - w * u.u2;
+    sum.psi2 += W * at.psi2;
   }
+  chord_ = chord;
+  shape_ = sum;
 }
 
 // Load per length along and across the chord:
@@ -114,12 +123,12 @@ void BentRod::surround(const BaseMotion<Lanes>& base, const Lanes& axial_force) 
   rates_ = {mu * base.phi2 + c_x * base.phi1, mu * base.phi2 + c_y * base.phi1, 2 * mu * base.phi1,
             mu * base.phi1 * base.phi1};
   const Lanes all_x = mu * base.a_x + c_x * base.v_x, all_y = mu * base.a_y + c_y * base.v_y;
-  const auto& [turn_x, turn_y, coriolis, centrifugal] = rates_;
+  const auto [turn_x, turn_y, coriolis, centrifugal] = rates_;
   const Index Q = rule_.num_points();
   for (Index n = 0; n < Q; ++n) {
     const Point& at = points_[place(n)];
     const Along& u = u_[place(n)];
-    Load& f = loads_[place(n)];
+    Load f;
     const double W = rule_.weight(n);
     f.f_x = all_x + mu * u.u2 + c_x * u.u1 - u.u * centrifugal - at.w * turn_x - at.w1 * coriolis;
     f.f_y = all_y + mu * at.w2 + c_y * at.w1 + u.u * turn_y - at.w * centrifugal + u.u1 * coriolis;
@@ -127,15 +136,19 @@ void BentRod::surround(const BaseMotion<Lanes>& base, const Lanes& axial_force) 
     const Lanes kappa1 = f.K_a * at.a1 + at.k * at.b1;
     f.m = W * rod_.bending * (at.k * at.b + rod_.internal_damping * kappa1);
     f.rotary = W * rod_.rotary * (at.psi2 + base.phi2);
+    loads_[place(n)] = f;
   }
   for (Index k = 0; k < Q; ++k) {
+    const double* factor = &rule_.weighted_integral(0, k);
+    const Load* of = loads_.data();
     Lanes sum = -axial_force * rule_.weight(k);
-    for (Index m = 0; m < Q; ++m) sum += rule_.weighted_integral(m, k) * loads_[place(m)].f_x;
+    for (Index m = 0; m < Q; ++m) sum += factor[m] * of[m].f_x;
     loads_[place(k)].axial = sum;
   }
 }
 
 const std::vector<Lanes>& BentRod::residual() {
+  const Index I = rule_.num_modes();
   const double scale = 2 / (rod_.length * rod_.bending);
   std::fill(residual_.begin(), residual_.end(), Lanes());
   for (Index n = 0; n < rule_.num_points(); ++n) {
@@ -143,8 +156,9 @@ const std::vector<Lanes>& BentRod::residual() {
     const Load& f = loads_[place(n)];
     const Lanes across = scale * rule_.weight(n) * f.f_y, curvature = scale * f.m * at.k,
                 slope = scale * (at.g1 * f.axial + f.rotary * at.k + f.m * f.K_a);
-    for (Index i = 0; i < rule_.num_modes(); ++i)
-      residual_[place(i)] += rule_.s(n, i) * across + rule_.s1(n, i) * slope + rule_.s2(n, i) * curvature;
+    const RodQuadrature::Shape* shape = rule_.shapes_at(n);
+    Lanes* r = residual_.data();
+    for (Index i = 0; i < I; ++i) r[i] += shape[i].s * across + shape[i].s1 * slope + shape[i].s2 * curvature;
   }
   return residual_;
 }

@@ -56,7 +56,7 @@ class BentRod {
   std::vector<Lanes> tension(const Lanes& Y) const;
 
  private:
-  // Along x: u or what it is made of, with its first two derivatives in time.
+  // u, or another number, with its first two derivatives in time.
   struct Along {
     Lanes u, u1, u2;
   };
@@ -102,7 +102,7 @@ class BentRod {
 
   const RodQuadrature& rule_;
   const RodConstants& rod_;
-  std::vector<Lanes> q_;  // q_i and its time derivatives, one mode after the other
+  std::vector<Along> q_;  // q_i with its derivatives in time
   std::vector<Point> points_;
   std::vector<Along> slopes_, u_;  // u' and u at the points
   Chord<Lanes> chord_;

@@ -27,9 +27,9 @@ void BentRod::differentiate() {
   for (Index n = 0; n < Q; ++n)
     for (Index j = 0; j < I; ++j) {
       const Point& at = points_[entry(n)];
-      const Lanes s1 = rule_.s1(n, j), W = rule_.weight(n);
-      Along& by = dslope_[entry(I * n + j)];
-      by = {at.g1 * s1, at.h1 * s1, at.h2 * s1};
+      const Lanes s1 = rule_.shapes_at(n)[j].s1, W = rule_.weight(n);
+      const Along by{at.g1 * s1, at.h1 * s1, at.h2 * s1};
+      dslope_[entry(I * n + j)] = by;
       derivatives_.chord[0][entry(j)] += W * by.u;
       derivatives_.chord[1][entry(j)] += W * by.u1;
       derivatives_.chord[2][entry(j)] += W * by.u2;
@@ -59,7 +59,7 @@ void BentRod::differentiate() {
 //     dm/dq = EJ (dkappa/dq + alpha_c dkappa_t/dq),       dm/dq_t = alpha_c EJ dkappa/dq.
 void BentRod::vary(Index n) {
   const double mu = rod_.mass_per_length, c_x = rod_.damping_x, c_y = rod_.damping_y, W = rule_.weight(n);
-  const auto& [turn_x, turn_y, coriolis, centrifugal] = rates_;
+  const auto [turn_x, turn_y, coriolis, centrifugal] = rates_;
   const Point& at = points_[entry(n)];
   const Lanes& K_a = loads_[entry(n)].K_a;
   const Lanes K_ab = -at.a * at.g2, k5 = -at.g2 * at.k * at.k * (1 + 2 * at.a * at.a), K_aa = at.b * k5;
@@ -67,16 +67,21 @@ void BentRod::vary(Index n) {
   const double alpha = rod_.internal_damping;
   const Lanes m_slope = W * rod_.bending * (K_a + alpha * (K_aa * at.a1 + K_ab * at.b1)),
               m_curvature = W * rod_.bending * (at.k + alpha * K_ab * at.a1);
-  for (Index j = 0; j < rule_.num_modes(); ++j) {
-    Variation& by = variation_[entry(j)];
-    const double s = rule_.s(n, j), s1 = rule_.s1(n, j), s2 = rule_.s2(n, j);
-    by.du = du_[entry(rule_.num_modes() * n + j)];
-    const auto& [u, u1, u2] = by.du;
+  const Index I = rule_.num_modes();
+  const RodQuadrature::Shape* shape = rule_.shapes_at(n);
+  const Along* du = du_.data() + I * n;
+  Variation* variation = variation_.data();
+  for (Index j = 0; j < I; ++j) {
+    Variation by;
+    const auto [s, s1, s2] = shape[j];
+    by.du = du[j];
+    const auto [u, u1, u2] = du[j];
     by.f_x = {W * (mu * u2 + c_x * u1 - centrifugal * u - turn_x * s), W * (2 * mu * u1 + c_x * u - coriolis * s),
               W * mu * u};
     by.f_y = {W * (turn_y * u + coriolis * u1 - centrifugal * s), W * (coriolis * u + c_y * s), W * mu * s};
     by.kappa = K_a * s1 + at.k * s2;
     by.m = m_slope * s1 + m_curvature * s2;
+    variation[j] = by;
   }
 }
 
@@ -87,23 +92,24 @@ void BentRod::add_residual(Index n) {
   const Index I = rule_.num_modes();
   const Point& at = points_[entry(n)];
   const Load& f = loads_[entry(n)];
-  const auto& [K_ab, K_aa, psi2_a, psi2_a1] = further_;
+  const auto [K_ab, K_aa, psi2_a, psi2_a1] = further_;
   const Lanes rotary = rod_.rotary * rule_.weight(n) * at.k;
   const Lanes slopes = at.g2 * f.axial + rotary * psi2_a + f.rotary * K_ab + f.m * K_aa;
   const Lanes mixed = f.m * K_ab, rates = rotary * psi2_a1, accelerations = rotary * at.k;
   const Lanes damped = rod_.internal_damping * rod_.bending * rule_.weight(n);
-  auto& [by_q, by_q1, by_q2] = derivatives_.residual;
+  const RodQuadrature::Shape* shape = rule_.shapes_at(n);
+  const Variation* variation = variation_.data();
+  Lanes *by_q = derivatives_.residual[0].data(), *by_q1 = derivatives_.residual[1].data(),
+        *by_q2 = derivatives_.residual[2].data();
   for (Index j = 0; j < I; ++j) {
-    const Variation& by = variation_[entry(j)];
-    const double s1 = rule_.s1(n, j);
-    const Lanes by_slope = slopes * s1 + mixed * rule_.s2(n, j), by_curvature = mixed * s1;
+    const Variation& by = variation[j];
+    const Lanes s1 = shape[j].s1, by_slope = slopes * s1 + mixed * shape[j].s2, by_curvature = mixed * s1;
     const Lanes by_rate = rates * s1, by_acceleration = accelerations * s1, by_kappa = damped * by.kappa;
     for (Index i = 0; i < I; ++i) {
-      const Variation& own = variation_[entry(i)];
-      const Lanes s_i = rule_.s(n, i), s1_i = rule_.s1(n, i);
-      const std::size_t to = entry(i + I * j);
-      by_q[to] +=
-          by.f_x[0] * own.du.u + by.f_y[0] * s_i + by.m * own.kappa + by_slope * s1_i + by_curvature * rule_.s2(n, i);
+      const Variation& own = variation[i];
+      const Lanes s_i = shape[i].s, s1_i = shape[i].s1, s2_i = shape[i].s2;
+      const Index to = i + I * j;
+      by_q[to] += by.f_x[0] * own.du.u + by.f_y[0] * s_i + by.m * own.kappa + by_slope * s1_i + by_curvature * s2_i;
       by_q1[to] += by.f_x[1] * own.du.u + by.f_y[1] * s_i + by_kappa * own.kappa + by_rate * s1_i;
       by_q2[to] += by.f_x[2] * own.du.u + by.f_y[2] * s_i + by_acceleration * s1_i;
     }
@@ -118,34 +124,39 @@ void BentRod::add_surroundings(Index n) {
   const Lanes x_by_phi1 = W * (-2 * mu * (u.u * base_.phi1 + at.w1) - c_x * at.w),
               y_by_phi1 = W * (2 * mu * (u.u1 - at.w * base_.phi1) + c_y * u.u);
   const Lanes x_by_phi2 = -W * mu * at.w, y_by_phi2 = W * mu * u.u, rotary = W * rod_.rotary * at.k;
-  for (Index i = 0; i < I; ++i) {
-    const Lanes du = variation_[entry(i)].du.u, s = rule_.s(n, i), W_du = W * du, W_s = W * s;
-    Lanes* by = &derivatives_.by_base[entry(i)];
+  const RodQuadrature::Shape* shape = rule_.shapes_at(n);
+  const Variation* variation = variation_.data();
+  Lanes* by = derivatives_.by_base.data();
+  for (Index i = 0; i < I; ++i, ++by) {
+    const Lanes du = variation[i].du.u, s = shape[i].s, W_du = W * du, W_s = W * s;
     by[0] += c_x * W_du;
     by[I] += c_y * W_s;
     by[2 * I] += mu * W_du;
     by[3 * I] += mu * W_s;
     by[4 * I] += x_by_phi1 * du + y_by_phi1 * s;
-    by[5 * I] += x_by_phi2 * du + y_by_phi2 * s + rotary * rule_.s1(n, i);
+    by[5 * I] += x_by_phi2 * du + y_by_phi2 * s + rotary * shape[i].s1;
   }
 }
 
 // F_x = int f_x dx, F_y = int f_y dx, moment = int (x+u) f_y - w f_x + rho J (phi + psi)_tt dx.
 void BentRod::add_load(Index n) {
   const Point& at = points_[entry(n)];
-  const Along& u = u_[entry(n)];
-  const Load& f = loads_[entry(n)];
+  const Lanes p = u_[entry(n)].u, w = at.w, f_x = loads_[entry(n)].f_x, f_y = loads_[entry(n)].f_y;
   const double W = rule_.weight(n), rotary = W * rod_.rotary;
   const std::array<Lanes, 3> turned = {rotary * further_.psi2_a, rotary * further_.psi2_a1, rotary * at.k};
-  auto& [F_x, F_y, moment] = derivatives_.load;
-  for (Index j = 0; j < rule_.num_modes(); ++j) {
-    const Variation& by = variation_[entry(j)];
-    for (std::size_t s = 0; s < 3; ++s) {
-      F_x[s][entry(j)] += by.f_x[s];
-      F_y[s][entry(j)] += by.f_y[s];
-      moment[s][entry(j)] += u.u * by.f_y[s] - at.w * by.f_x[s] + turned[s] * rule_.s1(n, j);
+  const RodQuadrature::Shape* shape = rule_.shapes_at(n);
+  const Variation* variation = variation_.data();
+  const Index I = rule_.num_modes();
+  for (std::size_t s = 0; s < 3; ++s) {
+    Lanes *F_x = derivatives_.load[0][s].data(), *F_y = derivatives_.load[1][s].data(),
+          *moment = derivatives_.load[2][s].data();
+    for (Index j = 0; j < I; ++j) {
+      const Variation& by = variation[j];
+      F_x[j] += by.f_x[s];
+      F_y[j] += by.f_y[s];
+      moment[j] += p * by.f_y[s] - w * by.f_x[s] + turned[s] * shape[j].s1;
+      if (s == 0) moment[j] += W * (by.du.u * f_y - shape[j].s * f_x);
     }
-    moment[0][entry(j)] += W * (by.du.u * f.f_y - rule_.s(n, j) * f.f_x);
   }
 }
 
