@@ -100,7 +100,7 @@ std::optional<double> settled_change(const ExactModel& model, double speed, cons
   std::optional<NormalForm> exact = variations(model, speed, motion, N, 0, 1);
   std::optional<double> found;
   double last = HUGE_VAL;
-  for (double cells = least_cells; exact; cells = std::min(2 * cells, enough_cells)) {
+  for (double cells = least_cells; exact; cells = std::min(cells + least_cells, enough_cells)) {
     const double least = cells * exact->weights().maxCoeff();
     if (!(least < double(most_cells))) return found;
     const Growth at = growth(*exact, rods, radau_cells(std::max({fewest_cells, N / 2, Index(std::ceil(least))})));
