@@ -24,8 +24,8 @@ constexpr Index fewest_angles = 16;
 // The last look is the one that changes the answer by less than the first of itself, or by less than the second of the
 // growth rate or of a hundredth of the speed.
 constexpr double growth_settled = 0.02, rate_settled = 1e-7;
-// Cells of a turn for each oscillation of the fastest mode, in the first look and at most.
-constexpr double least_cells = 0.6, enough_cells = 2.4;
+// Cells of a turn for each oscillation of the fastest mode, look by look.
+constexpr double cells_per_oscillation[] = {0.4, 1.2, 1.8, 2.4};
 constexpr Index fewest_cells = 12, most_cells = 100000;
 
 // The first modes of a linear system, alone: alpha = M^-1 C/Omega^2, beta = M^-1 B/Omega.
@@ -92,7 +92,8 @@ Growth growth(const NormalForm& exact, const std::vector<PeriodicCoefficients>& 
   return found;
 }
 
-// |change of the growth rate|, at least what the last look changed it by: twice the angles and cells of the one before.
+// |change of the growth rate|, at least what the last look changed it by: twice the angles, and more cells, of the one
+// before.
 std::optional<double> settled_change(const ExactModel& model, double speed, const std::vector<FourierSeries>& motion,
                                      const std::vector<PeriodicCoefficients>& rods) {
   Index N = fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1));
@@ -100,7 +101,8 @@ std::optional<double> settled_change(const ExactModel& model, double speed, cons
   std::optional<NormalForm> exact = variations(model, speed, motion, N, 0, 1);
   std::optional<double> found;
   double last = HUGE_VAL;
-  for (double cells = least_cells; exact; cells = std::min(cells + least_cells, enough_cells)) {
+  for (std::size_t look = 0; exact; ++look) {
+    const double cells = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
     const double least = cells * exact->weights().maxCoeff();
     if (!(least < double(most_cells))) return found;
     const Growth at = growth(*exact, rods, radau_cells(std::max({fewest_cells, N / 2, Index(std::ceil(least))})));
