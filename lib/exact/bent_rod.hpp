@@ -15,12 +15,15 @@ namespace hb::exact {
 
 // Derivatives of the rod's own residual, load and chord. By state s = 0, 1, 2: q_j, q_j_t, q_j_tt.
 struct RodDerivatives {
-  std::array<std::vector<Lanes>, 3> residual;  // [s], of r_i at i + I j, at fixed base and X
-  std::vector<Lanes> by_base;  // of r_i by entry k of BaseMotion, at i + I k
-  std::vector<Lanes> by_axial_force;  // of r_i by X
-  std::array<std::array<std::vector<Lanes>, 3>, 3> load;  // [F_x, F_y, moment][s], at fixed base
-  // dc/dq, dc_t/dq, dc_tt/dq. The others follow: dc_t/dq_t = dc/dq, dc_tt/dq_t = 2 dc_t/dq, dc_tt/dq_tt = dc/dq.
-  std::array<std::vector<Lanes>, 3> chord;
+  struct Mode {
+    std::array<Lanes, 3> F_x, F_y, moment;  // of the load by [s], at fixed base
+    // By q_j alone. The others follow: dc_t/dq_t = dc/dq, dc_tt/dq_t = 2 dc_t/dq, dc_tt/dq_tt = dc/dq.
+    Chord<Lanes> chord;
+    std::array<Lanes, 6> by_base;  // of r_j, in the order of BaseMotion
+    Lanes by_axial_force;  // of r_j by X
+  };
+  std::vector<Mode> modes;
+  std::vector<std::array<Lanes, 3>> residual;  // of r_i by [s] at i + I j, at fixed base and X
 };
 
 // Scratch is kept from one block of angles to the next.

@@ -19,20 +19,19 @@ void BentRod::differentiate() {
   dslope_.resize(entry(I * Q));
   du_.resize(dslope_.size());
   variation_.resize(entry(I));
-  for (auto& of : derivatives_.residual) of.assign(entry(I * I), 0);
-  derivatives_.by_base.assign(entry(6 * I), 0);
-  for (auto& by_state : derivatives_.load)
-    for (auto& of : by_state) of.assign(entry(I), 0);
-  for (auto& of : derivatives_.chord) of.assign(entry(I), 0);
+  std::vector<RodDerivatives::Mode>& modes = derivatives_.modes;
+  modes.assign(entry(I), {});
+  derivatives_.residual.assign(entry(I * I), {});
   for (Index n = 0; n < Q; ++n)
     for (Index j = 0; j < I; ++j) {
       const Point& at = points_[entry(n)];
       const Lanes s1 = rule_.shapes_at(n)[j].s1, W = rule_.weight(n);
       const Along by{at.g1 * s1, at.h1 * s1, at.h2 * s1};
       dslope_[entry(I * n + j)] = by;
-      derivatives_.chord[0][entry(j)] += W * by.u;
-      derivatives_.chord[1][entry(j)] += W * by.u1;
-      derivatives_.chord[2][entry(j)] += W * by.u2;
+      Chord<Lanes>& chord = modes[entry(j)].chord;
+      chord.c += W * by.u;
+      chord.c1 += W * by.u1;
+      chord.c2 += W * by.u2;
     }
   integrate(dslope_, I, du_);
   for (Index n = 0; n < Q; ++n) {
@@ -42,11 +41,12 @@ void BentRod::differentiate() {
     add_load(n);
   }
   const double scale = 2 / (rod_.length * rod_.bending);
-  for (auto& of : derivatives_.residual)
+  for (std::array<Lanes, 3>& of : derivatives_.residual)
     for (Lanes& r : of) r *= scale;
-  for (Lanes& r : derivatives_.by_base) r *= scale;
-  derivatives_.by_axial_force = derivatives_.chord[0];
-  for (Lanes& r : derivatives_.by_axial_force) r *= -scale;
+  for (RodDerivatives::Mode& mode : modes) {
+    for (Lanes& r : mode.by_base) r *= scale;
+    mode.by_axial_force = -scale * mode.chord.c;
+  }
 }
 
 // With du_t/dq_t = du/dq, du_tt/dq_t = 2 du_t/dq, du_tt/dq_tt = du/dq, at fixed base:
@@ -99,8 +99,7 @@ void BentRod::add_residual(Index n) {
   const Lanes damped = rod_.internal_damping * rod_.bending * rule_.weight(n);
   const RodQuadrature::Shape* shape = rule_.shapes_at(n);
   const Variation* variation = variation_.data();
-  Lanes *by_q = derivatives_.residual[0].data(), *by_q1 = derivatives_.residual[1].data(),
-        *by_q2 = derivatives_.residual[2].data();
+  std::array<Lanes, 3>* residual = derivatives_.residual.data();
   for (Index j = 0; j < I; ++j) {
     const Variation& by = variation[j];
     const Lanes s1 = shape[j].s1, by_slope = slopes * s1 + mixed * shape[j].s2, by_curvature = mixed * s1;
@@ -108,10 +107,10 @@ void BentRod::add_residual(Index n) {
     for (Index i = 0; i < I; ++i) {
       const Variation& own = variation[i];
       const Lanes s_i = shape[i].s, s1_i = shape[i].s1, s2_i = shape[i].s2;
-      const Index to = i + I * j;
-      by_q[to] += by.f_x[0] * own.du.u + by.f_y[0] * s_i + by.m * own.kappa + by_slope * s1_i + by_curvature * s2_i;
-      by_q1[to] += by.f_x[1] * own.du.u + by.f_y[1] * s_i + by_kappa * own.kappa + by_rate * s1_i;
-      by_q2[to] += by.f_x[2] * own.du.u + by.f_y[2] * s_i + by_acceleration * s1_i;
+      auto& [by_q, by_q1, by_q2] = residual[i + I * j];
+      by_q += by.f_x[0] * own.du.u + by.f_y[0] * s_i + by.m * own.kappa + by_slope * s1_i + by_curvature * s2_i;
+      by_q1 += by.f_x[1] * own.du.u + by.f_y[1] * s_i + by_kappa * own.kappa + by_rate * s1_i;
+      by_q2 += by.f_x[2] * own.du.u + by.f_y[2] * s_i + by_acceleration * s1_i;
     }
   }
 }
@@ -126,15 +125,16 @@ void BentRod::add_surroundings(Index n) {
   const Lanes x_by_phi2 = -W * mu * at.w, y_by_phi2 = W * mu * u.u, rotary = W * rod_.rotary * at.k;
   const RodQuadrature::Shape* shape = rule_.shapes_at(n);
   const Variation* variation = variation_.data();
-  Lanes* by = derivatives_.by_base.data();
-  for (Index i = 0; i < I; ++i, ++by) {
+  RodDerivatives::Mode* mode = derivatives_.modes.data();
+  for (Index i = 0; i < I; ++i) {
     const Lanes du = variation[i].du.u, s = shape[i].s, W_du = W * du, W_s = W * s;
-    by[0] += c_x * W_du;
-    by[I] += c_y * W_s;
-    by[2 * I] += mu * W_du;
-    by[3 * I] += mu * W_s;
-    by[4 * I] += x_by_phi1 * du + y_by_phi1 * s;
-    by[5 * I] += x_by_phi2 * du + y_by_phi2 * s + rotary * shape[i].s1;
+    auto& [v_x, v_y, a_x, a_y, phi1, phi2] = mode[i].by_base;
+    v_x += c_x * W_du;
+    v_y += c_y * W_s;
+    a_x += mu * W_du;
+    a_y += mu * W_s;
+    phi1 += x_by_phi1 * du + y_by_phi1 * s;
+    phi2 += x_by_phi2 * du + y_by_phi2 * s + rotary * shape[i].s1;
   }
 }
 
@@ -147,16 +147,16 @@ void BentRod::add_load(Index n) {
   const RodQuadrature::Shape* shape = rule_.shapes_at(n);
   const Variation* variation = variation_.data();
   const Index I = rule_.num_modes();
-  for (std::size_t s = 0; s < 3; ++s) {
-    Lanes *F_x = derivatives_.load[0][s].data(), *F_y = derivatives_.load[1][s].data(),
-          *moment = derivatives_.load[2][s].data();
-    for (Index j = 0; j < I; ++j) {
-      const Variation& by = variation[j];
-      F_x[j] += by.f_x[s];
-      F_y[j] += by.f_y[s];
-      moment[j] += p * by.f_y[s] - w * by.f_x[s] + turned[s] * shape[j].s1;
-      if (s == 0) moment[j] += W * (by.du.u * f_y - shape[j].s * f_x);
+  RodDerivatives::Mode* mode = derivatives_.modes.data();
+  for (Index j = 0; j < I; ++j) {
+    const Variation& by = variation[j];
+    RodDerivatives::Mode& of = mode[j];
+    for (std::size_t s = 0; s < 3; ++s) {
+      of.F_x[s] += by.f_x[s];
+      of.F_y[s] += by.f_y[s];
+      of.moment[s] += p * by.f_y[s] - w * by.f_x[s] + turned[s] * shape[j].s1;
     }
+    of.moment[0] += W * (by.du.u * f_y - shape[j].s * f_x);
   }
 }
 

@@ -192,26 +192,23 @@ class Block {
     const Index n = model_.num_modes(), I_r = model_.rods[r].num_modes, I_s = model_.rods[s].num_modes;
     const std::array<MatrixXd*, 3> by = {&out.by_q, &out.by_q1, &out.by_q2};
     for (Index i = 0; i < I_r; ++i) {
-      const Lanes& by_X = own.by_axial_force[static_cast<std::size_t>(i)];
-      Dual::Slopes effect;  // of c, c', c'' and the speed on r_i
-      for (std::size_t d = 0; d < effect.size(); ++d) {
-        effect[d] = by_X * through.of_answer[6][d];
-        for (std::size_t k = 0; k < 6; ++k)
-          effect[d] +=
-              own.by_base[static_cast<std::size_t>(i) + k * static_cast<std::size_t>(I_r)] * through.of_answer[k][d];
+      const RodDerivatives::Mode& effect = own.modes[static_cast<std::size_t>(i)];
+      Dual::Slopes on;  // of c, c', c'' and the speed on r_i
+      for (std::size_t d = 0; d < on.size(); ++d) {
+        on[d] = effect.by_axial_force * through.of_answer[6][d];
+        for (std::size_t k = 0; k < 6; ++k) on[d] += effect.by_base[k] * through.of_answer[k][d];
       }
       const Index row = model_.first[r] + i;
-      if (s == 0) put(effect[speed_direction], out.by_speed, row);
+      if (s == 0) put(on[speed_direction], out.by_speed, row);
       for (Index j = 0; j < I_s; ++j) {
-        const auto at = static_cast<std::size_t>(j);
-        const Lanes &c = cause.chord[0][at], &c1 = cause.chord[1][at], &c2 = cause.chord[2][at];
-        std::array<Lanes, 3> sum = {effect[0] * c + effect[1] * c1 + effect[2] * c2, effect[1] * c + 2 * effect[2] * c1,
-                                    effect[2] * c};
+        const RodDerivatives::Mode& of = cause.modes[static_cast<std::size_t>(j)];
+        const auto& [c, c1, c2] = of.chord;
+        std::array<Lanes, 3> sum = {on[0] * c + on[1] * c1 + on[2] * c2, on[1] * c + 2 * on[2] * c1, on[2] * c};
         for (std::size_t z = 0; z < 3; ++z) {
-          Lanes X;
-          for (std::size_t k = 0; k < 3; ++k) X += through.of_load[k] * cause.load[k][z][at];
-          sum[z] += by_X * X;
-          if (r == s) sum[z] += own.residual[z][static_cast<std::size_t>(i + I_r * j)];
+          const Lanes X =
+              through.of_load[0] * of.F_x[z] + through.of_load[1] * of.F_y[z] + through.of_load[2] * of.moment[z];
+          sum[z] += effect.by_axial_force * X;
+          if (r == s) sum[z] += own.residual[static_cast<std::size_t>(i + I_r * j)][z];
           put(sum[z], *by[z], row + n * (model_.first[s] + j));
         }
       }
