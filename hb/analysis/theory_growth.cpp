@@ -52,9 +52,9 @@ std::optional<NormalForm> variations(const ExactModel& model, double speed, cons
   const auto at = [&](const MatrixXd& samples) -> MatrixXd {
     return samples(Eigen::all, Eigen::seqN(finer * first, count, finer * step));
   };
-  const double apart = two_pi / double(N);
-  const CrankAngles angles(model.linkage(), Eigen::VectorXd(Eigen::VectorXd::LinSpaced(
-                                                count, apart * double(first), apart * double(N - step + first))));
+  const auto crank_angle = [N](Index j) { return two_pi * double(j) / double(N); };
+  const CrankAngles angles(model.linkage(), Eigen::VectorXd(Eigen::VectorXd::LinSpaced(count, crank_angle(first),
+                                                                                       crank_angle(N - step + first))));
   ExactResidual exact = model.residual(speed, angles, {at(all.q), at(all.q1), at(all.q2)}, true);
   if (exact.breakdown) return std::nullopt;
   return normal_form({speed, std::move(exact.by_q2), std::move(exact.by_q1), std::move(exact.by_q)});
@@ -99,9 +99,10 @@ std::optional<double> settled_change(const ExactModel& model, double speed, cons
   Index N = fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1));
   const Index most_angles = 24 * most_harmonics(motion, 0) + 4 * fewest_angles;
   std::optional<NormalForm> exact = variations(model, speed, motion, N, 0, 1);
+  if (!exact) return std::nullopt;
   std::optional<double> found;
   double last = HUGE_VAL;
-  for (std::size_t look = 0; exact; ++look) {
+  for (std::size_t look = 0;; ++look) {
     const double cells = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
     const double least = cells * exact->weights().maxCoeff();
     if (!(least < double(most_cells))) return found;
@@ -116,7 +117,6 @@ std::optional<double> settled_change(const ExactModel& model, double speed, cons
     if (!odd) return std::nullopt;
     exact = {interleaved(exact->alpha, odd->alpha), interleaved(exact->beta, odd->beta)};
   }
-  return std::nullopt;
 }
 
 }  // namespace
