@@ -92,6 +92,20 @@ Growth growth(const NormalForm& exact, const std::vector<PeriodicCoefficients>& 
   return found;
 }
 
+// Cells over which Radau damps the modes that may lead by less than a tenth of `enough`; those damped twice as much as
+// the fastest growth do not.
+double resolving_cells(const NormalForm& exact, double largest_growth, double enough) {
+  const Index n = exact.num_modes();
+  const Eigen::VectorXd frequency = exact.weights();
+  double cells = 0;
+  for (Index i = 0; i < n; ++i) {
+    const double mean_growth = -exact.beta.row(i * (n + 1)).mean() / 2;
+    if (mean_growth < largest_growth - std::max(std::abs(largest_growth), 0.01)) continue;
+    cells = std::max(cells, oscillator_cells(frequency(i), 0.1 * enough));
+  }
+  return cells;
+}
+
 // |change of the growth rate|, at least what the last look changed it by: twice the angles, and more cells, of the one
 // before.
 std::optional<double> settled_change(const ExactModel& model, double speed, const std::vector<FourierSeries>& motion,
@@ -101,16 +115,18 @@ std::optional<double> settled_change(const ExactModel& model, double speed, cons
   std::optional<NormalForm> exact = variations(model, speed, motion, N, 0, 1);
   if (!exact) return std::nullopt;
   std::optional<double> found;
-  double last = HUGE_VAL;
+  double last = HUGE_VAL, resolving = 0;
   for (std::size_t look = 0;; ++look) {
-    const double cells = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
-    const double least = cells * exact->weights().maxCoeff();
+    const double per_oscillation = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
+    const double least = std::max({resolving, per_oscillation * exact->weights().maxCoeff(), double(N / 2)});
     if (!(least < double(most_cells))) return found;
-    const Growth at = growth(*exact, rods, radau_cells(std::max({fewest_cells, N / 2, Index(std::ceil(least))})));
+    const Index cells = radau_cells(std::max(fewest_cells, Index(std::ceil(least))));
+    const Growth at = growth(*exact, rods, cells);
     const double size = std::abs(at.change), changed = std::abs(at.change - last);
     if (std::isfinite(changed)) found = speed * std::max(size, changed);
     const double enough = std::max(growth_settled * size, rate_settled * std::max(std::abs(at.linear), 0.01));
-    if (changed <= enough || 2 * N > most_angles) return found;
+    resolving = resolving_cells(*exact, at.linear + at.change, enough);
+    if ((changed <= enough && resolving <= double(cells)) || 2 * N > most_angles) return found;
     last = at.change;
     N *= 2;
     const std::optional<NormalForm> odd = variations(model, speed, motion, N, 1, 2);

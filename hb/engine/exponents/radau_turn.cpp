@@ -340,6 +340,10 @@ Index radau_cells(Index least) {
   return less >= least && less % lanes == 0 ? less : cells;
 }
 
+double oscillator_error(double frequency, double num_cells) { return std::pow(0.61 * frequency / num_cells, 15); }
+
+double oscillator_cells(double frequency, double error) { return 0.61 * frequency * std::pow(error, -1.0 / 15); }
+
 TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
   Turn turn(alpha, beta, num_modes, num_cells);
   if (num_modes == 1)
