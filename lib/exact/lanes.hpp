@@ -48,7 +48,7 @@ class Lanes {
   }
   friend Lanes sqrt(const Lanes& a) { return {Eigen::internal::psqrt(a.packet_), Taken()}; }
   friend Lanes abs(const Lanes& a) { return {Eigen::internal::pabs(a.packet_), Taken()}; }
-  // Of each lane the larger one; a number that is none stays where it is in b.
+  // Of each lane the larger one; a where either is not a number.
   friend Lanes max(const Lanes& a, const Lanes& b) { return {Eigen::internal::pmax(a.packet_, b.packet_), Taken()}; }
   Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
   Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
