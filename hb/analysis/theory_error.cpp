@@ -116,12 +116,10 @@ MatrixXd linear_residual(const Compared& rod, const MatrixXd& q, const MatrixXd&
 // One linear rod's answers to loads at one speed.
 class Answers {
  public:
-  Answers(const HillSystem& system, double speed, double tolerance)
+  // C at the speed.
+  Answers(const HillSystem& system, const FourierSeries& C, double speed, double tolerance)
       : speed_(speed),
-        unloaded_{system.mass,
-                  system.damping,
-                  {without_small(stiffness_at(system, speed), system.num_modes(), 0.1 * tolerance), {}, {}},
-                  {}},
+        unloaded_{system.mass, system.damping, {without_small(C, system.num_modes(), 0.1 * tolerance), {}, {}}, {}},
         rough_(unloaded_, speed) {}
 
   // What q answer to the load on them given by samples; empty at resonance.
@@ -204,9 +202,13 @@ struct Question {
     for (std::size_t r = 0; r < rods.size(); ++r) {
       const HillSystem& system = *rods[r].system;
       const Body& link = *body_at(model.linkage(), model.rods()[r].link);
-      compared.emplace_back(link.elastic->shear ? rigid_in_shear(link, system, model.rods()[r].num_modes) : system,
-                            speed);
-      answers.emplace_back(system, speed, of_theory_error.tolerance);
+      if (link.elastic->shear) {
+        compared.emplace_back(rigid_in_shear(link, system, model.rods()[r].num_modes), speed);
+        answers.emplace_back(system, stiffness_at(system, speed), speed, of_theory_error.tolerance);
+      } else {
+        const Compared& same = compared.emplace_back(system, speed);
+        answers.emplace_back(system, same.C, speed, of_theory_error.tolerance);
+      }
     }
   }
 };

@@ -2,78 +2,137 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
-#include "hb/analysis/nonlinear/exact_system.hpp"
-#include "hb/analysis/nonlinear/motion_finder.hpp"
-#include "hb/engine/nonlinear/motion_stability.hpp"
+#include "hb/engine/exponents/radau_turn.hpp"
+#include "hb/engine/exponents/rough_growth.hpp"
+#include "hb/engine/system/periodic_system.hpp"
+#include "lib/constants.hpp"
+#include "lib/dense.hpp"
 
 namespace hb {
 
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 
 constexpr Index most_growth_modes = 2;  // higher ones change the six-link mechanism's value by 1 %
+// Harmonics of q + dq below the first of the largest are left out; those above the second are apart at the angles of
+// the second look.
+constexpr double negligible = 1e-6, apart = 1e-4;
+constexpr Index fewest_angles = 16;
+// The last look is the one that changes the answer by less than the first of itself, or by less than the second of the
+// growth rate or of a hundredth of the speed.
+constexpr double growth_settled = 0.02, rate_settled = 1e-7;
+// Cells of a turn for each oscillation of the fastest mode, look by look.
+constexpr double cells_per_oscillation[] = {0.4, 1.2, 1.8, 2.4};
+constexpr Index fewest_cells = 12, most_cells = 100000;
 
-FourierSeries first_entries(const FourierSeries& matrices, Index n, Index kept) {
-  FourierSeries part(kept * kept, matrices.num_harmonics());
-  for (Index j = 0; j < kept; ++j) part.c.middleRows(kept * j, kept) = matrices.c.middleRows(n * j, kept);
+// The first modes of a linear system, alone: alpha = M^-1 C/Omega^2, beta = M^-1 B/Omega.
+PeriodicCoefficients first_modes_of(const HillSystem& system, double speed, Index kept) {
+  const Index n = system.num_modes();
+  const FourierSeries C = stiffness_at(system, speed);
+  const MatrixXd per_mass = dense::inverse(MatrixXd(system.mass.topLeftCorner(kept, kept)));
+  PeriodicCoefficients part{FourierSeries(kept * kept, C.num_harmonics()), FourierSeries(kept * kept, 0), kept};
+  for (Index j = 0; j < kept; ++j)
+    part.alpha.c.middleRows(kept * j, kept) = per_mass.lazyProduct(C.c.middleRows(n * j, kept)) / (speed * speed);
+  part.beta.c.col(0).real() = (per_mass * system.damping.topLeftCorner(kept, kept) / speed).reshaped();
   return part;
 }
 
-// The first modes of a linear system, alone.
-HillSystem first_modes_of(const HillSystem& system, Index kept) {
-  HillSystem part;
-  part.mass = system.mass.topLeftCorner(kept, kept);
-  part.damping = system.damping.topLeftCorner(kept, kept);
-  for (std::size_t p = 0; p < 3; ++p)
-    if (system.stiffness[p].c.size() > 0)
-      part.stiffness[p] = first_entries(system.stiffness[p], system.num_modes(), kept);
-  return part;
+// The variations about q + dq, which need not be a motion of the exact model, at every `step`th of N angles from
+// `first`; empty where the model ends.
+std::optional<NormalForm> variations(const ExactModel& model, double speed, const std::vector<FourierSeries>& motion,
+                                     Index N, Index first, Index step) {
+  Index finer = 1;
+  for (const FourierSeries& q : motion)
+    while (finer * N < 2 * q.num_harmonics() + 2) finer *= 2;
+  const RitzSamples all = ritz_samples(motion, speed, finer * N);
+  const Index count = N / step;
+  const auto at = [&](const MatrixXd& samples) -> MatrixXd {
+    return samples(Eigen::all, Eigen::seqN(finer * first, count, finer * step));
+  };
+  const auto crank_angle = [N](Index j) { return two_pi * double(j) / double(N); };
+  const CrankAngles angles(model.linkage(), Eigen::VectorXd(Eigen::VectorXd::LinSpaced(count, crank_angle(first),
+                                                                                       crank_angle(N - step + first))));
+  ExactResidual exact = model.residual(speed, angles, {at(all.q), at(all.q1), at(all.q2)}, true);
+  if (exact.breakdown) return std::nullopt;
+  return normal_form({speed, std::move(exact.by_q2), std::move(exact.by_q1), std::move(exact.by_q)});
 }
 
-// Harmonics of q + dq below `negligible` of the largest are left out; angles for each of the others tell those of
-// M, B, C.
-struct GrowthLook {
-  double negligible;
-  Index angles;
-  double tolerance;  // of the exponents
-};
-// The second where the first leaves an error above `growth_settled` of the change.
-constexpr GrowthLook growth_looks[] = {{1e-4, 4, 1e-5}, {1e-6, 6, 1e-7}};
-constexpr double growth_settled = 0.02;
+// Columns of both in turn.
+MatrixXd interleaved(const MatrixXd& even, const MatrixXd& odd) {
+  MatrixXd all(even.rows(), 2 * even.cols());
+  all(Eigen::all, Eigen::seqN(0, even.cols(), 2)) = even;
+  all(Eigen::all, Eigen::seqN(1, even.cols(), 2)) = odd;
+  return all;
+}
 
+Index most_harmonics(const std::vector<FourierSeries>& motion, double relative) {
+  Index H = 0;
+  for (const FourierSeries& q : motion) H = std::max(H, fourier::significant_harmonics(q, relative));
+  return H;
+}
+
+// Largest growth rate of the exact model's variations less the linear one, both by as many cells and by the harmonics
+// that the angles tell; ' = d/dtau.
 struct Growth {
-  double rate = -HUGE_VAL, error = 0;
+  double change = 0, linear = 0;
 };
 
-// Of the linear rods the fastest one's.
-Growth linear_growth(std::span<const HillSystem> rods, double speed, const StabilityOptions& options) {
-  Growth largest;
-  for (const HillSystem& rod : rods) {
-    const Stability stability = analyse_stability(rod, speed, options);
-    largest.rate = std::max(largest.rate, stability.growth_rate);
-    largest.error = std::max(largest.error, stability.growth_error);
+Growth growth(const NormalForm& exact, const std::vector<PeriodicCoefficients>& rods, Index num_cells) {
+  const Index told = (exact.alpha.cols() - 1) / 2;
+  Growth found{0, -HUGE_VAL};
+  for (const PeriodicCoefficients& rod : rods) {
+    const FourierSeries alpha = fourier::resized(rod.alpha, std::min(rod.alpha.num_harmonics(), told));
+    found.linear = std::max(found.linear, rough_growth({alpha, rod.beta, rod.num_modes}, num_cells));
   }
-  return largest;
+  const PeriodicCoefficients all{fourier::analyse(exact.alpha), fourier::analyse(exact.beta), exact.num_modes()};
+  found.change = rough_growth(all, num_cells) - found.linear;
+  return found;
 }
 
-// q + dq, which need not be a motion of the exact model.
-PeriodicMotion corrected_motion(double speed, std::span<const LinearRod> rods, const TheoryErrors& errors,
-                                const std::vector<Index>& num_modes, const GrowthLook& look) {
-  std::vector<FourierSeries> bent;
-  for (std::size_t r = 0; r < rods.size(); ++r) {
-    const FourierSeries moved = fourier::sum(*rods[r].q, errors.rods[r].correction);
-    const FourierSeries kept = fourier::resized(moved, fourier::significant_harmonics(moved, look.negligible));
-    bent.emplace_back(Eigen::MatrixXcd(kept.c.topRows(num_modes[r])));
+// Cells over which Radau damps the modes that may lead by less than a tenth of `enough`; those damped twice as much as
+// the fastest growth do not.
+double resolving_cells(const NormalForm& exact, double largest_growth, double enough) {
+  const Index n = exact.num_modes();
+  const Eigen::VectorXd frequency = exact.weights();
+  double cells = 0;
+  for (Index i = 0; i < n; ++i) {
+    const double mean_growth = -exact.beta.row(i * (n + 1)).mean() / 2;
+    if (mean_growth < largest_growth - std::max(std::abs(largest_growth), 0.01)) continue;
+    cells = std::max(cells, oscillator_cells(frequency(i), 0.1 * enough));
   }
-  PeriodicMotion motion;
-  motion.status = MotionStatus::converged;
-  motion.parameter = motion.speed = speed;
-  motion.q = motion.q_finer = stacked(bent);
-  motion.num_samples = static_cast<int>(fourier::fast_length(look.angles * motion.q.num_harmonics() + 16));
-  return motion;
+  return cells;
+}
+
+// |change of the growth rate|, at least what the last look changed it by: twice the angles, and more cells, of the one
+// before.
+std::optional<double> settled_change(const ExactModel& model, double speed, const std::vector<FourierSeries>& motion,
+                                     const std::vector<PeriodicCoefficients>& rods) {
+  Index N = fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1));
+  const Index most_angles = 24 * most_harmonics(motion, 0) + 4 * fewest_angles;
+  std::optional<NormalForm> exact = variations(model, speed, motion, N, 0, 1);
+  if (!exact) return std::nullopt;
+  std::optional<double> found;
+  double last = HUGE_VAL, resolving = 0;
+  for (std::size_t look = 0;; ++look) {
+    const double per_oscillation = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
+    const double least = std::max({resolving, per_oscillation * exact->weights().maxCoeff(), double(N / 2)});
+    if (!(least < double(most_cells))) return found;
+    const Index cells = radau_cells(std::max(fewest_cells, Index(std::ceil(least))));
+    const Growth at = growth(*exact, rods, cells);
+    const double size = std::abs(at.change), changed = std::abs(at.change - last);
+    if (std::isfinite(changed)) found = speed * std::max(size, changed);
+    const double enough = std::max(growth_settled * size, rate_settled * std::max(std::abs(at.linear), 0.01));
+    resolving = resolving_cells(*exact, at.linear + at.change, enough);
+    if ((changed <= enough && resolving <= double(cells)) || 2 * N > most_angles) return found;
+    last = at.change;
+    N *= 2;
+    const std::optional<NormalForm> odd = variations(model, speed, motion, N, 1, 2);
+    if (!odd) return std::nullopt;
+    exact = {interleaved(exact->alpha, odd->alpha), interleaved(exact->beta, odd->beta)};
+  }
 }
 
 }  // namespace
@@ -83,24 +142,18 @@ std::optional<double> growth_theory_error(const Linkage& linkage, double speed, 
                                           const TheoryErrors& errors) {
   const std::vector<int> links = elastic_links(linkage);
   std::vector<Index> num_modes;
-  std::vector<HillSystem> first_modes;
+  std::vector<PeriodicCoefficients> linear;
+  std::vector<FourierSeries> motion;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     if (!errors.rods[r].q || body_at(linkage, links[r])->elastic->shear) return std::nullopt;
-    num_modes.push_back(std::min(most_growth_modes, rods[r].q->num_components()));
-    first_modes.push_back(first_modes_of(*rods[r].system, num_modes[r]));
+    const Index kept = std::min(most_growth_modes, rods[r].q->num_components());
+    num_modes.push_back(kept);
+    linear.push_back(first_modes_of(*rods[r].system, speed, kept));
+    const FourierSeries moved = fourier::sum(*rods[r].q, errors.rods[r].correction);
+    motion.emplace_back(
+        Eigen::MatrixXcd(moved.c.topLeftCorner(kept, 1 + fourier::significant_harmonics(moved, negligible))));
   }
-  const NonlinearSystem system = exact_system(std::make_shared<const ExactModel>(theory_model(linkage, num_modes)));
-  std::optional<double> found;
-  for (const GrowthLook& look : growth_looks) {
-    const PeriodicMotion motion = corrected_motion(speed, rods, errors, num_modes, look);
-    const StabilityOptions options{.tolerance = look.tolerance, .leading_only = true, .growth_suffices = true};
-    const Growth linear = linear_growth(first_modes, speed, options);
-    const Stability exact = motion_stability(system, motion, options);
-    const double change = std::abs(exact.growth_rate - linear.rate), error = exact.growth_error + linear.error;
-    if (std::isfinite(change) && std::isfinite(error)) found = std::max(change, error);
-    if (error <= growth_settled * change) break;
-  }
-  return found;
+  return settled_change(theory_model(linkage, num_modes), speed, motion, linear);
 }
 
 }  // namespace hb

@@ -9,8 +9,9 @@
 namespace hb {
 
 // Largest real part of the exponents of all rods together, of the variations about q + dq, less that of the linear
-// rods, per unit time: absolute value, at least the error of both. The first modes of each rod alone, on both sides.
-// Empty where the exact model has no value there: no correction, a rod with shear, exponents that do not resolve.
+// rods, per unit time: absolute value, to 2 %, or the larger number by which it is still uncertain. The first modes of
+// each rod alone, on both sides. Empty where the exact model has no value there: no correction, a rod with shear,
+// exponents that do not resolve.
 [[nodiscard]] std::optional<double> growth_theory_error(const Linkage& linkage, double speed,
                                                         std::span<const LinearRod> rods, const TheoryErrors& errors);
 

@@ -1,5 +1,5 @@
 // The mechanism whose elastic links are bent: bodies moving as the closure with given chords demands, joint forces that
-// balance gravity, inertia and damping of the bent shapes. One crank angle; over double, or over Dual for derivatives.
+// balance gravity, inertia and damping of the bent shapes. Over Lanes of crank angles, or over Dual for derivatives.
 // ' and _t are derivatives in time. Used inside the library.
 #pragma once
 
@@ -41,14 +41,13 @@ struct BentLoad {
 // Integrals over one rod of its bent shape in the frame of its chord, p = (x + u) + i w, and of its rates: all that
 // the mechanism feels of it.
 struct ShapeIntegrals {
-  double X = 0, U1 = 0, U2 = 0;  // x + u, u_t, u_tt
-  double W = 0, W1 = 0, W2 = 0;  // w, w_t, w_tt
-  double polar = 0;  // (x + u)^2 + w^2
-  double XX = 0, WW = 0;  // (x + u)^2, w^2
-  double X_U1 = 0, W_W1 = 0;  // (x + u) u_t, w w_t
-  double X_W1 = 0, W_U1 = 0;  // (x + u) w_t, w u_t
-  double X_W2_W_U2 = 0;  // (x + u) w_tt - w u_tt
-  double psi2 = 0;  // psi_tt
+  Lanes X, U1, U2;  // x + u, u_t, u_tt
+  Lanes W, W1, W2;  // w, w_t, w_tt
+  Lanes XX, WW;  // (x + u)^2, w^2
+  Lanes X_U1_W_W1;  // (x + u) u_t + w w_t
+  Lanes X_W1, W_U1;  // (x + u) w_t, w u_t
+  Lanes X_W2_W_U2;  // (x + u) w_tt - w u_tt
+  Lanes psi2;  // psi_tt
 };
 
 struct RodConstants {
@@ -72,8 +71,6 @@ template <class T>
 struct RodState {
   Chord<T> chord;
   ShapeIntegrals shape;
-  Plane<T> added_force;  // to the rod's load, in the frame of its chord; for derivatives
-  T added_moment{};
   BaseMotion<T> base;  // answer
   T axial_force{};  // answer: X, on the rod at joint 1, tension positive
 };
@@ -83,7 +80,7 @@ struct BentDyadForces {
   Plane<T> joint0, joint1, ground;  // as DyadForces
 };
 
-// All bodies at one crank angle. Scratch that is kept from one angle to the next.
+// All bodies at one crank angle in each lane. Scratch that is kept from one block of angles to the next.
 template <class T>
 struct BentMechanism {
   std::vector<RodState<T>> rods;
@@ -98,19 +95,17 @@ struct BentMechanism {
 //     force = e (F_x + i F_y) = int mu (r_tt + i g) + damping dx,
 //     moment = int Im(conj(p) (f_x + i f_y)) dx + rho J int (phi + psi)_tt dx.
 template <class T>
-BentLoad<T> rod_load(const RodConstants& rod, const ShapeIntegrals& S, const BaseMotion<T>& b, const Plane<T>& e,
-                     const RodState<T>& added) {
+BentLoad<T> rod_load(const RodConstants& rod, const ShapeIntegrals& S, const BaseMotion<T>& b, const Plane<T>& e) {
   const double l = rod.length, mu = rod.mass_per_length, c_x = rod.damping_x, c_y = rod.damping_y;
   const T square = b.phi1 * b.phi1;
   const T F_x = mu * (l * b.a_x - S.X * square - S.W * b.phi2 - 2 * S.W1 * b.phi1 + S.U2) +
                 c_x * (l * b.v_x - S.W * b.phi1 + S.U1);
   const T F_y = mu * (l * b.a_y + S.X * b.phi2 - S.W * square + 2 * S.U1 * b.phi1 + S.W2) +
                 c_y * (l * b.v_y + S.X * b.phi1 + S.W1);
-  const T moment = mu * (S.X * b.a_y - S.W * b.a_x + S.polar * b.phi2 + 2 * (S.X_U1 + S.W_W1) * b.phi1 + S.X_W2_W_U2) +
+  const T moment = mu * (S.X * b.a_y - S.W * b.a_x + (S.XX + S.WW) * b.phi2 + 2 * S.X_U1_W_W1 * b.phi1 + S.X_W2_W_U2) +
                    c_y * (S.X * b.v_y + S.XX * b.phi1 + S.X_W1) - c_x * (S.W * b.v_x - S.WW * b.phi1 + S.W_U1) +
                    rod.rotary * (l * b.phi2 + S.psi2);
-  const Plane<T> F{F_x + added.added_force.x, F_y + added.added_force.y};
-  return {e * F, moment + added.added_moment};
+  return {e * Plane<T>{F_x, F_y}, moment};
 }
 
 // Closing with lengths that change. Coupler (length l) from D, rocker (length L) from the pivot P:
@@ -127,7 +122,7 @@ void close_rocker(const BentMotion<T>& D, const Chord<T>& l, const Chord<T>& L, 
   const T r = sqrt(norm(d));
   const T one_minus = (l.c - (r - L.c)) * (l.c + (r - L.c)) / (2 * r * L.c);
   const T one_plus = (r + L.c - l.c) * (r + L.c + l.c) / (2 * r * L.c);
-  const T cos_beta = value_of(one_minus) < value_of(one_plus) ? 1 - one_minus : one_plus - 1;
+  const T cos_beta = 0.5 * (one_plus - one_minus);
   const T sin_beta = sqrt(one_minus * one_plus);
   const Plane<T> toward{d.x / r, d.y / r};
   const Plane<T> e_psi = toward * Plane<T>{cos_beta, branch > 0 ? sin_beta : -sin_beta};
@@ -194,11 +189,11 @@ Chord<T> chord_of(const BentMechanism<T>& mechanism, const std::vector<int>& rod
 
 // The bodies' motion; crank = e^{i tau}.
 template <class T>
-void move(const Linkage& linkage, const std::vector<int>& rod_of, std::complex<double> crank, const T& speed,
+void move(const Linkage& linkage, const std::vector<int>& rod_of, const Plane<Lanes>& crank, const T& speed,
           BentMechanism<T>& mechanism) {
   std::vector<BentMotion<T>>& motion = mechanism.motion;
   motion.resize(static_cast<std::size_t>(linkage.num_bodies()));
-  motion[0] = {plane<T>(linkage.crank.pivot), {}, {}, plane<T>(crank), speed, {}};
+  motion[0] = {plane<T>(linkage.crank.pivot), {}, {}, {T(crank.x), T(crank.y)}, speed, {}};
   for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
     const Dyad& dyad = linkage.dyads[d];
     const int coupler = coupler_index(static_cast<int>(d));
@@ -216,7 +211,7 @@ void move(const Linkage& linkage, const std::vector<int>& rod_of, std::complex<d
   }
 }
 
-// The load of every body; slider_forces(d) is the force applied to the slider of dyad d.
+// The load of every body; slider_forces(d) are the forces applied to the slider of dyad d.
 template <class T, class SliderForces>
 void load(const Linkage& linkage, const std::vector<int>& rod_of, const std::vector<RodConstants>& constants,
           const SliderForces& slider_forces, BentMechanism<T>& mechanism) {
@@ -229,7 +224,7 @@ void load(const Linkage& linkage, const std::vector<int>& rod_of, const std::vec
       RodState<T>& state = mechanism.rods[static_cast<std::size_t>(rod)];
       const Plane<T> v = conj(m.e) * m.z1, a = conj(m.e) * (m.z2 + gravity);
       state.base = {v.x, v.y, a.x, a.y, m.phi1, m.phi2};
-      out = rod_load(constants[static_cast<std::size_t>(rod)], state.shape, state.base, m.e, state);
+      out = rod_load(constants[static_cast<std::size_t>(rod)], state.shape, state.base, m.e);
     } else if (const Body* body = body_at(linkage, static_cast<int>(index))) {
       const BentMotion<T> com = at_point(m, body->com);
       out.force = T(body->mass) * (com.z2 + gravity);
@@ -237,14 +232,14 @@ void load(const Linkage& linkage, const std::vector<int>& rod_of, const std::vec
     } else {
       const std::size_t d = (index - 1) / 2;
       const Slider& slider = std::get<Slider>(linkage.dyads[d].closing);
-      const double applied = slider_forces(static_cast<Eigen::Index>(d));
+      const Lanes applied = slider_forces(static_cast<Eigen::Index>(d));
       out.force = T(slider.mass) * (m.z2 + gravity) - T(applied) * m.e;
       out.moment = T(0.0);
     }
   }
 }
 
-// Joint forces, dyads in reverse order, as in balance.cpp with chords for lengths. Uses up the loads.
+// Joint forces, dyads in reverse order, as in balance.cpp with chords for lengths: linear in the loads. Uses them up.
 template <class T>
 void balance(const Linkage& linkage, const std::vector<int>& rod_of, BentMechanism<T>& mechanism) {
   std::vector<BentLoad<T>>& loads = mechanism.loads;

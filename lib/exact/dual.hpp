@@ -1,44 +1,71 @@
-// Forward differentiation in eight directions at once: a value with its derivatives, one vector register.
+// Forward differentiation in four directions at once: numbers with their derivatives, at several crank angles.
 #pragma once
 
-#include <Eigen/Core>
-#include <cmath>
+#include <array>
+#include <cstddef>
+
+#include "lib/exact/lanes.hpp"
 
 namespace hb {
 
 struct Dual {
-  using Slopes = Eigen::Array<double, 8, 1>;
-  double value = 0;
-  Slopes slope = Slopes::Zero();
+  static constexpr std::size_t directions = 4;
+  using Slopes = std::array<Lanes, directions>;
+  Lanes value;
+  Slopes slope;
 
   Dual() = default;
-  Dual(double v) : value(v) {}  // NOLINT(google-explicit-constructor): a constant
-  Dual(double v, const Slopes& s) : value(v), slope(s) {}
+  Dual(const Lanes& v) : value(v) {}  // NOLINT(google-explicit-constructor): a constant
+
+  // value and, in every direction, slope(direction)
+  template <class Slope>
+  static Dual with(const Lanes& value, const Slope& slope) {
+    Dual result(value);
+    for (std::size_t d = 0; d < directions; ++d) result.slope[d] = slope(d);
+    return result;
+  }
 };
 
-inline Dual operator-(const Dual& a) { return {-a.value, -a.slope}; }
-inline Dual operator+(const Dual& a, const Dual& b) { return {a.value + b.value, a.slope + b.slope}; }
-inline Dual operator-(const Dual& a, const Dual& b) { return {a.value - b.value, a.slope - b.slope}; }
+inline Dual operator-(const Dual& a) {
+  return Dual::with(-a.value, [&](std::size_t d) { return -a.slope[d]; });
+}
+inline Dual operator+(const Dual& a, const Dual& b) {
+  return Dual::with(a.value + b.value, [&](std::size_t d) { return a.slope[d] + b.slope[d]; });
+}
+inline Dual operator-(const Dual& a, const Dual& b) {
+  return Dual::with(a.value - b.value, [&](std::size_t d) { return a.slope[d] - b.slope[d]; });
+}
 inline Dual operator*(const Dual& a, const Dual& b) {
-  return {a.value * b.value, a.value * b.slope + b.value * a.slope};
+  return Dual::with(a.value * b.value, [&](std::size_t d) { return a.value * b.slope[d] + b.value * a.slope[d]; });
 }
-inline Dual operator*(double a, const Dual& b) { return {a * b.value, a * b.slope}; }
-inline Dual operator*(const Dual& a, double b) { return b * a; }
-inline Dual operator+(double a, const Dual& b) { return {a + b.value, b.slope}; }
-inline Dual operator+(const Dual& a, double b) { return b + a; }
-inline Dual operator-(const Dual& a, double b) { return {a.value - b, a.slope}; }
-inline Dual operator-(double a, const Dual& b) { return {a - b.value, -b.slope}; }
+inline Dual operator*(const Lanes& a, const Dual& b) {
+  return Dual::with(a * b.value, [&](std::size_t d) { return a * b.slope[d]; });
+}
+inline Dual operator*(const Dual& a, const Lanes& b) { return b * a; }
+inline Dual operator+(const Lanes& a, const Dual& b) {
+  return Dual::with(a + b.value, [&](std::size_t d) { return b.slope[d]; });
+}
+inline Dual operator+(const Dual& a, const Lanes& b) { return b + a; }
+inline Dual operator-(const Dual& a, const Lanes& b) { return -b + a; }
+inline Dual operator-(const Lanes& a, const Dual& b) {
+  return Dual::with(a - b.value, [&](std::size_t d) { return -b.slope[d]; });
+}
 inline Dual operator/(const Dual& a, const Dual& b) {
-  const double inverse = 1 / b.value, quotient = a.value * inverse;
-  return {quotient, inverse * (a.slope - quotient * b.slope)};
+  const Lanes inverse = 1.0 / b.value, quotient = a.value * inverse;
+  return Dual::with(quotient, [&](std::size_t d) { return inverse * (a.slope[d] - quotient * b.slope[d]); });
 }
+inline Dual operator/(const Lanes& a, const Dual& b) {
+  const Lanes inverse = 1.0 / b.value, quotient = a * inverse, turned = -(inverse * quotient);
+  return Dual::with(quotient, [&](std::size_t d) { return turned * b.slope[d]; });
+}
+inline Dual operator/(const Dual& a, const Lanes& b) { return (1.0 / b) * a; }
 inline Dual sqrt(const Dual& a) {
-  const double root = std::sqrt(a.value);
-  return {root, 0.5 / root * a.slope};
+  const Lanes root = sqrt(a.value), half = 0.5 / root;
+  return Dual::with(root, [&](std::size_t d) { return half * a.slope[d]; });
 }
 
-inline double value_of(double a) { return a; }
-inline double value_of(const Dual& a) { return a.value; }
+inline const Lanes& value_of(const Lanes& a) { return a; }
+inline const Lanes& value_of(const Dual& a) { return a.value; }
 
 // A vector of the plane as a complex number x + i y over any scalar (std::complex is for floating-point numbers only).
 template <class T>

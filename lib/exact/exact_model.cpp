@@ -11,7 +11,6 @@
 #include "lib/exact/bent_rod.hpp"
 #include "lib/exact/rod_quadrature.hpp"
 #include "lib/stop_wish.hpp"
-#include "lib/workspace.hpp"
 
 namespace hb {
 
@@ -19,7 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using exact::BentRod;
 using exact::RodDerivatives;
-using exact::RodSurroundings;
 
 struct ExactModel::Impl {
   Linkage linkage;
@@ -34,17 +32,6 @@ struct ExactModel::Impl {
 
 namespace {
 
-std::vector<BentRod> bent_rods(const ExactModel::Impl& model, const RitzSamples& motion) {
-  std::vector<BentRod> rods;
-  rods.reserve(model.rods.size());
-  for (std::size_t r = 0; r < model.rods.size(); ++r) {
-    const Index first = model.first[r], count = model.rods[r].num_modes;
-    rods.emplace_back(model.rules[r], model.constants[r], motion.q.middleRows(first, count),
-                      motion.q1.middleRows(first, count), motion.q2.middleRows(first, count));
-  }
-  return rods;
-}
-
 void check_shapes(const ExactModel::Impl& model, const CrankAngles& angles, const RitzSamples& motion) {
   for (const MatrixXd* samples : {&motion.q, &motion.q1, &motion.q2})
     if (samples->rows() != model.num_modes() || samples->cols() != angles.size())
@@ -52,189 +39,191 @@ void check_shapes(const ExactModel::Impl& model, const CrankAngles& angles, cons
                                               samples->cols(), model.num_modes(), angles.size()));
 }
 
-// First angle at which a rod is too steep.
-std::optional<ExactBreakdown> folded(const ExactModel::Impl& model, const std::vector<BentRod>& rods,
-                                     const CrankAngles& angles) {
-  for (Index j = 0; j < angles.size(); ++j)
-    for (std::size_t r = 0; r < rods.size(); ++r)
-      if (const double slope = rods[r].steepest()(j); !(slope < 1))
-        return ExactBreakdown{ExactBreakdown::Kind::slope, model.rods[r].link, angles.tau(j), slope};
-  return std::nullopt;
-}
+double in(const Lanes& lanes, Index lane) { return lanes.values()[static_cast<std::size_t>(lane)]; }
 
-template <class T>
-std::optional<ExactBreakdown> opened(const exact::BentMechanism<T>& mechanism, double crank_angle) {
-  for (std::size_t body = 1; body < mechanism.motion.size(); body += 2)
-    if (!std::isfinite(value_of(norm(mechanism.motion[body].e))))
-      return ExactBreakdown{ExactBreakdown::Kind::open, static_cast<int>(body), crank_angle, 0};
-  return std::nullopt;
-}
+std::complex<double> number(const Plane<Lanes>& z, Index lane) { return {in(z.x, lane), in(z.y, lane)}; }
 
-// The whole mechanism at one angle: motion, loads, joint forces.
-template <class T>
-void solve(const ExactModel::Impl& model, const CrankAngles& angles, Index angle, const T& speed,
-           exact::BentMechanism<T>& mechanism) {
-  exact::move(model.linkage, model.rod_of, angles.direction(angle), speed, mechanism);
-  exact::load(model.linkage, model.rod_of, model.constants, angles.slider_forces.col(angle), mechanism);
-  exact::balance(model.linkage, model.rod_of, mechanism);
-}
+// Directions of Dual when a rod is varied: its chord with two rates; the speed.
+constexpr std::size_t chord_direction = 0, speed_direction = 3;
 
-void place_rods(const std::vector<BentRod>& rods, Index angle, exact::BentMechanism<double>& mechanism) {
-  mechanism.rods.resize(rods.size());
-  for (std::size_t r = 0; r < rods.size(); ++r) {
-    mechanism.rods[r].chord = rods[r].chord(angle);
-    mechanism.rods[r].shape = rods[r].shape(angle);
+// What the answers of rod r do when rod s is varied, and with the speed.
+struct Influence {
+  std::array<Dual::Slopes, 7> of_answer;  // base motion, in the order of BaseMotion, and X
+  std::array<Lanes, 3> of_load;  // X alone, by the load of s: along, across, moment
+};
+
+// The whole mechanism at a block of angles.
+class Block {
+ public:
+  Block(const ExactModel::Impl& model, const CrankAngles& angles, double speed)
+      : model_(model), angles_(angles), speed_(speed) {
+    for (std::size_t r = 0; r < model.rods.size(); ++r) rods_.emplace_back(model.rules[r], model.constants[r]);
+    mechanism_.rods.resize(rods_.size());
+    varied_.rods.resize(rods_.size());
+    influence_.resize(rods_.size() * rods_.size());
   }
-}
 
-std::vector<RodSurroundings> surroundings(const ExactModel::Impl& model, const std::vector<BentRod>& rods,
-                                          const CrankAngles& angles, double speed,
-                                          std::optional<ExactBreakdown>& breakdown) {
-  std::vector<RodSurroundings> result(rods.size());
-  for (RodSurroundings& at : result) {
-    at.base.resize(6, angles.size());
-    at.axial_force.resize(angles.size());
+  // Motion, loads, joint forces at the angles from `first`.
+  void solve(const RitzSamples& motion, Index first) {
+    first_ = first;
+    for (std::size_t r = 0; r < rods_.size(); ++r) {
+      const Index row = model_.first[r], count = model_.rods[r].num_modes;
+      rods_[r].bend(motion.q.middleRows(row, count), motion.q1.middleRows(row, count), motion.q2.middleRows(row, count),
+                    first);
+      mechanism_.rods[r].chord = rods_[r].chord();
+      mechanism_.rods[r].shape = rods_[r].shape();
+    }
+    solve(Lanes(speed_), mechanism_);
+    for (std::size_t r = 0; r < rods_.size(); ++r)
+      rods_[r].surround(mechanism_.rods[r].base, mechanism_.rods[r].axial_force);
   }
-  exact::BentMechanism<double> mechanism;
-  for (Index j = 0; j < angles.size(); ++j) {
-    place_rods(rods, j, mechanism);
-    solve(model, angles, j, speed, mechanism);
-    if (!breakdown) breakdown = opened(mechanism, angles.tau(j));
-    for (std::size_t r = 0; r < rods.size(); ++r) {
-      const exact::BaseMotion<double>& b = mechanism.rods[r].base;
-      result[r].base.col(j) << b.v_x, b.v_y, b.a_x, b.a_y, b.phi1, b.phi2;
-      result[r].axial_force(j) = mechanism.rods[r].axial_force;
+
+  Index count() const { return std::min(Lanes::width, angles_.size() - first_); }
+  const exact::BentMechanism<Lanes>& mechanism() const { return mechanism_; }
+
+  // At the first angle at which a rod is too steep, else at the first at which a dyad does not close.
+  std::optional<ExactBreakdown> breakdown() const {
+    for (Index lane = 0; lane < count(); ++lane)
+      for (std::size_t r = 0; r < rods_.size(); ++r)
+        if (const double slope = in(rods_[r].steepest(), lane); !(slope < 1))
+          return ExactBreakdown{ExactBreakdown::Kind::slope, model_.rods[r].link, angles_.tau(first_ + lane), slope};
+    for (Index lane = 0; lane < count(); ++lane)
+      for (std::size_t body = 1; body < mechanism_.motion.size(); body += 2)
+        if (!std::isfinite(in(norm(mechanism_.motion[body].e), lane)))
+          return ExactBreakdown{ExactBreakdown::Kind::open, static_cast<int>(body), angles_.tau(first_ + lane), 0};
+    return std::nullopt;
+  }
+
+  void residual(MatrixXd& r) {
+    for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+      const std::vector<Lanes>& own = rods_[rod].residual();
+      for (std::size_t i = 0; i < own.size(); ++i) put(own[i], r, model_.first[rod] + static_cast<Index>(i));
     }
   }
-  return result;
-}
 
-// Directions of Dual when rod s is varied: its chord with two rates, then its load along, across, moment; the speed.
-constexpr Index chord_direction = 0, load_direction = 3, speed_direction = 6;
+  // Of rod r by rod s.
+  const Influence& influence(std::size_t r, std::size_t s) const { return influence_[r * rods_.size() + s]; }
 
-constexpr Index axial_force_answer = 6;
-
-// What the answers of rod r, base motion and X, do when the chord and the load of rod s change, and with the speed.
-using Influence = Eigen::Matrix<double, 7, 7>;
-
-class Influences {
- public:
-  Influences(const ExactModel::Impl& model, const std::vector<BentRod>& rods, const CrankAngles& angles, double speed)
-      : rods_(static_cast<Index>(rods.size())),
-        all_(kept().matrix(Influence::SizeAtCompileTime, rods_ * rods_ * angles.size())) {
-    exact::BentMechanism<Dual> mechanism;
-    mechanism.rods.resize(rods.size());
-    for (Index j = 0; j < angles.size(); ++j)
-      for (std::size_t s = 0; s < rods.size(); ++s) {
-        for (std::size_t r = 0; r < rods.size(); ++r) place(rods[r], j, mechanism.rods[r], r == s);
-        solve(model, angles, j, varied(speed, speed_direction, true), mechanism);
-        for (std::size_t r = 0; r < rods.size(); ++r)
-          read(mechanism.rods[r], Eigen::Map<Influence>(all_.col(index(j, r, s)).data()));
-      }
+  void influences() {
+    for (std::size_t s = 0; s < rods_.size(); ++s) {
+      vary_chord(s);
+      vary_load(s);
+    }
   }
 
-  Eigen::Map<const Influence> operator()(Index angle, std::size_t r, std::size_t s) const {
-    return Eigen::Map<const Influence>(all_.col(index(angle, r, s)).data());
+  void derivatives(ExactResidual& out) {
+    influences();
+    for (BentRod& rod : rods_) rod.differentiate();
+    for (std::size_t s = 0; s < rods_.size(); ++s)
+      for (std::size_t r = 0; r < rods_.size(); ++r) assemble(r, s, out);
   }
 
  private:
-  // A thread has one of them at a time.
-  static Workspace& kept() {
-    thread_local Workspace workspace;
-    return workspace;
+  void put(const Lanes& lanes, MatrixXd& samples, Index row) const {
+    const Lanes::Values values = lanes.values();
+    for (Index lane = 0; lane < count(); ++lane) samples(row, first_ + lane) = values[static_cast<std::size_t>(lane)];
   }
 
-  static Dual varied(double value, Index direction, bool yes) {
+  // The last angle again beyond the last one.
+  template <class Value>
+  Lanes at_angles(const Value& value) const {
+    return Lanes::of([&](Index lane) { return value(std::min(first_ + lane, angles_.size() - 1)); });
+  }
+
+  template <class T>
+  void solve(const T& speed, exact::BentMechanism<T>& mechanism) const {
+    const Plane<Lanes> crank{at_angles([&](Index j) { return angles_.direction(j).real(); }),
+                             at_angles([&](Index j) { return angles_.direction(j).imag(); })};
+    const auto slider_forces = [&](Index dyad) {
+      return at_angles([&](Index j) { return angles_.slider_forces(dyad, j); });
+    };
+    exact::move(model_.linkage, model_.rod_of, crank, speed, mechanism);
+    exact::load(model_.linkage, model_.rod_of, model_.constants, slider_forces, mechanism);
+    exact::balance(model_.linkage, model_.rod_of, mechanism);
+  }
+
+  static Dual varied(const Lanes& value, std::size_t direction) {
     Dual dual(value);
-    if (yes) dual.slope(direction) = 1;
+    dual.slope[direction] = 1;
     return dual;
   }
 
-  static void place(const BentRod& rod, Index angle, exact::RodState<Dual>& state, bool yes) {
-    const exact::Chord<double> chord = rod.chord(angle);
-    state.chord = {varied(chord.c, chord_direction, yes), varied(chord.c1, chord_direction + 1, yes),
-                   varied(chord.c2, chord_direction + 2, yes)};
-    state.shape = rod.shape(angle);
-    state.added_force = {varied(0, load_direction, yes), varied(0, load_direction + 1, yes)};
-    state.added_moment = varied(0, load_direction + 2, yes);
+  void vary_chord(std::size_t s) {
+    for (std::size_t r = 0; r < rods_.size(); ++r) {
+      const exact::Chord<Lanes>& chord = rods_[r].chord();
+      varied_.rods[r].shape = rods_[r].shape();
+      if (r == s)
+        varied_.rods[r].chord = {varied(chord.c, chord_direction), varied(chord.c1, chord_direction + 1),
+                                 varied(chord.c2, chord_direction + 2)};
+      else
+        varied_.rods[r].chord = {chord.c, chord.c1, chord.c2};
+    }
+    solve(varied(speed_, speed_direction), varied_);
+    for (std::size_t r = 0; r < rods_.size(); ++r) {
+      const exact::RodState<Dual>& rod = varied_.rods[r];
+      const exact::BaseMotion<Dual>& b = rod.base;
+      influence_[r * rods_.size() + s].of_answer = {b.v_x.slope,  b.v_y.slope,  b.a_x.slope,          b.a_y.slope,
+                                                    b.phi1.slope, b.phi2.slope, rod.axial_force.slope};
+    }
   }
 
-  static void read(const exact::RodState<Dual>& state, Eigen::Map<Influence> out) {
-    const exact::BaseMotion<Dual>& b = state.base;
-    Index row = 0;
-    for (const Dual* answer : {&b.v_x, &b.v_y, &b.a_x, &b.a_y, &b.phi1, &b.phi2, &state.axial_force})
-      out.row(row++) = answer->slope.head<7>().transpose();
+  // Unit loads alone.
+  void vary_load(std::size_t s) {
+    const auto body = static_cast<std::size_t>(model_.rods[s].link);
+    const Plane<Lanes>& e = mechanism_.motion[body].e;
+    const std::array<exact::BentLoad<Lanes>, 3> units = {
+        exact::BentLoad<Lanes>{e, 0}, {turned(e), 0}, {Plane<Lanes>(), 1}};
+    unloaded_ = mechanism_;
+    for (std::size_t direction = 0; direction < 3; ++direction) {
+      std::fill(unloaded_.loads.begin(), unloaded_.loads.end(), exact::BentLoad<Lanes>());
+      unloaded_.loads[body] = units[direction];
+      exact::balance(model_.linkage, model_.rod_of, unloaded_);
+      for (std::size_t r = 0; r < rods_.size(); ++r)
+        influence_[r * rods_.size() + s].of_load[direction] = unloaded_.rods[r].axial_force;
+    }
   }
 
-  Index index(Index angle, std::size_t r, std::size_t s) const {
-    return (angle * rods_ + static_cast<Index>(r)) * rods_ + static_cast<Index>(s);
-  }
-
-  Index rods_;
-  Eigen::Map<Eigen::MatrixXd> all_;  // a column each
-};
-
-// dr/dq of rod r by rod s: its own part, then through base motion b and axial force X of the mechanism,
-//     dr_r/dz_s += G_r [ d(b, X)_r/d(c, c', c'')_s  d(c, c', c'')_s/dz_s + d(b, X)_r/d(load)_s  d(load)_s/dz_s ],
-// G_r = dr_r/d(b, X)_r; z = q, q', q''.
-void assemble(const ExactModel::Impl& model, const std::vector<RodDerivatives>& own, const Influences& influences,
-              Index num_angles, ExactResidual& out) {
-  const Index n = model.num_modes();
-  const std::array<MatrixXd*, 3> by = {&out.by_q, &out.by_q1, &out.by_q2};
-  for (MatrixXd* matrix : by) matrix->resize(n * n, num_angles);
-  out.by_speed.resize(n, num_angles);
-  for (std::size_t s = 0; s < own.size(); ++s) {
-    const Index first_s = model.first[s], I_s = model.rods[s].num_modes;
-    // Rows: c, c', c'', F_x, F_y, moment of rod s; by q, q', q''.
-    std::array<MatrixXd, 3> cause;
-    for (MatrixXd& matrix : cause) matrix = MatrixXd::Zero(6, I_s);
-    MatrixXd through;
-    Eigen::MatrixXd effect;
-    for (Index j = 0; j < num_angles; ++j) {
-      const auto& chord = own[s].chord;
-      cause[0].row(0) = cause[1].row(1) = cause[2].row(2) = chord[0].col(j).transpose();
-      cause[0].row(1) = chord[1].col(j).transpose();
-      cause[1].row(2) = 2 * chord[1].col(j).transpose();
-      cause[0].row(2) = chord[2].col(j).transpose();
-      for (std::size_t z = 0; z < 3; ++z)
-        for (Index k = 0; k < 3; ++k)
-          cause[z].row(3 + k) = own[s].load[static_cast<std::size_t>(k)][z].col(j).transpose();
-      for (std::size_t r = 0; r < own.size(); ++r) {
-        const Index first_r = model.first[r], I_r = model.rods[r].num_modes;
-        effect.resize(I_r, 7);
-        for (Index k = 0; k < 6; ++k) effect.col(k) = own[r].by_base[static_cast<std::size_t>(k)].col(j);
-        effect.col(6) = own[r].by_axial_force.col(j);
-        through.noalias() = effect.lazyProduct(influences(j, r, s));
-        if (s == 0) out.by_speed.col(j).segment(first_r, I_r) = through.col(speed_direction);
+  // dr/dq of rod r by rod s: its own part, then through base motion b and axial force X of the mechanism,
+  //     dr_r/dz_s += G_r d(b, X)_r/d(c, c', c'')_s  d(c, c', c'')_s/dz_s + dr_r/dX  dX_r/d(load)_s  d(load)_s/dz_s,
+  // G_r = dr_r/d(b, X)_r; z = q, q', q''.
+  void assemble(std::size_t r, std::size_t s, ExactResidual& out) const {
+    const RodDerivatives &own = rods_[r].derivatives(), &cause = rods_[s].derivatives();
+    const Influence& through = influence(r, s);
+    const Index n = model_.num_modes(), I_r = model_.rods[r].num_modes, I_s = model_.rods[s].num_modes;
+    const std::array<MatrixXd*, 3> by = {&out.by_q, &out.by_q1, &out.by_q2};
+    for (Index i = 0; i < I_r; ++i) {
+      const RodDerivatives::Mode& effect = own.modes[static_cast<std::size_t>(i)];
+      Dual::Slopes on;  // of c, c', c'' and the speed on r_i
+      for (std::size_t d = 0; d < on.size(); ++d) {
+        on[d] = effect.by_axial_force * through.of_answer[6][d];
+        for (std::size_t k = 0; k < 6; ++k) on[d] += effect.by_base[k] * through.of_answer[k][d];
+      }
+      const Index row = model_.first[r] + i;
+      if (s == 0) put(on[speed_direction], out.by_speed, row);
+      for (Index j = 0; j < I_s; ++j) {
+        const RodDerivatives::Mode& of = cause.modes[static_cast<std::size_t>(j)];
+        const auto& [c, c1, c2] = of.chord;
+        std::array<Lanes, 3> sum = {on[0] * c + on[1] * c1 + on[2] * c2, on[1] * c + 2 * on[2] * c1, on[2] * c};
         for (std::size_t z = 0; z < 3; ++z) {
-          Eigen::Map<MatrixXd> whole(by[z]->col(j).data(), n, n);
-          auto block = whole.block(first_r, first_s, I_r, I_s);
-          block.noalias() = through.leftCols<6>().lazyProduct(cause[z]);
-          if (r == s) block += Eigen::Map<const MatrixXd>(own[r].residual[z].col(j).data(), I_r, I_r);
+          const Lanes X =
+              through.of_load[0] * of.F_x[z] + through.of_load[1] * of.F_y[z] + through.of_load[2] * of.moment[z];
+          sum[z] += effect.by_axial_force * X;
+          if (r == s) sum[z] += own.residual[static_cast<std::size_t>(i + I_r * j)][z];
+          put(sum[z], *by[z], row + n * (model_.first[s] + j));
         }
       }
     }
   }
-}
 
-ExactResidual evaluate(const ExactModel::Impl& model, double speed, const CrankAngles& angles,
-                       const RitzSamples& motion, bool derivatives) {
-  const std::vector<BentRod> rods = bent_rods(model, motion);
-  ExactResidual result;
-  result.breakdown = folded(model, rods, angles);
-  const std::vector<RodSurroundings> at = surroundings(model, rods, angles, speed, result.breakdown);
-  result.r.resize(model.num_modes(), angles.size());
-  for (std::size_t r = 0; r < rods.size(); ++r)
-    result.r.middleRows(model.first[r], model.rods[r].num_modes) = rods[r].residual(at[r]);
-  if (!derivatives) return result;
-
-  std::vector<RodDerivatives> own;
-  for (std::size_t r = 0; r < rods.size(); ++r) own.push_back(rods[r].derivatives(at[r]));
-  assemble(model, own, Influences(model, rods, angles, speed), angles.size(), result);
-  return result;
-}
-
-std::complex<double> number(const Plane<double>& z) { return {z.x, z.y}; }
+  const ExactModel::Impl& model_;
+  const CrankAngles& angles_;
+  double speed_;
+  Index first_ = 0;
+  std::vector<BentRod> rods_;
+  exact::BentMechanism<Lanes> mechanism_, unloaded_;
+  exact::BentMechanism<Dual> varied_;
+  std::vector<Influence> influence_;
+};
 
 }  // namespace
 
@@ -300,19 +289,20 @@ double ExactModel::driven_mass(std::size_t rod) const {
   constexpr Index num_angles = 64;
   const CrankAngles angles(linkage(), num_angles);
   const MatrixXd zero = MatrixXd::Zero(num_modes(), num_angles);
-  const std::vector<BentRod> rods = bent_rods(*impl_, {zero, zero, zero});
-  const Influences influences(*impl_, rods, angles, 1);
+  Block block(*impl_, angles, 1);
   double mass = 0;
-  for (Index j = 0; j < num_angles; ++j)
-    mass = std::max(mass, std::abs(influences(j, rod, rod)(axial_force_answer, chord_direction + 2)));
+  for (Index first = 0; first < num_angles; first += Lanes::width) {
+    block.solve({zero, zero, zero}, first);
+    block.influences();
+    for (const double driven : block.influence(rod, rod).of_answer[6][chord_direction + 2].values())
+      mass = std::max(mass, std::abs(driven));
+  }
   return mass;
 }
 
-// Blocks of angles whose arrays stay in the cache.
 ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, const RitzSamples& motion,
                                    bool derivatives) const {
   check_shapes(*impl_, angles, motion);
-  constexpr Index most = 64;
   const Index n = num_modes(), N = angles.size();
   ExactResidual result;
   result.r.resize(n, N);
@@ -320,42 +310,36 @@ ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, cons
     result.by_speed.resize(n, N);
     for (MatrixXd* by : {&result.by_q, &result.by_q1, &result.by_q2}) by->resize(n * n, N);
   }
-  for (Index begin = 0; begin < N; begin += most) {
+  Block block(*impl_, angles, speed);
+  for (Index first = 0; first < N; first += Lanes::width) {
     end_if_wished();
-    const Index count = std::min(most, N - begin);
-    const CrankAngles part = angles.part(begin, count);
-    const auto columns = [&](const MatrixXd& all) { return all.middleCols(begin, count); };
-    const ExactResidual block =
-        evaluate(*impl_, speed, part, {columns(motion.q), columns(motion.q1), columns(motion.q2)}, derivatives);
-    result.r.middleCols(begin, count) = block.r;
-    if (!result.breakdown) result.breakdown = block.breakdown;
-    if (!derivatives) continue;
-    result.by_speed.middleCols(begin, count) = block.by_speed;
-    result.by_q.middleCols(begin, count) = block.by_q;
-    result.by_q1.middleCols(begin, count) = block.by_q1;
-    result.by_q2.middleCols(begin, count) = block.by_q2;
+    block.solve(motion, first);
+    if (!result.breakdown) result.breakdown = block.breakdown();
+    block.residual(result.r);
+    if (derivatives) block.derivatives(result);
   }
   return result;
 }
 
 ExactModel::Forces ExactModel::forces(double speed, const CrankAngles& angles, const RitzSamples& motion) const {
   check_shapes(*impl_, angles, motion);
-  const std::vector<BentRod> rods = bent_rods(*impl_, motion);
   Forces result;
-  result.breakdown = folded(*impl_, rods, angles);
-  exact::BentMechanism<double> mechanism;
-  for (Index j = 0; j < angles.size(); ++j) {
-    place_rods(rods, j, mechanism);
-    solve(*impl_, angles, j, speed, mechanism);
-    if (!result.breakdown) result.breakdown = opened(mechanism, angles.tau(j));
-    MechanismForces& forces = result.forces.emplace_back();
-    for (const exact::BentDyadForces<double>& dyad : mechanism.forces)
-      forces.dyads.push_back({number(dyad.joint0), number(dyad.joint1), number(dyad.ground)});
-    forces.crank_pivot = number(mechanism.crank_pivot);
-    forces.torque = mechanism.torque;
-    std::vector<BodyMotion>& bodies = result.motion.emplace_back();
-    for (const exact::BentMotion<double>& m : mechanism.motion)
-      bodies.push_back({number(m.z), number(m.z1), number(m.z2), number(m.e), m.phi1, m.phi2});
+  Block block(*impl_, angles, speed);
+  const exact::BentMechanism<Lanes>& mechanism = block.mechanism();
+  for (Index first = 0; first < angles.size(); first += Lanes::width) {
+    block.solve(motion, first);
+    if (!result.breakdown) result.breakdown = block.breakdown();
+    for (Index lane = 0; lane < block.count(); ++lane) {
+      MechanismForces& forces = result.forces.emplace_back();
+      for (const exact::BentDyadForces<Lanes>& dyad : mechanism.forces)
+        forces.dyads.push_back({number(dyad.joint0, lane), number(dyad.joint1, lane), number(dyad.ground, lane)});
+      forces.crank_pivot = number(mechanism.crank_pivot, lane);
+      forces.torque = in(mechanism.torque, lane);
+      std::vector<BodyMotion>& bodies = result.motion.emplace_back();
+      for (const exact::BentMotion<Lanes>& m : mechanism.motion)
+        bodies.push_back({number(m.z, lane), number(m.z1, lane), number(m.z2, lane), number(m.e, lane),
+                          in(m.phi1, lane), in(m.phi2, lane)});
+    }
   }
   return result;
 }

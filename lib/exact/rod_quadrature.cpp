@@ -35,7 +35,9 @@ RodQuadrature::RodQuadrature(double l, Eigen::Index num_modes, Eigen::Index num_
     for (int step = 0; step < 8; ++step) {
       const Eigen::VectorXd at_s = legendre(Q, s);
       slope = n * (s * at_s(Q) - at_s(Q - 1)) / (s * s - 1);
-      s -= at_s(Q) / slope;
+      const double change = at_s(Q) / slope;
+      s -= change;
+      if (std::abs(change) < eps) break;
     }
     roots(k) = s;
     unit_weight(k) = 2 / ((1 - s * s) * slope * slope);
@@ -50,18 +52,14 @@ RodQuadrature::RodQuadrature(double l, Eigen::Index num_modes, Eigen::Index num_
     antiderivative.col(j) = (P.row(j + 1) - P.row(j - 1)).transpose() / static_cast<double>(2 * j + 1);
   const Eigen::VectorXd half_odd = Eigen::VectorXd::LinSpaced(Q, 0.5, n - 0.5);  // (2j+1)/2
   integral = l / 2 * antiderivative * half_odd.asDiagonal() * P.topRows(Q) * unit_weight.asDiagonal();
-  integral_square = integral.transpose() * weight.asDiagonal() * integral;
-  rest = weight.cwiseProduct((l - x.array()).matrix());
+  weighted_integral = weight.asDiagonal() * integral;
 
-  s.resize(Q, I), s1.resize(Q, I), s2.resize(Q, I), sum_s.resize(I);
-  for (Eigen::Index i = 0; i < I; ++i) {
-    const double k = static_cast<double>(i + 1) * pi / l;
-    s.col(i) = (k * x.array()).sin();
-    s1.col(i) = k * (k * x.array()).cos();
-    s2.col(i) = -k * k * s.col(i);
-    sum_s(i) = i % 2 == 0 ? 2 / k : 0.0;
-  }
-  rest_s = integral.transpose() * weight.asDiagonal() * s;
+  shapes.reserve(static_cast<std::size_t>(I * Q));
+  for (Eigen::Index point = 0; point < Q; ++point)
+    for (Eigen::Index i = 0; i < I; ++i) {
+      const double k = static_cast<double>(i + 1) * pi / l, sine = std::sin(k * x(point));
+      shapes.push_back({sine, k * std::cos(k * x(point)), -k * k * sine});
+    }
 }
 
 }  // namespace hb

@@ -1,5 +1,7 @@
 #include "lib/exact/rod_tension.hpp"
 
+#include <algorithm>
+
 #include "lib/exact/bent_rod.hpp"
 
 namespace hb {
@@ -42,27 +44,34 @@ std::vector<RodTension> rod_tensions(const ExactModel& model, double speed, cons
     const auto body = static_cast<std::size_t>(link), dyad = (body - 1) / 2;
     // Joint 1 of a rocker is its coupler's: what acts on it there is the reaction.
     const double sign = link == coupler_index(static_cast<int>(dyad)) ? 1 : -1;
-    exact::RodSurroundings at;
-    at.base.resize(6, angles.size());
-    at.axial_force.resize(angles.size());
-    exact::Angles Y(angles.size());
-    for (Index j = 0; j < angles.size(); ++j) {
-      const auto angle = static_cast<std::size_t>(j);
-      const BodyMotion& m = all.motion[angle][body];
-      const std::complex<double> to_chord = std::conj(m.e), v = to_chord * m.z1, a = to_chord * (m.z2 + gravity),
-                                 end = sign * to_chord * all.forces[angle].dyads[dyad].joint1;
-      at.base.col(j) << v.real(), v.imag(), a.real(), a.imag(), m.phi1, m.phi2;
-      at.axial_force(j) = end.real();
-      Y(j) = end.imag();
-    }
     const Body& rod = *body_at(model.linkage(), link);
-    const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
+    const Index first = model.first_mode(r), I = model.rods()[r].num_modes, N = angles.size();
     const RodQuadrature rule(rod.length, I);
     const exact::RodConstants constants = exact::constants_of(rod);
-    const exact::BentRod bent(rule, constants, motion.q.middleRows(first, I), motion.q1.middleRows(first, I),
-                              motion.q2.middleRows(first, I));
-    RodTension tension{Eigen::VectorXd(rule.num_points() + 2), bent.tension(at, Y).matrix()};
+    exact::BentRod bent(rule, constants);
+    RodTension tension{Eigen::VectorXd(rule.num_points() + 2), Eigen::MatrixXd(rule.num_points() + 2, N)};
     tension.x << rule.x, 0, rod.length;
+    for (Index j = 0; j < N; j += Lanes::width) {
+      bent.bend(motion.q.middleRows(first, I), motion.q1.middleRows(first, I), motion.q2.middleRows(first, I), j);
+      const auto lanes = [&](const auto& value) {
+        return Lanes::of([&](Index lane) { return value(static_cast<std::size_t>(std::min(j + lane, N - 1))); });
+      };
+      const auto in_chord = [&](const auto& of) {
+        const auto turned = [&](std::size_t angle) { return std::conj(all.motion[angle][body].e) * of(angle); };
+        return Plane<Lanes>{lanes([&](std::size_t angle) { return turned(angle).real(); }),
+                            lanes([&](std::size_t angle) { return turned(angle).imag(); })};
+      };
+      const auto v = in_chord([&](std::size_t angle) { return all.motion[angle][body].z1; });
+      const auto a = in_chord([&](std::size_t angle) { return all.motion[angle][body].z2 + gravity; });
+      const auto end = in_chord([&](std::size_t angle) { return sign * all.forces[angle].dyads[dyad].joint1; });
+      bent.surround({v.x, v.y, a.x, a.y, lanes([&](std::size_t angle) { return all.motion[angle][body].phi1; }),
+                     lanes([&](std::size_t angle) { return all.motion[angle][body].phi2; })},
+                    end.x);
+      const std::vector<Lanes> at_points = bent.tension(end.y);
+      for (std::size_t k = 0; k < at_points.size(); ++k)
+        for (Index lane = 0; lane < std::min(Lanes::width, N - j); ++lane)
+          tension.N(static_cast<Index>(k), j + lane) = at_points[k].values()[static_cast<std::size_t>(lane)];
+    }
     result.push_back(std::move(tension));
   }
   return result;

@@ -92,9 +92,11 @@ using Lane = Eigen::Array<double, lanes, 1>;
 // Above, the blocked kernels of one matrix at a time are faster.
 constexpr Index most_modes_in_lanes = 8;
 
-// e^{i k c_i h}, h = 2 pi/num_cells, at (k, i); kept per thread, since neighbouring points of a sweep use the same one.
-const Eigen::ArrayXXcd& stage_shifts(Index num_cells, Index H) {
+// e^{i k c_i h}, h = 2 pi/num_cells, at (k, i), k up to `least`; kept per thread, since neighbouring points of a
+// sweep use the same ones.
+const Eigen::ArrayXXcd& stage_shifts(Index num_cells, Index least) {
   thread_local std::map<std::pair<Index, Index>, Eigen::ArrayXXcd> kept;
+  const Index H = (least + 15) / 16 * 16;
   const auto key = std::pair(num_cells, H);
   if (const auto found = kept.find(key); found != kept.end()) return found->second;
   if (kept.size() > 64) kept.clear();
@@ -129,7 +131,7 @@ MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
     auto spectrum = transform.spectrum();
     own = series.c.row(q).transpose();
     for (Index i = 0; i < stages; ++i) {
-      shifted = own * shifts.col(i);
+      shifted = own * shifts.col(i).head(H + 1);
       spectrum.col(i).head(apart) = shifted.head(apart);
       spectrum.col(i).tail(spectrum.rows() - apart).setZero();
       for (Index k = apart; k <= H; ++k) fold(shifted(k), k, N, &spectrum(0, i));
@@ -289,6 +291,7 @@ struct Turn {
     const auto at = [&](Index row, Index column) -> Lane& {
       return rows[static_cast<std::size_t>(row * width + column)];
     };
+    const Eigen::Matrix<double, stages, 1> for_x = h * h * A2.row(stages - 1), for_v = h * A.row(stages - 1);
     for (Index first = 0; first < num_cells; first += lanes) {
       end_if_wished();
       const auto load = [&](const MatrixXd& series, int stage, Index component) {
@@ -309,8 +312,8 @@ struct Turn {
           Lane x = Lane::Constant(column == p ? 1 : column == m + p ? h : 0);
           Lane v = Lane::Constant(column == m + p ? 1 : 0);
           for (int j = 0; j < stages; ++j) {
-            x += h * h * A2(stages - 1, j) * at(j * m + p, size + column);
-            v += h * A(stages - 1, j) * at(j * m + p, size + column);
+            x += for_x(j) * at(j * m + p, size + column);
+            v += for_v(j) * at(j * m + p, size + column);
           }
           const double by = column < m ? 1 / scale(column) : 1;
           x *= scale(p) * by;
@@ -336,6 +339,10 @@ Index radau_cells(Index least) {
   const Index less = cells / 4 * 3;
   return less >= least && less % lanes == 0 ? less : cells;
 }
+
+double oscillator_error(double frequency, double num_cells) { return std::pow(0.61 * frequency / num_cells, 15); }
+
+double oscillator_cells(double frequency, double error) { return 0.61 * frequency * std::pow(error, -1.0 / 15); }
 
 TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
   Turn turn(alpha, beta, num_modes, num_cells);

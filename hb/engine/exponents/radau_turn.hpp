@@ -28,4 +28,8 @@ struct TurnMaps {
 [[nodiscard]] TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Eigen::Index num_modes,
                                   Eigen::Index num_cells);
 
+// One oscillator's phase and damping come out to so much of a turn (measured), and the cells for that.
+[[nodiscard]] double oscillator_error(double frequency, double num_cells);
+[[nodiscard]] double oscillator_cells(double frequency, double error);
+
 }  // namespace hb

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "hb/engine/exponents/mathieu_determinant.hpp"
+#include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/exponents/scalar_hill.hpp"
 #include "hb/engine/exponents/turn_exponents.hpp"
 #include "lib/constants.hpp"
@@ -81,9 +82,6 @@ double fastest_frequency(const ReducedSystem& reduced, const VectorXd& W) {
   return std::sqrt(fastest2);
 }
 
-// The phase of one oscillator of that frequency comes out to so much of a turn (measured).
-double oscillator_error(double frequency, double cells) { return std::pow(0.61 * frequency / cells, 15); }
-
 // Cells to begin with.
 Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance) {
   // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
@@ -94,7 +92,7 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
   // As oscillator_error tells.
   if (reduced.num_modes == 1 && reduced.alpha.c(0, 0).real() > 0) {
     const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
-    const double needed = 0.61 * w * std::pow(allowed(tolerance, -b / 2), -1.0 / 15);
+    const double needed = oscillator_cells(w, allowed(tolerance, -b / 2));
     if (b < w && needed < 8.0 * double(least)) least = std::max(least, Index(std::ceil(needed)));
   }
   return radau_cells(least);

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include "lib/dense.hpp"
+#include <utility>
 
 namespace hb {
 
@@ -15,6 +14,34 @@ using Eigen::VectorXd;
 namespace {
 
 Index root(Index squared) { return Index(std::lround(std::sqrt(double(squared)))); }
+
+// A and B, column-major, become M^-1 A and M^-1 B; M is used up. Gauss' elimination with row pivots, a column at a
+// time.
+void divide(MatrixXd& M, double* A, double* B) {
+  const Index n = M.rows();
+  const auto eliminate = [&](Index k, Index pivot, double* column) {
+    std::swap(column[k], column[pivot]);
+    for (Index i = k + 1; i < n; ++i) column[i] -= M(i, k) * column[k];
+  };
+  for (Index k = 0; k < n; ++k) {
+    Index pivot = k;
+    for (Index i = k + 1; i < n; ++i)
+      if (std::abs(M(i, k)) > std::abs(M(pivot, k))) pivot = i;
+    std::swap(M(k, k), M(pivot, k));
+    for (Index i = k + 1; i < n; ++i) M(i, k) /= M(k, k);
+    for (Index j = k + 1; j < n; ++j) eliminate(k, pivot, &M(0, j));
+    for (Index j = 0; j < n; ++j) {
+      eliminate(k, pivot, A + n * j);
+      eliminate(k, pivot, B + n * j);
+    }
+  }
+  for (Index k = n - 1; k >= 0; --k)
+    for (Index j = 0; j < n; ++j)
+      for (double* column : {A + n * j, B + n * j}) {
+        column[k] /= M(k, k);
+        for (Index i = 0; i < k; ++i) column[i] -= M(i, k) * column[k];
+      }
+}
 
 }  // namespace
 
@@ -35,13 +62,11 @@ NormalForm normal_form(const PeriodicSystem& system) {
     throw std::invalid_argument("PeriodicSystem: mass, damping and stiffness need n*n x N samples each");
   if (!(system.speed > 0 && std::isfinite(system.speed)))
     throw std::invalid_argument("PeriodicSystem: speed must be positive and finite");
-  NormalForm form{MatrixXd(n * n, N), MatrixXd(n * n, N)};
-  const double omega = system.speed;
+  NormalForm form{system.stiffness / (system.speed * system.speed), system.damping / system.speed};
+  MatrixXd mass(n, n);
   for (Index j = 0; j < N; ++j) {
-    const auto square = [n, j](const MatrixXd& samples) { return samples.col(j).reshaped(n, n); };
-    const dense::Lu<double> M(MatrixXd(square(system.mass)));
-    form.alpha.col(j) = (M.solve(MatrixXd(square(system.stiffness))) / (omega * omega)).reshaped();
-    form.beta.col(j) = (M.solve(MatrixXd(square(system.damping))) / omega).reshaped();
+    mass = system.mass.col(j).reshaped(n, n);
+    divide(mass, form.alpha.col(j).data(), form.beta.col(j).data());
   }
   if (!form.alpha.allFinite() || !form.beta.allFinite())
     throw std::invalid_argument("PeriodicSystem: the mass is singular, or an entry is not finite");
