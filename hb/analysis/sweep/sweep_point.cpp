@@ -160,8 +160,9 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
   }
   point.torque = turn_range(forces.torque, 0);
   point.torque_rigid = turn_range(forces.torque_rigid, 0);
-  point.machine =
-      machine_point(machine_loads(*model.linkage(), point.speed, forces, responses, *point.force_errors), point.speed);
+  point.machine = machine_point(machine_loads(*model.linkage(), point.speed, forces, responses, *point.force_errors,
+                                              LoadDetail::largest),
+                                point.speed);
   return forces;
 }
 
