@@ -150,7 +150,7 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
   }
   JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
   point.force_errors = compared || solved.empty()
-                           ? force_errors(*model.linkage(), point.speed, forces, response_error, {}, more_modes)
+                           ? force_errors(*model.linkage(), point.speed, forces, response_error, responses, {}, more_modes)
                            : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   for (const JointForce& joint : forces.joints) {
     for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
