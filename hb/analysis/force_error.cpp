@@ -20,12 +20,13 @@ double bound(const FourierSeries& series) {
 
 // What better responses, with as many modes or more, add to the deflections.
 std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, const std::vector<LinkResponse>& better) {
+  constexpr double small = 1e-10;  // harmonics that count for nothing, inertia with its k^2 included
   std::vector<LinkResponse> changes;
   for (std::size_t r = 0; r < responses.size(); ++r) {
     const FourierSeries &q = responses[r].q, &better_q = better[r].q;
     FourierSeries change = fourier::resized(better_q, std::max(q.num_harmonics(), better_q.num_harmonics()));
     change.c.topLeftCorner(q.c.rows(), q.c.cols()) -= q.c;
-    changes.push_back({responses[r].link, std::move(change)});
+    changes.push_back({responses[r].link, fourier::resized(change, fourier::significant_harmonics(change, small))});
   }
   return changes;
 }
@@ -33,7 +34,7 @@ std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, co
 // Forces are linear in the deflections.
 Largest change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                const std::vector<LinkResponse>& better) {
-  constexpr double digits = 1e-8;
+  constexpr double digits = 1e-5;
   const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
   Largest largest{0, bound(added.torque)};
   for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "lib/constants.hpp"
-#include "lib/fourier/moduli.hpp"
 #include "lib/fourier/waves.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
@@ -214,10 +213,13 @@ Eigen::Map<const Eigen::MatrixXcd> products_with(const FourierSeries& f, const F
 // Without harmonics that are rounding in every component.
 void drop_rounding(FourierSeries& T) {
   constexpr double rounding = 1e-16;
-  const Eigen::ArrayXXd squares = (fourier::unit_of(T.c) * T.c).cwiseAbs2();
-  const Eigen::ArrayXd floor = rounding * rounding * squares.rowwise().maxCoeff();
+  const Eigen::Index n = T.num_components();
+  const Eigen::ArrayXXd parts =  // real and imaginary ones in turn
+      Eigen::Map<const Eigen::ArrayXXd>(reinterpret_cast<const double*>(T.c.data()), 2 * n, T.c.cols()).abs();
+  Eigen::ArrayXd floor = parts.rowwise().maxCoeff();
+  for (Eigen::Index i = 0; i < n; ++i) floor.segment<2>(2 * i) = rounding * floor.segment<2>(2 * i).maxCoeff();
   Eigen::Index H = T.num_harmonics();
-  while (H > 0 && (squares.col(H) <= floor).all()) --H;
+  while (H > 0 && (parts.col(H) <= floor).all()) --H;
   T.c.conservativeResize(Eigen::NoChange, H + 1);
 }
 
@@ -226,7 +228,9 @@ FourierSeries time_functions(const Body& link, const RodCoefficients& rod, doubl
   const Eigen::Index I = q.num_components();
   const FourierSeries f = coefficients_at(rod, speed);
   const Eigen::Index H = q.num_harmonics() + f.num_harmonics();
-  FourierSeries T(3 * I + 2, H);
+  FourierSeries T;
+  T.c.resize(3 * I + 2, H + 1);
+  T.c.topRows(I + 2).setZero();
   T.c.topLeftCorner(I, q.c.cols()) = q.c;
   T.c.block(I, 0, 2, f.c.cols()) = f.c.topRows(2);
   T.c.bottomRows(2 * I) = products_with(f, q, H).topRows(H + 1).transpose();
