@@ -13,6 +13,7 @@
 #include "lib/constants.hpp"
 #include "lib/fourier/moduli.hpp"
 #include "lib/fourier/short_transform.hpp"
+#include "lib/fourier/transpose.hpp"
 #include "lib/fourier/waves.hpp"
 
 namespace hb::fourier {
@@ -24,21 +25,6 @@ std::mutex& planner_mutex() {
   return mutex;
 }
 
-// to = from^T in tiles of a cache line: columns whose distance is a power of two would drive each other out of the
-// cache.
-template <class From, class To>
-void transpose(const From& from, To&& to) {
-  constexpr Eigen::Index tile = 8;
-  for (Eigen::Index first = 0; first < from.rows(); first += tile) {
-    const Eigen::Index count = std::min(tile, from.rows() - first);
-    if (from.cols() == 1)
-      to.row(0).segment(first, count) = from.col(0).segment(first, count).transpose();
-    else
-      for (Eigen::Index j = 0; j < from.cols(); ++j)
-        for (Eigen::Index i = first; i < first + count; ++i) to(j, i) = from(i, j);
-  }
-}
-
 }  // namespace
 
 FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
@@ -47,8 +33,10 @@ FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
   RealTransform& transform = thread_transform(N, n);
   transpose(samples, transform.samples());
   transform.forward();
-  FourierSeries series(n, (N - 1) / 2);
-  transpose(transform.spectrum().topRows(series.num_harmonics() + 1), series.c);
+  const Eigen::Index H = (N - 1) / 2;
+  FourierSeries series;
+  series.c.resize(n, H + 1);
+  transpose_singly(transform.spectrum().topRows(H + 1), series.c);
   return series;
 }
 
@@ -58,7 +46,7 @@ Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples
   RealTransform& transform = thread_transform(num_samples, series.num_components());
   auto spectrum = transform.spectrum();
   spectrum.bottomRows(spectrum.rows() - H - 1).setZero();
-  transpose(series.c, spectrum.topRows(H + 1));
+  transpose_singly(series.c, spectrum.topRows(H + 1));
   transform.backward();
   Eigen::MatrixXd samples(series.num_components(), num_samples);
   transpose(transform.samples(), samples);
@@ -66,16 +54,16 @@ Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples
 }
 
 FourierSeries derivative(const FourierSeries& series, int order) {
-  FourierSeries result(series.num_components(), series.num_harmonics());
+  const Eigen::Index n = series.num_components();
+  FourierSeries result;
+  result.c.resize(n, series.c.cols());
   const double sign = order % 4 < 2 ? 1 : -1;  // of i^order, or of i^(order - 1)
   for (Eigen::Index k = 0; k <= series.num_harmonics(); ++k) {
     double factor = sign;
     for (int j = 0; j < order; ++j) factor *= static_cast<double>(k);
-    if (order % 2 == 0) {
-      result.c.col(k) = factor * series.c.col(k);
-    } else {
-      result.c.col(k).real() = -factor * series.c.col(k).imag();
-      result.c.col(k).imag() = factor * series.c.col(k).real();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::complex<double> c = factor * series.c(i, k);
+      result.c(i, k) = order % 2 == 0 ? c : std::complex<double>(-c.imag(), c.real());
     }
   }
   return result;
@@ -92,9 +80,11 @@ Eigen::VectorXd evaluate(const FourierSeries& series, double tau) {
 }
 
 FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics) {
-  FourierSeries result(series.num_components(), num_harmonics);
   const Eigen::Index kept = std::min(num_harmonics, series.num_harmonics()) + 1;
+  FourierSeries result;
+  result.c.resize(series.num_components(), num_harmonics + 1);
   result.c.leftCols(kept) = series.c.leftCols(kept);
+  result.c.rightCols(num_harmonics + 1 - kept).setZero();
   return result;
 }
 
