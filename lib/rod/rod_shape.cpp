@@ -334,6 +334,7 @@ struct Summit {
 
 // Newton uphill from a grid point; the Hessian is shifted until it is negative definite and the step rises.
 Summit climbed(const Surface& surface, double s, double tau) {
+  constexpr double settled = 1e-7;  // of the last step, half of whose slope is left to rise
   Surface::Jet here = surface.at(s, tau);
   double shift = 0;
   for (int iteration = 0; iteration < 60; ++iteration) {
@@ -345,8 +346,13 @@ Summit climbed(const Surface& surface, double s, double tau) {
     const double determinant = H.determinant();
     if (!(determinant > 0)) break;
     const Eigen::Vector2d step = -H.inverse() * here.gradient;
-    if (!(step.norm() > 1e-12)) break;
     const double s_next = std::clamp(s + step(0), 0.0, 1.0);
+    if (!(step.norm() > settled)) {
+      here.F += here.gradient.dot(step) / 2;
+      s = s_next;
+      tau += step(1);
+      break;
+    }
     const Surface::Jet next = surface.at(s_next, tau + step(1));
     if (next.F >= here.F) {
       s = s_next;
@@ -354,7 +360,6 @@ Summit climbed(const Surface& surface, double s, double tau) {
       here = next;
       shift = shift > 1e-6 * spread ? shift / 10 : 0;
     } else {
-      if (step.norm() < 1e-7) break;  // the value is flat to rounding
       shift = std::max(10 * shift, 0.1 * (std::abs(mean) + spread));
     }
   }
@@ -364,30 +369,39 @@ Summit climbed(const Surface& surface, double s, double tau) {
 
 struct Candidate {
   double size;
-  Eigen::Index i, j;
+  double i, j;  // where the parabolas through its neighbours are highest
+  double sign;
 };
+
+// Between -1/2 and 1/2: the vertex of the parabola through three samples, the middle one the largest.
+double vertex(double before, double here, double after) {
+  const double bend = before - 2 * here + after;
+  return bend < 0 ? (before - after) / (2 * bend) : 0;
+}
 
 // Local maxima of |F| over the grid, rod down and turn across, that are no lower than `least`; the highest first.
 std::vector<Candidate> candidates_of(const Eigen::Ref<const Eigen::MatrixXd>& F, double least) {
   constexpr std::size_t most = 32;
   const Eigen::Index num_x = F.rows() - 1, N = F.cols();
   const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
+  const auto sign = [&F](Eigen::Index i, Eigen::Index j) { return F(i, j) > 0 ? 1.0 : -1.0; };
   const Eigen::RowVectorXd highest = F.cwiseAbs().colwise().maxCoeff();
   std::vector<Candidate> candidates;
   for (Eigen::Index j = 0; j < N; ++j) {
     if (!(highest(j) >= least)) continue;
     const Eigen::Index before = j == 0 ? N - 1 : j - 1, after = j == N - 1 ? 0 : j + 1;
     for (Eigen::Index i = 1; i < num_x; ++i) {
-      const double here = size(i, j);
-      if (here >= least && here >= size(i - 1, j) && here >= size(i + 1, j) && here >= size(i, before) &&
-          here > size(i, after))
-        candidates.push_back({here, i, j});
+      const double here = size(i, j), below = size(i - 1, j), above = size(i + 1, j);
+      const double earlier = size(i, before), later = size(i, after);
+      if (here >= least && here >= below && here >= above && here >= earlier && here > later)
+        candidates.push_back({here, static_cast<double>(i) + vertex(below, here, above),
+                              static_cast<double>(j) + vertex(earlier, here, later), sign(i, j)});
     }
   }
   if (candidates.empty()) {  // constant in time
     Eigen::Index i, j;
     const double top = F.cwiseAbs().maxCoeff(&i, &j);
-    candidates.push_back({top, i, j});
+    candidates.push_back({top, static_cast<double>(i), static_cast<double>(j), sign(i, j)});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.size > b.size; });
@@ -424,15 +438,15 @@ RodPeak peak(const ShapeTable& table, const FourierSeries& T, int order) {
     RodPeak best;
     double curvature = 0;
     for (const Candidate& c : candidates_of(F, 0.9 * top - size.tail(size.size() - H).sum())) {
-      const Surface surface{table.shapes, T, l, order, F(c.i, c.j) > 0 ? 1.0 : -1.0};
+      const Surface surface{table.shapes, T, l, order, c.sign};
       const auto [candidate, its_curvature] =
-          climbed(surface, x(c.i) / l, two_pi * static_cast<double>(c.j) / static_cast<double>(time.cols()));
+          climbed(surface, c.i / static_cast<double>(F.rows() - 1), two_pi * c.j / static_cast<double>(F.cols()));
       if (candidate.max_abs > best.max_abs) {
         best = candidate;
         curvature = its_curvature;
       }
     }
-    if (H == size.size() || curvature < -2 * missing) return best;
+    if (!(missing > 0) || curvature < -2 * missing) return best;
   }
 }
 
