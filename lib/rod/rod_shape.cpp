@@ -330,8 +330,9 @@ RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, c
   const FourierSeries T = time_functions(link, rod, speed, q);
   RodShape result;
   result.deflection = peak(shape_table(l, I, shear_flexibility(link), x), T, 0);
+  const ShapeTable& of_moment = shape_table(l, I, 0, x);
   result.bending_moment =
-      peak(shape_table(l, I, 0, x), link.elastic->shear ? moment_functions(link, speed, q, T) : T, 2);
+      link.elastic->shear ? peak(of_moment, moment_functions(link, speed, q, T), 2) : peak(of_moment, T, 2);
   result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
   return result;
 }
