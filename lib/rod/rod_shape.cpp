@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "lib/constants.hpp"
+#include "lib/fourier/transpose.hpp"
 #include "lib/fourier/waves.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
@@ -375,13 +376,26 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
 
 namespace {
 
-// Time functions at any number of angles: harmonics are folded onto the grid by sampling a multiple of it.
+// Time functions at any number N of angles, where a harmonic k looks like k - N and its conjugate like N - k.
 Eigen::MatrixXd over_turn(const FourierSeries& functions, Eigen::Index num_samples) {
-  Eigen::Index multiple = 1;
-  while (multiple * num_samples < 2 * functions.num_harmonics() + 1) ++multiple;
-  Eigen::MatrixXd fine = fourier::synthesise(functions, multiple * num_samples);
-  if (multiple == 1) return fine;
-  return fine(Eigen::all, Eigen::seqN(0, num_samples, multiple));
+  const Eigen::Index N = num_samples, n = functions.num_components();
+  fourier::RealTransform& transform = fourier::thread_transform(N, n);
+  auto spectrum = transform.spectrum();
+  spectrum.setZero();
+  for (Eigen::Index k = 0; k <= functions.num_harmonics(); ++k) {
+    const Eigen::Index m = k % N;
+    const auto c = functions.c.col(k).transpose();
+    if (k > 0 && (m == 0 || 2 * m == N))
+      spectrum.row(m) += 2 * c.real();
+    else if (2 * m < N)
+      spectrum.row(m) += c;
+    else
+      spectrum.row(N - m) += c.conjugate();
+  }
+  transform.backward();
+  Eigen::MatrixXd samples(n, N);
+  fourier::transpose(transform.samples(), samples);
+  return samples;
 }
 
 // Of these time functions of the deflection.
