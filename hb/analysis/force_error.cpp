@@ -34,7 +34,7 @@ std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, co
 // Forces are linear in the deflections.
 Largest change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                const std::vector<LinkResponse>& better) {
-  constexpr double digits = 1e-5;
+  constexpr double digits = 1e-5;  // enough of an estimate
   const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
   Largest largest{0, bound(added.torque)};
   for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));

@@ -244,7 +244,7 @@ Extremum largest_length(const FourierSeries& series) {
     const Bounds r = f.above(K);
     const Bounds missing{2 * whole.f * r.f, 0, 2 * (whole.f2 * r.f + 2 * whole.f1 * r.f1 + whole.f * r.f2)};
     auto samples = f.samples(K, 2 * samples_per_wave);
-    samples.col(0) = samples.rowwise().squaredNorm();
+    samples.col(0) = samples.rowwise().squaredNorm();  // row by row in place
     peak = extremum(samples.col(0), 1, missing, at);
   }
   return {std::sqrt(peak->value), peak->crank_angle};

@@ -9,7 +9,6 @@
 // of the shapes without shear with p_i, the rotation of the sections, in place of q_i.
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <vector>
@@ -195,7 +194,7 @@ struct Summit {
 
 // Newton uphill from a grid point; the Hessian is shifted until it is negative definite and the step rises.
 Summit climbed(const Surface& surface, double s, double tau) {
-  constexpr double settled = 1e-7;  // of the last step, half of whose slope is left to rise
+  constexpr double settled = 1e-7;  // a last step, which rises by half of its slope
   Surface::Jet here = surface.at(s, tau);
   double shift = 0;
   for (int iteration = 0; iteration < 60; ++iteration) {
