@@ -14,11 +14,11 @@ namespace {
 FourierSeries at_speed(const std::array<FourierSeries, 3>& powers, Eigen::Index num_components, double speed) {
   Eigen::Index H = 0;
   for (const FourierSeries& series : powers) H = std::max(H, series.num_harmonics());
-  FourierSeries sum(num_components, H);
+  FourierSeries sum = powers[0].c.size() > 0 ? fourier::resized(powers[0], H) : FourierSeries(num_components, H);
   double factor = 1;
-  for (const FourierSeries& series : powers) {
-    if (series.c.size() > 0) sum.c.leftCols(series.c.cols()) += factor * series.c;
+  for (std::size_t p = 1; p < powers.size(); ++p) {
     factor *= speed;
+    if (powers[p].c.size() > 0) sum.c.leftCols(powers[p].c.cols()) += factor * powers[p].c;
   }
   return sum;
 }

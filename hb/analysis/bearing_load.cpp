@@ -24,21 +24,6 @@ Eigen::Map<const Eigen::MatrixXd> sampled(const FourierSeries& series, Eigen::In
   return {transform.samples().data(), N, series.num_components()};
 }
 
-}  // namespace
-
-Extremum largest_length(const FourierSeries& force) {
-  if (force.num_harmonics() < 0) return {};
-  if (force.num_components() == 1) return fourier::max_abs(force, 0);
-  // Its square has twice the harmonics.
-  const auto samples = sampled(force, fourier::fast_length(4 * force.num_harmonics() + 4));
-  const Eigen::MatrixXd square = samples.rowwise().squaredNorm().transpose();
-  Extremum peak = fourier::range(fourier::analyse(square), 0).max;
-  peak.value = std::sqrt(std::max(0.0, peak.value));
-  return peak;
-}
-
-namespace {
-
 // Mean of |f| over the turn from the integral F of f between its sign changes, each found by halving.
 double mean_of_modulus(const FourierSeries& f) {
   const auto at = [](const FourierSeries& series, double tau) { return fourier::evaluate(series, tau)(0); };
@@ -95,13 +80,16 @@ double rms_length(const FourierSeries& force) {
 
 }  // namespace
 
-std::vector<BearingLoad> bearing_loads(const JointForces& forces, int turns) {
+std::vector<BearingLoad> bearing_loads(const JointForces& forces, int turns, LoadDetail detail) {
   std::vector<BearingLoad> loads;
   for (const JointForce& joint : forces.joints) {
-    BearingLoad load{joint.name, largest_length(joint.rigid), largest_length(joint.elastic), 0, 0};
-    if (joint.elastic.num_harmonics() >= 0) {
-      load.mean = mean_length(joint.elastic);
-      load.rms = rms_length(joint.elastic);
+    BearingLoad load{joint.name, fourier::largest_length(joint.elastic), {}};
+    if (detail == LoadDetail::all) {
+      load.rigid = fourier::largest_length(joint.rigid);
+      if (joint.elastic.num_harmonics() >= 0) {
+        load.mean = mean_length(joint.elastic);
+        load.rms = rms_length(joint.elastic);
+      }
     }
     for (Extremum* peak : {&load.rigid, &load.elastic}) peak->crank_angle *= turns;
     loads.push_back(std::move(load));

@@ -21,11 +21,12 @@ double relative_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fin
 
 CutError cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                    const FourierSeries& finer) {
-  // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic.
-  const Eigen::Index num_x = std::max<Eigen::Index>(33, 4 * finer.num_components() + 1);
+  // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic. At joint 0
+  // both are zero.
+  const Eigen::Index num_x = std::max<Eigen::Index>(32, 4 * finer.num_components());
   const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
   const Eigen::Index num_samples = fourier::fast_length(4 * std::max<Eigen::Index>(16, harmonics));
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, 0, link.length);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, link.length / static_cast<double>(num_x), link.length);
   const RodField coarse = rod_field(link, rod, speed, q, x, num_samples);
   end_if_wished();
   const RodField fine = rod_field(link, rod, speed, finer, x, num_samples);

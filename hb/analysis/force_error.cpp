@@ -10,19 +10,34 @@ struct Largest {
   double force = 0, torque = 0;
 };
 
-// Bound on the largest value over the turn of a difference.
-double difference(const FourierSeries& a, const FourierSeries& b) {
-  const FourierSeries series = fourier::difference(a, b);
+// Bound on the largest value over the turn of any component.
+double bound(const FourierSeries& series) {
   double largest = 0;
   for (Eigen::Index c = 0; c < series.num_components(); ++c)
     largest = std::max(largest, fourier::wiener_norm(series, c));
   return largest;
 }
 
-Largest difference(const JointForces& a, const JointForces& b) {
-  Largest largest{0, difference(a.torque, b.torque)};
-  for (std::size_t j = 0; j < a.joints.size(); ++j)
-    largest.force = std::max(largest.force, difference(a.joints[j].elastic, b.joints[j].elastic));
+// What better responses, with as many modes or more, add to the deflections.
+std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, const std::vector<LinkResponse>& better) {
+  constexpr double small = 1e-10;  // harmonics that count for nothing, inertia with its k^2 included
+  std::vector<LinkResponse> changes;
+  for (std::size_t r = 0; r < responses.size(); ++r) {
+    const FourierSeries &q = responses[r].q, &better_q = better[r].q;
+    FourierSeries change = fourier::resized(better_q, std::max(q.num_harmonics(), better_q.num_harmonics()));
+    change.c.topLeftCorner(q.c.rows(), q.c.cols()) -= q.c;
+    changes.push_back({responses[r].link, fourier::resized(change, fourier::significant_harmonics(change, small))});
+  }
+  return changes;
+}
+
+// Forces are linear in the deflections.
+Largest change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
+               const std::vector<LinkResponse>& better) {
+  constexpr double digits = 1e-5;  // enough of an estimate
+  const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
+  Largest largest{0, bound(added.torque)};
+  for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));
   return largest;
 }
 
@@ -36,9 +51,9 @@ Largest sizes(const JointForces& forces) {
 
 // What the rods' deflection adds to the forces.
 Largest elastic_part(const JointForces& forces) {
-  Largest largest{0, difference(forces.torque, forces.torque_rigid)};
+  Largest largest{0, bound(fourier::difference(forces.torque, forces.torque_rigid))};
   for (const JointForce& joint : forces.joints)
-    largest.force = std::max(largest.force, difference(joint.elastic, joint.rigid));
+    largest.force = std::max(largest.force, bound(fourier::difference(joint.elastic, joint.rigid)));
   return largest;
 }
 
@@ -47,7 +62,8 @@ double relative(double error, double size) { return error == 0 ? 0 : error / siz
 }  // namespace
 
 ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces, double response_error,
-                         const std::vector<LinkResponse>& more_harmonics, const std::vector<LinkResponse>& more_modes) {
+                         const std::vector<LinkResponse>& responses, const std::vector<LinkResponse>& more_harmonics,
+                         const std::vector<LinkResponse>& more_modes) {
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
   const Largest size = sizes(forces);
@@ -55,14 +71,14 @@ ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces
   ForceErrors errors{forces.force_error + response_error * elastic.force,
                      forces.torque_error + response_error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
-    const Largest change = difference(forces, joint_forces(linkage, speed, more_harmonics));
-    errors.force += safety * change.force;
-    errors.torque += safety * change.torque;
+    const Largest more = change(linkage, speed, responses, more_harmonics);
+    errors.force += safety * more.force;
+    errors.torque += safety * more.torque;
   }
   if (!more_modes.empty()) {
-    const Largest change = difference(forces, joint_forces(linkage, speed, more_modes));
-    errors.force_cut = safety * change.force;
-    errors.torque_cut = safety * change.torque;
+    const Largest more = change(linkage, speed, responses, more_modes);
+    errors.force_cut = safety * more.force;
+    errors.torque_cut = safety * more.torque;
   }
   return {relative(errors.force, size.force), relative(errors.torque, size.torque),
           relative(errors.force_cut, size.force), relative(errors.torque_cut, size.torque)};

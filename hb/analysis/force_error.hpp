@@ -14,10 +14,11 @@ struct ForceErrors {
   double force_cut = 0, torque_cut = 0;  // from cutting the Ritz series
 };
 
-// `forces` belong to responses whose relative error is `response_error`; `more_harmonics` and `more_modes` are better
-// ones of the same rods; an empty list leaves its part out.
+// `forces` belong to `responses`, whose relative error is `response_error`; `more_harmonics` and `more_modes` are
+// better ones of the same rods; an empty list leaves its part out.
 [[nodiscard]] ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces,
-                                       double response_error, const std::vector<LinkResponse>& more_harmonics,
+                                       double response_error, const std::vector<LinkResponse>& responses,
+                                       const std::vector<LinkResponse>& more_harmonics,
                                        const std::vector<LinkResponse>& more_modes);
 
 }  // namespace hb

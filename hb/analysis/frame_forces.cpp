@@ -14,20 +14,6 @@ using Eigen::Index;
 
 double cross(Complex a, Complex b) { return (std::conj(a) * b).imag(); }
 
-struct Samples {
-  int link = 0;
-  Eigen::MatrixXd q, q1, q2;
-};
-
-std::vector<Samples> samples_of(const std::vector<LinkResponse>& responses, Index N) {
-  std::vector<Samples> samples;
-  for (const LinkResponse& response : responses)
-    samples.push_back({response.link, fourier::synthesise(response.q, N),
-                       fourier::synthesise(fourier::derivative(response.q), N),
-                       fourier::synthesise(fourier::derivative(response.q, 2), N)});
-  return samples;
-}
-
 // Force and moment about `origin` of one body's load.
 Eigen::Vector3d about(const BodyLoad& load, Complex joint0, Complex origin) {
   return {load.force.real(), load.force.imag(), load.moment + cross(joint0 - origin, load.force)};
@@ -48,7 +34,7 @@ FrameForces frame_forces(const Linkage& linkage, double speed, const std::vector
   const auto fill = [&](Eigen::MatrixXd& samples, Index begin, Index step) {
     const Index N = samples.cols();
     const Eigen::MatrixXd applied = slider_force_samples(linkage, N);
-    const std::vector<Samples> q = samples_of(responses, N);
+    const std::vector<DeflectionSamples> deflections = deflection_samples(linkage, responses, N);
     for (Index j = begin; j < N; j += step) {
       motion_at(linkage, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N), motion);
       rigid_loads(linkage, motion, applied.col(j), powers);
@@ -65,9 +51,9 @@ FrameForces frame_forces(const Linkage& linkage, double speed, const std::vector
         rigid -= about({force, 0}, motion[static_cast<std::size_t>(closing_index(static_cast<int>(d)))].z, origin);
       }
       Eigen::Vector3d elastic = rigid;
-      for (const Samples& r : q)
-        elastic -= about(elastic_load(linkage, motion, r.link, speed, r.q.col(j), r.q1.col(j), r.q2.col(j)),
-                         motion[static_cast<std::size_t>(r.link)].z, origin);
+      for (const DeflectionSamples& rod : deflections)
+        elastic -= about(deflection_load(linkage, motion, rod.link, speed, rod.integrals.col(j)),
+                         motion[static_cast<std::size_t>(rod.link)].z, origin);
       samples.col(j).head<3>() = rigid;
       samples.col(j).tail<3>() = elastic;
     }

@@ -234,7 +234,7 @@ void add_forces(const SceneModel& model, double speed, const Settings& settings,
     more_harmonics.push_back(
         {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
   result.force_errors =
-      force_errors(*model.linkage(), speed, *result.forces, response_error, more_harmonics, more_modes);
+      force_errors(*model.linkage(), speed, *result.forces, response_error, responses, more_harmonics, more_modes);
   stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
 }
 

@@ -27,14 +27,15 @@ void add_frame_errors(MachineLoads& loads, const Linkage& linkage) {
 
 // Each component of a joint's force may be wrong by its error. The energy is an integral of T less its mean over the
 // shorter of two ways round, at most pi of each turn, its largest and its smallest value wrong by no more than that.
-void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int turns, const ForceErrors& errors) {
+void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int turns, const ForceErrors& errors,
+               LoadDetail detail) {
   double largest = 0;
   for (const BearingLoad& load : loads.bearings) largest = std::max(largest, load.elastic.value);
   loads.bearing_error = std::sqrt(2.0) * (errors.force + errors.force_cut) * largest;
   loads.torque_error = (errors.torque + errors.torque_cut) * fourier::max_abs(forces.torque, 0).value;
   loads.energy_error = two_pi * turns * loads.torque_error;
   loads.drive = drive_of(forces.torque, speed, turns);
-  loads.drive_rigid = drive_of(forces.torque_rigid, speed, turns);
+  if (detail == LoadDetail::all) loads.drive_rigid = drive_of(forces.torque_rigid, speed, turns);
   if (!(loads.inertia > 0)) return;
   loads.speed_fluctuation = speed_fluctuation(loads.drive, loads.inertia, speed);
   loads.speed_fluctuation_error = loads.energy_error / (loads.inertia * speed * speed);
@@ -46,15 +47,15 @@ double crank_inertia(const Linkage& linkage) {
 }
 
 MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces,
-                           const std::vector<LinkResponse>& responses, const ForceErrors& errors) {
-  MachineLoads loads;
-  loads.bearings = bearing_loads(forces);
-  loads.frame = frame_forces(linkage, speed, responses);
-  loads.shaking_force = largest_length(force_of_frame(loads.frame.elastic));
-  loads.shaking_force_rigid = largest_length(force_of_frame(loads.frame.rigid));
-  loads.inertia = crank_inertia(linkage);
+                           const std::vector<LinkResponse>& responses, const ForceErrors& errors, LoadDetail detail) {
   constexpr int turns = 1;
-  add_drive(loads, forces, speed, turns, errors);
+  MachineLoads loads;
+  loads.bearings = bearing_loads(forces, turns, detail);
+  loads.frame = frame_forces(linkage, speed, responses);
+  loads.shaking_force = fourier::largest_length(force_of_frame(loads.frame.elastic));
+  if (detail == LoadDetail::all) loads.shaking_force_rigid = fourier::largest_length(force_of_frame(loads.frame.rigid));
+  loads.inertia = crank_inertia(linkage);
+  add_drive(loads, forces, speed, turns, errors, detail);
   add_frame_errors(loads, linkage);
   return loads;
 }

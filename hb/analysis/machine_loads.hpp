@@ -32,14 +32,17 @@ struct MachineLoads {
 
 // Fills drives, speed fluctuation and what the errors of joint forces and torque leave of bearings and drive, of forces
 // over `turns` turns. Needs bearings and inertia.
-void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int turns, const ForceErrors& errors);
+void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int turns, const ForceErrors& errors,
+               LoadDetail detail);
 
 // Moment of inertia of the crank about its pivot: what the torque's fluctuation accelerates.
 [[nodiscard]] double crank_inertia(const Linkage& linkage);
 
-// Of a linkage and its joint forces at this speed (rad per unit time).
+// Of a linkage and its joint forces at this speed (rad per unit time). `largest` leaves rigid loads and the bearings'
+// mean and rms at zero.
 [[nodiscard]] MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces,
-                                         const std::vector<LinkResponse>& responses, const ForceErrors& errors);
+                                         const std::vector<LinkResponse>& responses, const ForceErrors& errors,
+                                         LoadDetail detail = LoadDetail::all);
 // Empty where joint forces were not computed.
 [[nodiscard]] std::optional<MachineLoads> machine_loads(const SceneModel& model, const SpeedResult& result);
 

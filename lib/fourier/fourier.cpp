@@ -13,6 +13,8 @@
 #include "lib/constants.hpp"
 #include "lib/fourier/moduli.hpp"
 #include "lib/fourier/short_transform.hpp"
+#include "lib/fourier/transpose.hpp"
+#include "lib/fourier/waves.hpp"
 
 namespace hb::fourier {
 
@@ -23,122 +25,6 @@ std::mutex& planner_mutex() {
   return mutex;
 }
 
-// e^{i k tau}, k = 1, 2, ..., by multiplication, afresh every 16: 16 roundings at most.
-class Waves {
- public:
-  explicit Waves(double tau) : tau_(tau), step_(std::polar(1.0, tau)) {}
-  std::complex<double> next() {
-    ++k_;
-    power_ = k_ % 16 == 0 ? std::polar(1.0, static_cast<double>(k_) * tau_) : power_ * step_;
-    return power_;
-  }
-
- private:
-  double tau_;
-  std::complex<double> step_, power_ = 1;
-  Eigen::Index k_ = 0;
-};
-
-// e^{i k tau}-sums of one component: f, f', f'' at tau (real function from its half spectrum).
-struct Jet {
-  double f, f1, f2;
-};
-
-Jet jet(const FourierSeries& series, Eigen::Index component, double tau) {
-  Jet sum{series.c(component, 0).real(), 0, 0};
-  Waves wave(tau);
-  for (Eigen::Index k = 1; k <= series.num_harmonics(); ++k) {
-    const double n = static_cast<double>(k);
-    const std::complex<double> term = 2.0 * series.c(component, k) * wave.next();
-    sum.f += term.real();
-    sum.f1 -= n * term.imag();
-    sum.f2 -= n * n * term.real();
-  }
-  return sum;
-}
-
-double wrapped(double tau) {
-  tau = std::fmod(tau, two_pi);
-  if (tau < 0) tau += two_pi;
-  return tau < two_pi ? tau : 0.0;
-}
-
-// Newton on f' from the best sample; kept within one grid step, and only if the value improves.
-Extremum refined(const FourierSeries& series, Eigen::Index component, double tau, double step, double sign) {
-  Jet here = jet(series, component, tau);
-  Extremum best{here.f, wrapped(tau)};
-  const double start = tau;
-  for (int iteration = 0; iteration < 20; ++iteration) {
-    if (!(sign * here.f2 < 0)) break;
-    const double move = -here.f1 / here.f2;
-    if (!(std::abs(tau + move - start) <= step)) break;
-    tau += move;
-    here = jet(series, component, tau);
-    if (sign * here.f >= sign * best.value) best = {here.f, wrapped(tau)};
-    // The error is squared by each step, so that nothing is left to gain.
-    constexpr double small = 1e-8;
-    if (std::abs(move) < small) break;
-  }
-  return best;
-}
-
-// f and f'' of one component on a fine grid, a column each.
-Eigen::Map<const Eigen::MatrixXd> fine_samples(const FourierSeries& series, Eigen::Index component) {
-  // 8 points per shortest wave: the parabola through a sample extremum then leads Newton to the right one.
-  constexpr Eigen::Index fewest = 64;
-  const Eigen::Index N = fast_length(std::max(8 * (series.num_harmonics() + 1), fewest));
-  RealTransform& transform = thread_transform(N, 2);
-  auto spectrum = transform.spectrum();
-  spectrum.setZero();
-  for (Eigen::Index k = 0; k <= series.num_harmonics(); ++k) {
-    spectrum(k, 0) = series.c(component, k);
-    spectrum(k, 1) = -static_cast<double>(k * k) * series.c(component, k);
-  }
-  transform.backward();
-  return {transform.samples().data(), N, 2};
-}
-
-Extremum best_of(const FourierSeries& series, Eigen::Index component, const Eigen::Map<const Eigen::MatrixXd>& samples,
-                 double sign) {
-  const Eigen::Index N = samples.rows();
-  const double step = two_pi / static_cast<double>(N);
-  const double* f = samples.col(0).data();
-  const double* f2 = samples.col(1).data();
-  const double top = sign > 0 ? samples.col(0).maxCoeff() : -samples.col(0).minCoeff();
-  // Nothing lower than this can win, wherever it is: see below.
-  const double lowest = top - step * step / 4 * samples.col(1).cwiseAbs().maxCoeff();
-  Extremum best{-sign * HUGE_VAL, 0};
-  // Every local extremum of the samples that could still win: the true one lies half a step away at most and exceeds
-  // its sample by at most (step^2/8) max|f''|. Between samples an eighth of the shortest wave apart |f''| is at most
-  // 1/cos(pi/8) = 1.08 times the larger one for that wave; 2 is taken.
-  for (Eigen::Index j = 0; j < N; ++j) {
-    const double here = sign * f[j];
-    if (!(here >= lowest)) continue;
-    const Eigen::Index before = j == 0 ? N - 1 : j - 1, after = j == N - 1 ? 0 : j + 1;
-    if (!(here >= sign * f[after] && here >= sign * f[before])) continue;
-    const double reach = step * step / 8 * 2 * std::max({std::abs(f2[before]), std::abs(f2[j]), std::abs(f2[after])});
-    if (!(here + reach >= top)) continue;
-    const Extremum candidate = refined(series, component, step * static_cast<double>(j), step, sign);
-    if (sign * candidate.value > sign * best.value) best = candidate;
-  }
-  return best;
-}
-
-// to = from^T in tiles of a cache line: columns whose distance is a power of two would drive each other out of the
-// cache.
-template <class From, class To>
-void transpose(const From& from, To&& to) {
-  constexpr Eigen::Index tile = 8;
-  for (Eigen::Index first = 0; first < from.rows(); first += tile) {
-    const Eigen::Index count = std::min(tile, from.rows() - first);
-    if (from.cols() == 1)
-      to.row(0).segment(first, count) = from.col(0).segment(first, count).transpose();
-    else
-      for (Eigen::Index j = 0; j < from.cols(); ++j)
-        for (Eigen::Index i = first; i < first + count; ++i) to(j, i) = from(i, j);
-  }
-}
-
 }  // namespace
 
 FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
@@ -147,8 +33,10 @@ FourierSeries analyse(const Eigen::Ref<const Eigen::MatrixXd>& samples) {
   RealTransform& transform = thread_transform(N, n);
   transpose(samples, transform.samples());
   transform.forward();
-  FourierSeries series(n, (N - 1) / 2);
-  transpose(transform.spectrum().topRows(series.num_harmonics() + 1), series.c);
+  const Eigen::Index H = (N - 1) / 2;
+  FourierSeries series;
+  series.c.resize(n, H + 1);
+  transpose_singly(transform.spectrum().topRows(H + 1), series.c);
   return series;
 }
 
@@ -158,7 +46,7 @@ Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples
   RealTransform& transform = thread_transform(num_samples, series.num_components());
   auto spectrum = transform.spectrum();
   spectrum.bottomRows(spectrum.rows() - H - 1).setZero();
-  transpose(series.c, spectrum.topRows(H + 1));
+  transpose_singly(series.c, spectrum.topRows(H + 1));
   transform.backward();
   Eigen::MatrixXd samples(series.num_components(), num_samples);
   transpose(transform.samples(), samples);
@@ -166,16 +54,16 @@ Eigen::MatrixXd synthesise(const FourierSeries& series, Eigen::Index num_samples
 }
 
 FourierSeries derivative(const FourierSeries& series, int order) {
-  FourierSeries result(series.num_components(), series.num_harmonics());
+  const Eigen::Index n = series.num_components();
+  FourierSeries result;
+  result.c.resize(n, series.c.cols());
   const double sign = order % 4 < 2 ? 1 : -1;  // of i^order, or of i^(order - 1)
   for (Eigen::Index k = 0; k <= series.num_harmonics(); ++k) {
     double factor = sign;
     for (int j = 0; j < order; ++j) factor *= static_cast<double>(k);
-    if (order % 2 == 0) {
-      result.c.col(k) = factor * series.c.col(k);
-    } else {
-      result.c.col(k).real() = -factor * series.c.col(k).imag();
-      result.c.col(k).imag() = factor * series.c.col(k).real();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const std::complex<double> c = factor * series.c(i, k);
+      result.c(i, k) = order % 2 == 0 ? c : std::complex<double>(-c.imag(), c.real());
     }
   }
   return result;
@@ -192,9 +80,11 @@ Eigen::VectorXd evaluate(const FourierSeries& series, double tau) {
 }
 
 FourierSeries resized(const FourierSeries& series, Eigen::Index num_harmonics) {
-  FourierSeries result(series.num_components(), num_harmonics);
   const Eigen::Index kept = std::min(num_harmonics, series.num_harmonics()) + 1;
+  FourierSeries result;
+  result.c.resize(series.num_components(), num_harmonics + 1);
   result.c.leftCols(kept) = series.c.leftCols(kept);
+  result.c.rightCols(num_harmonics + 1 - kept).setZero();
   return result;
 }
 
@@ -223,17 +113,6 @@ Eigen::Index significant_harmonics(const FourierSeries& series, double relative)
   Eigen::Index H = series.num_harmonics();
   while (H > 0 && squares(H) <= floor) --H;
   return H;
-}
-
-Range range(const FourierSeries& series, Eigen::Index component) {
-  const Eigen::Map<const Eigen::MatrixXd> samples = fine_samples(series, component);
-  return {best_of(series, component, samples, -1), best_of(series, component, samples, +1)};
-}
-
-Extremum max_abs(const FourierSeries& series, Eigen::Index component) {
-  const Range r = range(series, component);
-  const Extremum& larger = std::abs(r.max.value) >= std::abs(r.min.value) ? r.max : r.min;
-  return {std::abs(larger.value), larger.crank_angle};
 }
 
 double wiener_norm(const FourierSeries& series, Eigen::Index component) {

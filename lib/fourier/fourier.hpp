@@ -62,12 +62,15 @@ namespace fourier {
 // `per_component`).
 [[nodiscard]] Eigen::Index significant_harmonics(const FourierSeries& series, double relative);
 
-// True extrema over the turn of one component: the largest and smallest sample of a fine grid, improved by
-// Newton on f' (error of the value: rounding). A constant gives the constant, at angle 0.
+// True extrema over the turn of one component (error of the value: rounding). A constant gives the constant, at angle
+// 0.
 [[nodiscard]] Range range(const FourierSeries& series, Eigen::Index component);
 
 // max |f| of one component over the turn, with its sign dropped.
 [[nodiscard]] Extremum max_abs(const FourierSeries& series, Eigen::Index component);
+
+// Largest length over the turn of the vector of all components; 0 of an empty series.
+[[nodiscard]] Extremum largest_length(const FourierSeries& series);
 
 // Upper bound of max_tau |f_i(tau)|: sum over all harmonics (both signs) of |c_k|.
 [[nodiscard]] double wiener_norm(const FourierSeries& series, Eigen::Index component);

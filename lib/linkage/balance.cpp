@@ -107,24 +107,25 @@ MechanismForces balance(const Linkage& linkage, const std::vector<BodyMotion>& m
   return forces;
 }
 
-BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
-                      const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Ref<const Eigen::VectorXd>& q1,
-                      const Eigen::Ref<const Eigen::VectorXd>& q2) {
+namespace {
+
+// int w dx and int x w dx of w = sin(i pi x/l):  (1 - (-1)^i) l/(i pi),  -(-1)^i l^2/(i pi).
+Eigen::Vector2d integrals_of_mode(double l, Eigen::Index i) {
+  const double i_pi = static_cast<double>(i) * std::numbers::pi;
+  const bool odd = i % 2 == 1;
+  return {odd ? 2 * l / i_pi : 0.0, (odd ? 1 : -1) * l * l / i_pi};
+}
+
+}  // namespace
+
+BodyLoad deflection_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
+                         const DeflectionIntegrals& at) {
   const Body& body = *body_at(linkage, link);
-  const BodyMotion& m = motion[at(link)];
-  const double l = body.length, mu = body.mass / l, Omega = speed;
+  const BodyMotion& m = motion[static_cast<std::size_t>(link)];
+  const double mu = body.mass / body.length, Omega = speed;
   const double c_x = body.elastic->damping_x, c_y = body.elastic->damping_y;
-  // Integrals over the rod of w, x w and their time derivatives:
-  //     int sin(i pi x/l) dx = (1 - (-1)^i) l / (i pi),   int x sin(i pi x/l) dx = -(-1)^i l^2 / (i pi).
-  double w = 0, w_t = 0, w_tt = 0, xw = 0, xw_t = 0, xw_tt = 0;
-  for (Eigen::Index k = 0; k < q.size(); ++k) {
-    const double i_pi = static_cast<double>(k + 1) * std::numbers::pi;
-    const bool odd = k % 2 == 0;
-    const double S0 = odd ? 2 * l / i_pi : 0.0, S1 = (odd ? 1 : -1) * l * l / i_pi;
-    w += S0 * q(k), w_t += S0 * q1(k), w_tt += S0 * q2(k);
-    xw += S1 * q(k), xw_t += S1 * q1(k), xw_tt += S1 * q2(k);
-  }
-  w_t *= Omega, xw_t *= Omega, w_tt *= Omega * Omega, xw_tt *= Omega * Omega;
+  const double w = at(0), w_t = Omega * at(2), w_tt = Omega * Omega * at(4);
+  const double xw = at(1), xw_t = Omega * at(3), xw_tt = Omega * Omega * at(5);
   const double phi_t = Omega * m.phi1, phi_tt = Omega * Omega * m.phi2;
 
   const double along = mu * (-2 * phi_t * w_t - phi_tt * w) - c_x * phi_t * w;
@@ -135,6 +136,38 @@ BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& mot
   const double p_x0 = mu * (linkage.gravity * m.e.imag() + a0x) + c_x * v0x;
   const double moment = mu * (xw_tt - phi_t * phi_t * xw) + c_y * xw_t - (p_x0 * w - mu * phi_t * phi_t * xw);
   return {m.e * Complex(along, across), moment};
+}
+
+BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
+                      const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Ref<const Eigen::VectorXd>& q1,
+                      const Eigen::Ref<const Eigen::VectorXd>& q2) {
+  const double l = body_at(linkage, link)->length;
+  DeflectionIntegrals sum = DeflectionIntegrals::Zero();
+  for (Eigen::Index i = 1; i <= q.size(); ++i) {
+    const Eigen::Vector2d of_mode = integrals_of_mode(l, i);
+    sum.segment<2>(0) += of_mode * q(i - 1);
+    sum.segment<2>(2) += of_mode * q1(i - 1);
+    sum.segment<2>(4) += of_mode * q2(i - 1);
+  }
+  return deflection_load(linkage, motion, link, speed, sum);
+}
+
+std::vector<DeflectionSamples> deflection_samples(const Linkage& linkage, const std::vector<LinkResponse>& responses,
+                                                  Eigen::Index num_samples) {
+  std::vector<DeflectionSamples> samples;
+  for (const LinkResponse& response : responses) {
+    const double l = body_at(linkage, response.link)->length;
+    const FourierSeries& q = response.q;
+    FourierSeries integrals(6, q.num_harmonics());
+    for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k) {
+      Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
+      for (Eigen::Index i = 1; i <= q.num_components(); ++i) sum += integrals_of_mode(l, i) * q.c(i - 1, k);
+      const double n = static_cast<double>(k);
+      integrals.c.col(k) << sum, Complex(0, n) * sum, -n * n * sum;
+    }
+    samples.push_back({response.link, fourier::synthesise(integrals, num_samples)});
+  }
+  return samples;
 }
 
 Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples) {

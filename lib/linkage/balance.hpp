@@ -20,6 +20,23 @@ void rigid_loads(const Linkage& linkage, const std::vector<BodyMotion>& motion,
 void balance(const Linkage& linkage, const std::vector<BodyMotion>& motion, std::vector<BodyLoad>& loads,
              MechanismForces& forces);
 
+// int w dx, int x w dx over an elastic link, then their first and their second derivatives over the crank angle.
+using DeflectionIntegrals = Eigen::Matrix<double, 6, 1>;
+
+// As elastic_load.
+[[nodiscard]] BodyLoad deflection_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link,
+                                       double speed, const DeflectionIntegrals& integrals);
+
+// Of one elastic link, a column per tau_j = 2 pi j / num_samples.
+struct DeflectionSamples {
+  int link = 0;
+  Eigen::MatrixXd integrals;  // 6 x num_samples
+};
+// Of all responses; needs num_samples > 2 num_harmonics.
+[[nodiscard]] std::vector<DeflectionSamples> deflection_samples(const Linkage& linkage,
+                                                                const std::vector<LinkResponse>& responses,
+                                                                Eigen::Index num_samples);
+
 // Applied slider forces, dyads x num_samples, at tau_j = 2 pi j / num_samples; needs
 // num_samples > 2 slider_force_harmonics.
 [[nodiscard]] Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples);

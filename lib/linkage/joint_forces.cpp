@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "lib/fourier/moduli.hpp"
 #include "lib/fourier/turn_sampling.hpp"
 #include "lib/linkage/balance.hpp"
 #include "lib/linkage/joint_rows.hpp"
@@ -14,21 +15,6 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Samples of q, q', q'' of one link, I x N each.
-struct ResponseSamples {
-  int link = 0;
-  Eigen::MatrixXd q, q1, q2;
-};
-
-std::vector<ResponseSamples> response_samples(const std::vector<LinkResponse>& responses, Eigen::Index N) {
-  std::vector<ResponseSamples> samples;
-  for (const LinkResponse& response : responses)
-    samples.push_back({response.link, fourier::synthesise(response.q, N),
-                       fourier::synthesise(fourier::derivative(response.q), N),
-                       fourier::synthesise(fourier::derivative(response.q, 2), N)});
-  return samples;
-}
-
 // Next to a resonance rigid forces are rounding beside elastic ones, and yet known: they have a group of their own.
 constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2;
 
@@ -37,7 +23,41 @@ constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2;
 double left_out(const TurnSeries& turn, Eigen::Index row) {
   const Eigen::Index size = turn.series.c.cols();
   const Eigen::Index length = std::min(turn.length[static_cast<std::size_t>(row)], size - size / 8);
-  return 4 * turn.series.c.row(row).tail(size - length).cwiseAbs().sum();
+  return 4 * fourier::moduli(turn.series.c.row(row).tail(size - length)).sum();
+}
+
+// Of one row, as it stands in JointForces: a guide has its normal force alone.
+Eigen::Index first_component(const JointRow& row) { return row.kind == JointRow::Kind::guide ? 1 : 0; }
+
+TurnSamplingOptions sampling_options(const Linkage& linkage, const std::vector<LinkResponse>& responses,
+                                     double tolerance) {
+  Eigen::Index H = slider_force_harmonics(linkage);
+  for (const LinkResponse& response : responses) H = std::max(H, response.q.num_harmonics());
+  TurnSamplingOptions options{.tolerance = tolerance};
+  while (options.first < 2 * H + 2) options.first *= 2;
+  options.last = std::max(options.last, 2 * options.first);
+  return options;
+}
+
+// Calls at(j) for those of the turn's samples that are asked for, with the motion at tau_j.
+template <class At>
+void along_turn(const Linkage& linkage, Eigen::Index N, Eigen::Index begin, Eigen::Index step,
+                std::vector<BodyMotion>& motion, const At& at) {
+  constexpr Eigen::Index often = 256;
+  for (Eigen::Index j = begin; j < N; j += step) {
+    if (j % often == begin) end_if_wished();
+    motion_at(linkage, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N), motion);
+    at(j);
+  }
+}
+
+void add_deflections(const Linkage& linkage, const std::vector<BodyMotion>& motion, double speed,
+                     const std::vector<DeflectionSamples>& deflections, Eigen::Index j, std::vector<BodyLoad>& loads) {
+  for (const DeflectionSamples& rod : deflections) {
+    const BodyLoad added = deflection_load(linkage, motion, rod.link, speed, rod.integrals.col(j));
+    loads[at(rod.link)].force += added.force;
+    loads[at(rod.link)].moment += added.moment;
+  }
 }
 
 }  // namespace
@@ -57,13 +77,9 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
   std::vector<BodyLoad> rigid, elastic;
   MechanismForces forces_rigid, forces;
   const auto fill = [&](Eigen::MatrixXd& samples, Eigen::Index begin, Eigen::Index step) {
-    const Eigen::Index N = samples.cols();
-    const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, N);
-    const std::vector<ResponseSamples> q = response_samples(responses, N);
-    constexpr Eigen::Index often = 256;
-    for (Eigen::Index j = begin; j < N; j += step) {
-      if (j % often == begin) end_if_wished();
-      motion_at(linkage, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N), motion);
+    const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, samples.cols());
+    const std::vector<DeflectionSamples> deflections = deflection_samples(linkage, responses, samples.cols());
+    along_turn(linkage, samples.cols(), begin, step, motion, [&](Eigen::Index j) {
       rigid_loads(linkage, motion, slider_forces.col(j), powers);
       rigid.resize(motion.size());
       for (std::size_t b = 0; b < motion.size(); ++b)
@@ -71,12 +87,8 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
                     powers[0][b].moment + speed * (powers[1][b].moment + speed * powers[2][b].moment)};
       elastic = rigid;
       balance(linkage, motion, rigid, forces_rigid);
-      if (!q.empty()) {
-        for (const ResponseSamples& r : q) {
-          const BodyLoad added = elastic_load(linkage, motion, r.link, speed, r.q.col(j), r.q1.col(j), r.q2.col(j));
-          elastic[at(r.link)].force += added.force;
-          elastic[at(r.link)].moment += added.moment;
-        }
+      if (!deflections.empty()) {
+        add_deflections(linkage, motion, speed, deflections, j, elastic);
         balance(linkage, motion, elastic, forces);
       } else {
         forces = forces_rigid;
@@ -87,21 +99,14 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
         samples.col(j).segment<4>(4 * i) << f_rigid.real(), f_rigid.imag(), f.real(), f.imag();
       }
       samples.col(j).tail<2>() << forces_rigid.torque, forces.torque;
-    }
+    });
   };
-
-  Eigen::Index H = slider_force_harmonics(linkage);
-  for (const LinkResponse& response : responses) H = std::max(H, response.q.num_harmonics());
-  TurnSamplingOptions options{.tolerance = tolerance};
-  while (options.first < 2 * H + 2) options.first *= 2;
-  options.last = std::max(options.last, 2 * options.first);
-  const TurnSeries turn = sample_turn(components, fill, options);
+  const TurnSeries turn = sample_turn(components, fill, sampling_options(linkage, responses, tolerance));
 
   JointForces result;
   for (Eigen::Index i = 0; i < num_rows; ++i) {
     const JointRow& row = rows[static_cast<std::size_t>(i)];
-    const bool normal_only = row.kind == JointRow::Kind::guide;
-    const Eigen::Index first = 4 * i + (normal_only ? 1 : 0), count = normal_only ? 1 : 2;
+    const Eigen::Index skipped = first_component(row), first = 4 * i + skipped, count = 2 - skipped;
     result.joints.push_back({row.name, cut_rows(turn, first, count), cut_rows(turn, first + 2, count)});
     for (Eigen::Index c = 0; c < count; ++c)
       result.force_error = std::max({result.force_error, left_out(turn, first + c), left_out(turn, first + 2 + c)});
@@ -109,6 +114,42 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
   result.torque_rigid = cut_rows(turn, 4 * num_rows, 1);
   result.torque = cut_rows(turn, 4 * num_rows + 1, 1);
   result.torque_error = std::max(left_out(turn, 4 * num_rows), left_out(turn, 4 * num_rows + 1));
+  return result;
+}
+
+// Sampled per crank angle: (x, y) of every row, then the torque.
+JointForces deflection_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
+                              double tolerance) {
+  const std::vector<JointRow> rows = joint_rows(linkage);
+  const auto num_rows = static_cast<Eigen::Index>(rows.size());
+  std::vector<TurnComponent> components(2 * rows.size(), TurnComponent{elastic_group, 1});
+  components.push_back({torque_group, 1});
+
+  std::vector<BodyMotion> motion;
+  std::vector<BodyLoad> loads;
+  MechanismForces forces;
+  const auto fill = [&](Eigen::MatrixXd& samples, Eigen::Index begin, Eigen::Index step) {
+    const std::vector<DeflectionSamples> deflections = deflection_samples(linkage, responses, samples.cols());
+    along_turn(linkage, samples.cols(), begin, step, motion, [&](Eigen::Index j) {
+      loads.assign(motion.size(), BodyLoad{});
+      add_deflections(linkage, motion, speed, deflections, j, loads);
+      balance(linkage, motion, loads, forces);
+      for (Eigen::Index i = 0; i < num_rows; ++i) {
+        const Complex f = resolved(rows[static_cast<std::size_t>(i)], forces, motion);
+        samples.col(j).segment<2>(2 * i) << f.real(), f.imag();
+      }
+      samples(2 * num_rows, j) = forces.torque;
+    });
+  };
+  const TurnSeries turn = sample_turn(components, fill, sampling_options(linkage, responses, tolerance));
+
+  JointForces result;
+  for (Eigen::Index i = 0; i < num_rows; ++i) {
+    const JointRow& row = rows[static_cast<std::size_t>(i)];
+    const Eigen::Index skipped = first_component(row);
+    result.joints.push_back({row.name, {}, cut_rows(turn, 2 * i + skipped, 2 - skipped)});
+  }
+  result.torque = cut_rows(turn, 2 * num_rows, 1);
   return result;
 }
 

@@ -82,4 +82,9 @@ struct JointForces {
 [[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                                        double tolerance = 1e-13);
 
+// What the deflections alone add, in the same way: `elastic` and `torque` less the rigid ones, which are empty. Linear
+// in the responses. Without errors.
+[[nodiscard]] JointForces deflection_forces(const Linkage& linkage, double speed,
+                                            const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
+
 }  // namespace hb

@@ -9,14 +9,16 @@
 // of the shapes without shear with p_i, the rotation of the sections, in place of q_i.
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 #include <vector>
 
 #include "lib/constants.hpp"
+#include "lib/fourier/transpose.hpp"
+#include "lib/fourier/waves.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
+#include "lib/rod/rod_shapes.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/stop_wish.hpp"
 #include "lib/workspace.hpp"
@@ -26,149 +28,6 @@ namespace hb {
 namespace {
 
 using Complex = std::complex<double>;
-
-// A(s) + Im( P(s) e^{iKs} ) on s = x/l in [0, 1].
-struct Shape {
-  std::array<double, 6> A{};
-  std::array<Complex, 3> P{};
-  double K = 0;
-
-  // `wave`: e^{iKs}.
-  double at(double s, Complex wave) const {
-    double a = 0;
-    for (std::size_t j = A.size(); j-- > 0;) a = a * s + A[j];
-    return a + ((P[0] + s * (P[1] + s * P[2])) * wave).imag();
-  }
-  double operator()(double s) const { return at(s, std::polar(1.0, K * s)); }
-};
-
-Shape derivative(const Shape& y) {
-  Shape d{.K = y.K};
-  for (std::size_t j = 0; j + 1 < y.A.size(); ++j) d.A[j] = static_cast<double>(j + 1) * y.A[j + 1];
-  for (std::size_t j = 0; j < 3; ++j)
-    d.P[j] = Complex(0, y.K) * y.P[j] + (j < 2 ? static_cast<double>(j + 1) * y.P[j + 1] : Complex(0));
-  return d;
-}
-
-// y - factor m.
-Shape less(Shape y, double factor, const Shape& m) {
-  for (std::size_t j = 0; j < y.A.size(); ++j) y.A[j] -= factor * m.A[j];
-  for (std::size_t j = 0; j < y.P.size(); ++j) y.P[j] -= factor * m.P[j];
-  return y;
-}
-
-// m'' = p with m(0) = m(1) = 0. Of the wave part, (P'' + 2iK P' - K^2 P) = R, highest power first; of the polynomial,
-// two integrations (its degree stays below 6); then the straight line that makes the ends zero.
-Shape integrated_twice(const Shape& p) {
-  Shape m{.K = p.K};
-  if (p.K > 0) {
-    for (std::size_t j = 3; j-- > 0;) {
-      const double n = static_cast<double>(j);
-      const Complex P1 = j < 2 ? (n + 1) * m.P[j + 1] : Complex(0);
-      const Complex P2 = j < 1 ? (n + 2) * (n + 1) * m.P[j + 2] : Complex(0);
-      m.P[j] = (P2 + Complex(0, 2 * p.K) * P1 - p.P[j]) / (p.K * p.K);
-    }
-  }
-  for (std::size_t j = 0; j + 2 < p.A.size(); ++j) m.A[j + 2] = p.A[j] / static_cast<double>((j + 1) * (j + 2));
-  m.A[0] = -m(0);
-  m.A[1] = -m(1);
-  return m;
-}
-
-// Shapes of the sum above and their derivatives, order 0..4, over x; flexibility = 1/S.
-class RodShapes {
- public:
-  RodShapes(double length, Eigen::Index num_modes, double flexibility = 0)
-      : l_(length), I_(num_modes), flexibility_(flexibility), tail_(num_modes, num_static()) {
-    add({.A = {-1}});
-    add({.A = {0, -l_}});
-    for (Eigen::Index k = 1; k <= I_; ++k) {
-      const double K = static_cast<double>(k) * pi;
-      // x w' = x K/l cos, (x w')' = (1/l) (K cos - K^2 s sin)
-      add({.P = {Complex(0, K / l_), Complex(-K * K / l_)}, .K = K});
-    }
-    for (Eigen::Index k = 1; k <= I_; ++k) {
-      const double K = static_cast<double>(k) * pi;
-      // -(x^2/2 w')' + w = (K^2 s^2/2 + 1) sin - K s cos
-      add({.P = {Complex(1), Complex(0, -K), Complex(K * K / 2)}, .K = K});
-    }
-    for (Eigen::Index i = 1; i <= I_; ++i) fill_sine_terms(i);
-  }
-
-  Eigen::Index size() const { return I_ + num_static(); }
-
-  // d^order/dx^order of every shape at x.
-  Eigen::RowVectorXd values(double x, int order) const { return values(x, order, 1); }
-
-  // Of `count` orders from the first, a row each.
-  Eigen::MatrixXd values(double x, int first, int count) const {
-    const double s = x / l_;
-    std::vector<Complex> wave(static_cast<std::size_t>(I_) + 1, Complex(1));  // e^{i k pi s}
-    for (Eigen::Index k = 1; k <= I_; ++k)
-      wave[static_cast<std::size_t>(k)] = std::polar(1.0, static_cast<double>(k) * pi * s);
-    Eigen::MatrixXd rows(count, size());
-    for (int r = 0; r < count; ++r) {
-      const int order = first + r;
-      const double factor = std::pow(l_, -order);
-      for (Eigen::Index k = 1; k <= I_; ++k) {
-        const Complex z = wave[static_cast<std::size_t>(k)];
-        const std::array<double, 4> cycle = {z.imag(), z.real(), -z.imag(), -z.real()};
-        rows(r, k - 1) =
-            factor * std::pow(static_cast<double>(k) * pi, order) * cycle[static_cast<std::size_t>(order % 4)];
-      }
-      // Two without a wave, then those of each mode twice.
-      for (Eigen::Index j = 0; j < num_static(); ++j)
-        rows(r, I_ + j) = factor * static_[static_cast<std::size_t>(j)][static_cast<std::size_t>(order)].at(
-                                       s, wave[static_cast<std::size_t>(j < 2 ? 0 : (j - 2) % I_ + 1)]);
-    }
-    rows.rightCols(num_static()) -= rows.leftCols(I_) * tail_;
-    return rows;
-  }
-
- private:
-  Eigen::Index num_static() const { return 2 + 2 * I_; }
-
-  // Static deflection under the load p(s) (per EJ): y'''' = l^4 p over s; that of shear is -y''/(S l^2).
-  void add(Shape p) {
-    const double l4 = std::pow(l_, 4);
-    for (double& a : p.A) a *= l4;
-    for (Complex& c : p.P) c *= l4;
-    std::array<Shape, 5> y;
-    y[2] = integrated_twice(p);
-    y[0] = integrated_twice(y[2]);
-    y[1] = derivative(y[0]);
-    y[3] = derivative(y[2]);
-    y[4] = p;
-    if (flexibility_ > 0) {
-      y[0] = less(y[0], flexibility_ / (l_ * l_), y[2]);
-      for (std::size_t order = 1; order < 5; ++order) y[order] = derivative(y[order - 1]);
-    }
-    static_.push_back(y);
-  }
-
-  // Row i: sine coefficient of each static load over (i pi/l)^4; the load's are -c_ik and h_i of (3.11), (3.12).
-  void fill_sine_terms(Eigen::Index i) {
-    const double n = static_cast<double>(i), stiffness = std::pow(n * pi / l_, 4);
-    auto row = tail_.row(i - 1);
-    row(0) = i % 2 == 1 ? -4 / (pi * n) : 0.0;
-    row(1) = (i % 2 == 1 ? -1 : 1) * 2 * l_ / (pi * n);
-    for (Eigen::Index k = 1; k <= I_; ++k) {
-      const double m = static_cast<double>(k);
-      const double a = i == k ? 0 : n * m * (1 / ((n - m) * (n - m)) + 1 / ((n + m) * (n + m)));
-      const bool odd = (i + k) % 2 == 1;
-      row(1 + k) = i == k ? -n * n * pi * pi / (2 * l_) : odd ? 2 * a / l_ : 0.0;
-      row(1 + I_ + k) = i == k ? 1.25 + n * n * pi * pi / 6 : odd ? -a : a;
-    }
-    row /= stiffness;
-    if (flexibility_ > 0) row *= 1 + flexibility_ * std::pow(n * pi / l_, 2);
-  }
-
-  double l_;
-  Eigen::Index I_;
-  double flexibility_;
-  Eigen::MatrixXd tail_;  // I x static shapes
-  std::vector<std::array<Shape, 5>> static_;
-};
 
 FourierSeries coefficients_at(const RodCoefficients& rod, double speed) {
   Eigen::Index H = 0;
@@ -182,10 +41,46 @@ FourierSeries coefficients_at(const RodCoefficients& rod, double speed) {
   return sum;
 }
 
+constexpr Eigen::Index samples_per_wave = 8;
+
 // Angles that transforms are fast for.
 Eigen::Index angles_from(Eigen::Index N) {
   constexpr Eigen::Index fewest = 64;
   return fourier::fast_length(std::max(N, fewest));
+}
+
+// f_3 q_k, then f_2 q_k, with all of their H harmonics.
+Eigen::Map<const Eigen::MatrixXcd> products_with(const FourierSeries& f, const FourierSeries& q, Eigen::Index H) {
+  const Eigen::Index I = q.num_components(), N = angles_from(2 * H + 2);
+  fourier::RealTransform& factors = fourier::thread_transform(N, I + 2);
+  auto spectrum = factors.spectrum();
+  spectrum.setZero();
+  spectrum.topLeftCorner(f.c.cols(), 2) = f.c.middleRows(2, 2).transpose();
+  spectrum.topRightCorner(q.c.cols(), I) = q.c.transpose();
+  factors.backward();
+  end_if_wished();
+  fourier::RealTransform& products = fourier::thread_transform(N, 2 * I);
+  const Eigen::MatrixXd samples = factors.samples();  // with two modes both transforms are the same
+  for (Eigen::Index k = 0; k < I; ++k) {
+    products.samples().col(k) = samples.col(1).cwiseProduct(samples.col(2 + k));
+    products.samples().col(I + k) = samples.col(0).cwiseProduct(samples.col(2 + k));
+  }
+  products.forward();
+  end_if_wished();
+  return {products.spectrum().data(), N / 2 + 1, 2 * I};
+}
+
+// Without harmonics that are rounding in every component.
+void drop_rounding(FourierSeries& T) {
+  constexpr double rounding = 1e-16;
+  const Eigen::Index n = T.num_components();
+  const Eigen::ArrayXXd parts =  // real and imaginary ones in turn
+      Eigen::Map<const Eigen::ArrayXXd>(reinterpret_cast<const double*>(T.c.data()), 2 * n, T.c.cols()).abs();
+  Eigen::ArrayXd floor = parts.rowwise().maxCoeff();
+  for (Eigen::Index i = 0; i < n; ++i) floor.segment<2>(2 * i) = rounding * floor.segment<2>(2 * i).maxCoeff();
+  Eigen::Index H = T.num_harmonics();
+  while (H > 0 && (parts.col(H) <= floor).all()) --H;
+  T.c.conservativeResize(Eigen::NoChange, H + 1);
 }
 
 // The time functions beside the shapes of the deflection, in their order.
@@ -193,26 +88,16 @@ FourierSeries time_functions(const Body& link, const RodCoefficients& rod, doubl
   const Eigen::Index I = q.num_components();
   const FourierSeries f = coefficients_at(rod, speed);
   const Eigen::Index H = q.num_harmonics() + f.num_harmonics();
-  const Eigen::Index N = angles_from(2 * H + 2);
-  const Eigen::MatrixXd f_samples = fourier::synthesise(f, N), q_samples = fourier::synthesise(q, N);
-  end_if_wished();
-  Eigen::MatrixXd products(2 * I, N);
-  products.topRows(I) = q_samples.array().rowwise() * f_samples.row(3).array();
-  products.bottomRows(I) = q_samples.array().rowwise() * f_samples.row(2).array();
-
-  end_if_wished();
-  FourierSeries T(3 * I + 2, H);
-  T.c.middleRows(I, 2) = fourier::resized(f, H).c.topRows(2);
-  T.c.bottomRows(2 * I) = fourier::resized(fourier::analyse(products), H).c;
-  for (Eigen::Index n = 0; n <= H; ++n)
-    T.c.col(n) /= Complex(1, static_cast<double>(n) * speed * link.elastic->internal_damping);
-  T.c.topRows(I) = fourier::resized(q, H).c;
-
-  Eigen::Index significant = 0;
-  end_if_wished();
-  for (Eigen::Index j = 0; j < T.num_components(); ++j)
-    significant = std::max(significant, fourier::significant_harmonics(FourierSeries(T.c.row(j)), 1e-16));
-  return fourier::resized(T, significant);
+  FourierSeries T;
+  T.c.resize(3 * I + 2, H + 1);
+  T.c.topRows(I + 2).setZero();
+  T.c.topLeftCorner(I, q.c.cols()) = q.c;
+  T.c.block(I, 0, 2, f.c.cols()) = f.c.topRows(2);
+  T.c.bottomRows(2 * I) = products_with(f, q, H).topRows(H + 1).transpose();
+  for (Eigen::Index n = 1; n <= H; ++n)
+    T.c.col(n).tail(2 * I + 2) *= 1.0 / Complex(1, static_cast<double>(n) * speed * link.elastic->internal_damping);
+  drop_rounding(T);
+  return T;
 }
 
 // Those beside the shapes of the bending moment: the sections' rotations for q.
@@ -235,6 +120,7 @@ struct ShapeTable {
   Eigen::VectorXd x;
   RodShapes shapes;
   Eigen::MatrixXd deflection, curvature;  // orders 0 and 2 at x
+  Eigen::RowVectorXd largest_deflection, largest_curvature;  // of each shape over x
 
   ShapeTable(double l, Eigen::Index I, double shear, const Eigen::Ref<const Eigen::VectorXd>& places)
       : length(l),
@@ -243,7 +129,9 @@ struct ShapeTable {
         x(places),
         shapes(l, I, shear),
         deflection(shape_matrix(shapes, x, 0)),
-        curvature(shape_matrix(shapes, x, 2)) {}
+        curvature(shape_matrix(shapes, x, 2)),
+        largest_deflection(deflection.cwiseAbs().colwise().maxCoeff()),
+        largest_curvature(curvature.cwiseAbs().colwise().maxCoeff()) {}
 };
 
 // Kept by each thread for the rods it met last. Valid until the next call.
@@ -273,19 +161,24 @@ struct Surface {
     Eigen::Matrix2d hessian;
   };
 
+  // With e^{ik tau} = c + i s and T_k = a + i b the terms of k are
+  //     2 (a c - b s),   -2 k (a s + b c),   -2 k^2 (a c - b s).
   Jet at(double s, double tau) const {
-    Eigen::MatrixXd time = Eigen::MatrixXd::Zero(T.num_components(), 3);  // T, T', T''
-    time.col(0) = T.c.col(0).real();
-    for (Eigen::Index k = 1; k <= T.num_harmonics(); ++k) {
-      const double n = static_cast<double>(k);
-      const Complex e = 2.0 * std::polar(1.0, n * tau);
-      for (Eigen::Index j = 0; j < T.num_components(); ++j) {
-        const Complex z = e * T.c(j, k);
-        time(j, 0) += z.real();
-        time(j, 1) -= n * z.imag();
-        time(j, 2) -= n * n * z.real();
-      }
+    const Eigen::Index n = T.num_components(), H = T.num_harmonics();
+    Eigen::Matrix<double, Eigen::Dynamic, 6> waves(H + 1, 6);  // 2 c, 2 s, times 1, k, k^2
+    waves.row(0) << 1, 0, 0, 0, 0, 0;
+    fourier::Waves next(tau);
+    for (Eigen::Index j = 1; j <= H; ++j) {
+      const double k = static_cast<double>(j);
+      const Complex e = 2.0 * next.next();
+      waves.row(j) << e.real(), e.imag(), k * e.real(), k * e.imag(), k * k * e.real(), k * k * e.imag();
     }
+    const Eigen::Map<const Eigen::MatrixXd> parts(reinterpret_cast<const double*>(T.c.data()), 2 * n, H + 1);
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> sums = parts * waves;
+    const Eigen::Map<const Eigen::Matrix<Complex, Eigen::Dynamic, 6>> z(reinterpret_cast<const Complex*>(sums.data()),
+                                                                        n, 6);
+    Eigen::Matrix<double, Eigen::Dynamic, 3> time(n, 3);  // T, T', T''
+    time << z.col(0).real() - z.col(1).imag(), -(z.col(3).real() + z.col(2).imag()), z.col(5).imag() - z.col(4).real();
     const Eigen::Matrix3d values = sign * shapes.values(s * l, order, 3) * time;
     const Eigen::RowVector3d F = values.row(0), F_s = l * values.row(1), F_ss = l * l * values.row(2);
     Jet jet{F(0), {F_s(0), F(1)}, {}};
@@ -294,8 +187,14 @@ struct Surface {
   }
 };
 
+struct Summit {
+  RodPeak peak;
+  double curvature;  // over the turn
+};
+
 // Newton uphill from a grid point; the Hessian is shifted until it is negative definite and the step rises.
-RodPeak climbed(const Surface& surface, double s, double tau) {
+Summit climbed(const Surface& surface, double s, double tau) {
+  constexpr double settled = 1e-7;  // a last step, which rises by half of its slope
   Surface::Jet here = surface.at(s, tau);
   double shift = 0;
   for (int iteration = 0; iteration < 60; ++iteration) {
@@ -307,8 +206,13 @@ RodPeak climbed(const Surface& surface, double s, double tau) {
     const double determinant = H.determinant();
     if (!(determinant > 0)) break;
     const Eigen::Vector2d step = -H.inverse() * here.gradient;
-    if (!(step.norm() > 1e-12)) break;
     const double s_next = std::clamp(s + step(0), 0.0, 1.0);
+    if (!(step.norm() > settled)) {
+      here.F += here.gradient.dot(step) / 2;
+      s = s_next;
+      tau += step(1);
+      break;
+    }
     const Surface::Jet next = surface.at(s_next, tau + step(1));
     if (next.F >= here.F) {
       s = s_next;
@@ -316,83 +220,107 @@ RodPeak climbed(const Surface& surface, double s, double tau) {
       here = next;
       shift = shift > 1e-6 * spread ? shift / 10 : 0;
     } else {
-      if (step.norm() < 1e-7) break;  // the value is flat to rounding
       shift = std::max(10 * shift, 0.1 * (std::abs(mean) + spread));
     }
   }
   tau = std::fmod(tau, 2 * pi);
-  return {here.F, s * surface.l, tau < 0 ? tau + 2 * pi : tau};
+  return {{here.F, s * surface.l, tau < 0 ? tau + 2 * pi : tau}, here.hessian(1, 1)};
 }
 
-// Largest |F| over rod and turn: local maxima of a grid with at least 8 points per wave that come within a tenth of the
-// best (a wave's top lies at most 8 % above its samples), each climbed.
-RodPeak peak(const ShapeTable& table, const FourierSeries& T, const Eigen::MatrixXd& time, int order) {
-  constexpr std::size_t most_candidates = 32;
-  const Eigen::VectorXd& x = table.x;
-  const double l = table.length;
-  const Eigen::Index num_x = x.size() - 1, N = time.cols();
-  end_if_wished();
-  thread_local Workspace surface_values;
-  Eigen::Map<Eigen::MatrixXd> F = surface_values.matrix(num_x + 1, N);
-  F.noalias() = (order == 0 ? table.deflection : table.curvature) * time;
-  end_if_wished();
-  const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
-  const Eigen::RowVectorXd highest = F.cwiseAbs().colwise().maxCoeff();
-  const double top = highest.maxCoeff();
-  if (!(top > 0)) return {};
+struct Candidate {
+  double size;
+  double i, j;  // where the parabolas through its neighbours are highest
+  double sign;
+};
 
-  struct Candidate {
-    double size;
-    Eigen::Index i, j;
-  };
+// Between -1/2 and 1/2: the vertex of the parabola through three samples, the middle one the largest.
+double vertex(double before, double here, double after) {
+  const double bend = before - 2 * here + after;
+  return bend < 0 ? (before - after) / (2 * bend) : 0;
+}
+
+// Local maxima of |F| over the grid, rod down and turn across, that are no lower than `least`; the highest first.
+std::vector<Candidate> candidates_of(const Eigen::Ref<const Eigen::MatrixXd>& F, double least) {
+  constexpr std::size_t most = 32;
+  const Eigen::Index num_x = F.rows() - 1, N = F.cols();
+  const auto size = [&F](Eigen::Index i, Eigen::Index j) { return std::abs(F(i, j)); };
+  const auto sign = [&F](Eigen::Index i, Eigen::Index j) { return F(i, j) > 0 ? 1.0 : -1.0; };
+  const Eigen::RowVectorXd highest = F.cwiseAbs().colwise().maxCoeff();
   std::vector<Candidate> candidates;
   for (Eigen::Index j = 0; j < N; ++j) {
-    if (!(highest(j) >= 0.9 * top)) continue;
+    if (!(highest(j) >= least)) continue;
     const Eigen::Index before = j == 0 ? N - 1 : j - 1, after = j == N - 1 ? 0 : j + 1;
     for (Eigen::Index i = 1; i < num_x; ++i) {
-      const double here = size(i, j);
-      if (here >= 0.9 * top && here >= size(i - 1, j) && here >= size(i + 1, j) && here >= size(i, before) &&
-          here > size(i, after))
-        candidates.push_back({here, i, j});
+      const double here = size(i, j), below = size(i - 1, j), above = size(i + 1, j);
+      const double earlier = size(i, before), later = size(i, after);
+      if (here >= least && here >= below && here >= above && here >= earlier && here > later)
+        candidates.push_back({here, static_cast<double>(i) + vertex(below, here, above),
+                              static_cast<double>(j) + vertex(earlier, here, later), sign(i, j)});
     }
   }
   if (candidates.empty()) {  // constant in time
     Eigen::Index i, j;
-    F.cwiseAbs().maxCoeff(&i, &j);
-    candidates.push_back({top, i, j});
+    const double top = F.cwiseAbs().maxCoeff(&i, &j);
+    candidates.push_back({top, static_cast<double>(i), static_cast<double>(j), sign(i, j)});
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& a, const Candidate& b) { return a.size > b.size; });
-  candidates.resize(std::min(candidates.size(), most_candidates));
+  candidates.resize(std::min(candidates.size(), most));
+  return candidates;
+}
 
-  RodPeak best;
-  for (const Candidate& c : candidates) {
-    const Surface surface{table.shapes, T, l, order, F(c.i, c.j) > 0 ? 1.0 : -1.0};
-    const RodPeak candidate = climbed(surface, x(c.i) / l, 2 * pi * static_cast<double>(c.j) / static_cast<double>(N));
-    if (candidate.max_abs > best.max_abs) best = candidate;
+// Bounds of the harmonics of |F| over the rod, k = 1..H, from the largest value of each shape.
+Eigen::ArrayXd harmonic_sizes(const Eigen::RowVectorXd& largest, const FourierSeries& T) {
+  const auto c = T.c.rightCols(T.num_harmonics());
+  return 2 * (largest * (c.real().cwiseAbs() + c.imag().cwiseAbs())).transpose().array();
+}
+
+// Largest |F| over rod and turn: local maxima of a grid with at least 8 points per wave that come within a tenth of the
+// best (a wave's top lies at most 8 % above its samples), each climbed. The grid leaves out harmonics that make up a
+// small share of F'' over the turn: the more, the flatter the highest one turns out.
+RodPeak peak(const ShapeTable& table, const FourierSeries& T, int order) {
+  const Eigen::VectorXd& x = table.x;
+  const double l = table.length;
+  const Eigen::ArrayXd size = harmonic_sizes(order == 0 ? table.largest_deflection : table.largest_curvature, T);
+  const Eigen::ArrayXd bend = size * Eigen::ArrayXd::LinSpaced(size.size(), 1, size.size()).square();
+  thread_local Workspace surface_values;
+  for (double share = 1e-2;; share *= share) {
+    Eigen::Index H = size.size();
+    double missing = 0;
+    while (H > 0 && missing + bend(H - 1) <= share * bend.sum()) missing += bend(--H);
+    const Eigen::MatrixXd time = fourier::synthesise(fourier::resized(T, H), angles_from(samples_per_wave * (H + 1)));
+    end_if_wished();
+    Eigen::Map<Eigen::MatrixXd> F = surface_values.matrix(x.size(), time.cols());
+    F.noalias() = (order == 0 ? table.deflection : table.curvature) * time;
+    end_if_wished();
+    const double top = F.cwiseAbs().maxCoeff();
+    if (!(top > 0)) return {};
+    RodPeak best;
+    double curvature = 0;
+    for (const Candidate& c : candidates_of(F, 0.9 * top - size.tail(size.size() - H).sum())) {
+      const Surface surface{table.shapes, T, l, order, c.sign};
+      const auto [candidate, its_curvature] =
+          climbed(surface, c.i / static_cast<double>(F.rows() - 1), two_pi * c.j / static_cast<double>(F.cols()));
+      if (candidate.max_abs > best.max_abs) {
+        best = candidate;
+        curvature = its_curvature;
+      }
+    }
+    if (!(missing > 0) || curvature < -2 * missing) return best;
   }
-  return best;
 }
 
-}  // namespace
-
-namespace {
-
-// 8 a wave.
+// Twice as many as `samples_per_wave` asks for.
 Eigen::VectorXd places_along(double l, Eigen::Index I) {
-  return Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, 8 * I) + 1, 0, l);
-}
-Eigen::MatrixXd over_turn_finely(const FourierSeries& T) {
-  return fourier::synthesise(T, angles_from(8 * (T.num_harmonics() + 1)));
+  return Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, samples_per_wave * I) + 1, 0, l);
 }
 
 }  // namespace
 
 RodPeak largest_deflection(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
   const Eigen::Index I = q.num_components();
-  const FourierSeries T = time_functions(link, rod, speed, q);
   const ShapeTable& table = shape_table(link.length, I, shear_flexibility(link), places_along(link.length, I));
-  return peak(table, T, over_turn_finely(T), 0);
+  return peak(table, time_functions(link, rod, speed, q), 0);
 }
 
 RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
@@ -400,15 +328,11 @@ RodShape rod_shape(const Body& link, const RodCoefficients& rod, double speed, c
   const double l = link.length;
   const Eigen::VectorXd x = places_along(l, I);
   const FourierSeries T = time_functions(link, rod, speed, q);
-  const Eigen::MatrixXd time = over_turn_finely(T);
   RodShape result;
-  result.deflection = peak(shape_table(l, I, shear_flexibility(link), x), T, time, 0);
-  if (link.elastic->shear) {
-    const FourierSeries rotation = moment_functions(link, speed, q, T);
-    result.bending_moment = peak(shape_table(l, I, 0, x), rotation, over_turn_finely(rotation), 2);
-  } else {
-    result.bending_moment = peak(shape_table(l, I, 0, x), T, time, 2);
-  }
+  result.deflection = peak(shape_table(l, I, shear_flexibility(link), x), T, 0);
+  const ShapeTable& of_moment = shape_table(l, I, 0, x);
+  result.bending_moment =
+      link.elastic->shear ? peak(of_moment, moment_functions(link, speed, q, T), 2) : peak(of_moment, T, 2);
   result.bending_moment.max_abs *= link.elastic->youngs_modulus * link.elastic->second_moment;
   return result;
 }
@@ -451,12 +375,26 @@ RodFunctional rod_functional(const Body& link, const RodCoefficients& rod, doubl
 
 namespace {
 
-// Time functions at any number of angles: harmonics are folded onto the grid by sampling a multiple of it.
+// Time functions at any number N of angles, where a harmonic k looks like k - N and its conjugate like N - k.
 Eigen::MatrixXd over_turn(const FourierSeries& functions, Eigen::Index num_samples) {
-  Eigen::Index multiple = 1;
-  while (multiple * num_samples < 2 * functions.num_harmonics() + 1) ++multiple;
-  const Eigen::MatrixXd fine = fourier::synthesise(functions, multiple * num_samples);
-  return fine(Eigen::all, Eigen::seqN(0, num_samples, multiple));
+  const Eigen::Index N = num_samples, n = functions.num_components();
+  fourier::RealTransform& transform = fourier::thread_transform(N, n);
+  auto spectrum = transform.spectrum();
+  spectrum.setZero();
+  for (Eigen::Index k = 0; k <= functions.num_harmonics(); ++k) {
+    const Eigen::Index m = k % N;
+    const auto c = functions.c.col(k).transpose();
+    if (k > 0 && (m == 0 || 2 * m == N))
+      spectrum.row(m) += 2 * c.real();
+    else if (2 * m < N)
+      spectrum.row(m) += c;
+    else
+      spectrum.row(N - m) += c.conjugate();
+  }
+  transform.backward();
+  Eigen::MatrixXd samples(n, N);
+  fourier::transpose(transform.samples(), samples);
+  return samples;
 }
 
 // Of these time functions of the deflection.
@@ -480,7 +418,8 @@ RodField rod_field(const Body& link, const RodCoefficients& rod, double speed, c
   RodField field;
   field.w = shape_table(link.length, I, shear_flexibility(link), x).deflection * time;
   if (link.elastic->shear) time = over_turn(moment_functions(link, speed, q, T), num_samples);
-  field.bending_moment = EJ * (shape_table(link.length, I, 0, x).curvature * time);
+  time *= EJ;
+  field.bending_moment = shape_table(link.length, I, 0, x).curvature * time;
   return field;
 }
 

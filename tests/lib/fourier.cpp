@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <set>
+#include <vector>
 
 #include "lib/constants.hpp"
 
@@ -84,6 +86,53 @@ TEST(Fourier, RangeChoosesTheHigherOfTwoNearlyEqualPeaks) {
   const Extremum peak = fourier::max_abs(series, 0);
   EXPECT_NEAR(peak.value, 1 + 1e-6, 100 * eps);
   EXPECT_NEAR(peak.crank_angle, t0, 1e-7);
+}
+
+// From nearly one wave to hundreds, with and without a large mean and small fast waves.
+std::vector<FourierSeries> functions_of_all_kinds(Eigen::Index num_components) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> phase(-pi, pi);
+  std::vector<FourierSeries> functions;
+  for (const double ratio : {0.05, 0.4, 0.8, 0.97})
+    for (const double mean : {0.0, 3.0, 1e6})
+      for (const double ripple : {0.0, 1e-9, 1e-5, 1e-2}) {
+        FourierSeries f(num_components, 250);
+        for (Eigen::Index i = 0; i < num_components; ++i) {
+          f.c(i, 0) = mean;
+          for (Eigen::Index k = 1; k <= 250; ++k) f.c(i, k) = std::polar(std::pow(ratio, double(k)), phase(random));
+          f.c(i, 101) += std::polar(ripple, phase(random));
+        }
+        functions.push_back(f);
+      }
+  return functions;
+}
+
+TEST(Fourier, ExtremaAreNoLowerThanAnySampleAndLieWhereTheDerivativeVanishes) {
+  for (const FourierSeries& f : functions_of_all_kinds(1)) {
+    const FourierSeries slope = fourier::derivative(f), bend = fourier::derivative(f, 2);
+    const Eigen::RowVectorXd samples = fourier::synthesise(f, 1 << 15).row(0);
+    const Range range = fourier::range(f, 0);
+    const double rounding = 100 * eps * fourier::wiener_norm(f, 0);
+    EXPECT_GE(range.max.value, samples.maxCoeff() - rounding);
+    EXPECT_LE(range.min.value, samples.minCoeff() + rounding);
+    for (const Extremum& place : {range.min, range.max}) {
+      EXPECT_NEAR(place.value, fourier::evaluate(f, place.crank_angle)(0), rounding);
+      const double error =
+          fourier::evaluate(slope, place.crank_angle)(0) / fourier::evaluate(bend, place.crank_angle)(0);
+      EXPECT_LE(std::abs(error), 1e-10);
+    }
+  }
+}
+
+TEST(Fourier, LargestLengthIsNoLowerThanThatOfAnySample) {
+  for (const FourierSeries& f : functions_of_all_kinds(2)) {
+    const double sampled = fourier::synthesise(f, 1 << 15).colwise().norm().maxCoeff();
+    const Extremum peak = fourier::largest_length(f);
+    EXPECT_GE(peak.value, sampled * (1 - 100 * eps));
+    EXPECT_LE(peak.value, sampled * (1 + 1e-4));
+    EXPECT_NEAR(peak.value, fourier::evaluate(f, peak.crank_angle).norm(), 100 * eps * peak.value);
+  }
+  EXPECT_EQ(fourier::largest_length(FourierSeries()).value, 0);
 }
 
 TEST(Fourier, SumsDifferencesAndMeansOfProductsAreThoseOfTheFunctions) {

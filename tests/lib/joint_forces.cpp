@@ -85,6 +85,31 @@ TEST(JointForces, ErrorOfSamplingCoversTheTrueOne) {
   }
 }
 
+TEST(JointForces, ThoseOfTheDeflectionsAreWhatElasticOnesHaveMoreThanRigidOnes) {
+  const Linkage linkage = six_link::linkage({.J = 45.0});
+  const double Omega = 31.4;
+  std::vector<LinkResponse> responses;
+  for (const int link : elastic_links(linkage)) {
+    FourierSeries q(3, 5);
+    for (Eigen::Index k = 0; k <= 5; ++k)
+      for (Eigen::Index i = 0; i < 3; ++i) q.c(i, k) = std::polar(k == 0 ? 0.5 : 1.0, double(k * (i + link)));
+    for (Eigen::Index i = 0; i < 3; ++i) q.c(i, 0) = q.c(i, 0).real();
+    responses.push_back({link, q});
+  }
+  const JointForces all = joint_forces(linkage, Omega, responses);
+  const JointForces added = deflection_forces(linkage, Omega, responses);
+  const auto samples = [](const FourierSeries& series) { return fourier::synthesise(series, 1024); };
+  ASSERT_EQ(added.joints.size(), all.joints.size());
+  for (std::size_t j = 0; j < all.joints.size(); ++j) {
+    const Eigen::MatrixXd expected = samples(all.joints[j].elastic) - samples(all.joints[j].rigid);
+    const double size = samples(all.joints[j].elastic).cwiseAbs().maxCoeff();
+    EXPECT_LE((samples(added.joints[j].elastic) - expected).cwiseAbs().maxCoeff(), 1e-11 * size) << all.joints[j].name;
+    EXPECT_GT(expected.cwiseAbs().maxCoeff(), 1e-3 * size);
+  }
+  const Eigen::MatrixXd torque = samples(all.torque) - samples(all.torque_rigid);
+  EXPECT_LE((samples(added.torque) - torque).cwiseAbs().maxCoeff(), 1e-11 * samples(all.torque).cwiseAbs().maxCoeff());
+}
+
 // Beside responses of 1e14 times their size rigid forces counted as rounding, and were 0.
 TEST(JointForces, RigidOnesAreTheSameBesideAnyResponse) {
   const Linkage linkage = six_link::linkage({.J = 45.0});

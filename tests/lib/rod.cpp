@@ -178,6 +178,23 @@ TEST(RodShape, ShapeSatisfiesThePinnedEnds) {
   }
 }
 
+TEST(RodShape, FieldsAtFewAnglesAreThoseOfMany) {
+  const LinkageCoefficients coefficients = linkage_coefficients(six_link::linkage());
+  const Body& rod = rod_AB();
+  const FourierSeries q = dense_steady_state(ritz_system(rod, coefficients.rods[0], 3), 100, 20);
+  const Eigen::Vector2d x(rod.length / 3, rod.length / 2);
+  constexpr Eigen::Index many = 2 * 2 * 3 * 5 * 7;
+  const RodField all = rod_field(rod, coefficients.rods[0], 100, q, x, many);
+  for (const Eigen::Index few : {1, 2, 3, 4, 5, 6, 7, 10, 14, 42, 84}) {
+    const RodField field = rod_field(rod, coefficients.rods[0], 100, q, x, few);
+    const auto same = Eigen::seqN(0, few, many / few);
+    EXPECT_LE((field.w - all.w(Eigen::all, same)).cwiseAbs().maxCoeff(), 1e-14 * all.w.cwiseAbs().maxCoeff()) << few;
+    EXPECT_LE((field.bending_moment - all.bending_moment(Eigen::all, same)).cwiseAbs().maxCoeff(),
+              1e-13 * all.bending_moment.cwiseAbs().maxCoeff())
+        << few;
+  }
+}
+
 TEST(RodShape, PeaksAreTrueMaximaOfTheField) {
   const Linkage six = six_link::linkage();
   const LinkageCoefficients coefficients = linkage_coefficients(six);

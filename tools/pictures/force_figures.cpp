@@ -34,7 +34,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> groups_of(const Li
 
 // Both axes from -limit to limit, so that a turn of the force is a turn in the picture.
 std::string square_axes(const JointForce& joint, double factor) {
-  const double limit = 1.1 * factor * std::max(largest_length(joint.elastic).value, largest_length(joint.rigid).value);
+  const double limit =
+      1.1 * factor * std::max(fourier::largest_length(joint.elastic).value, fourier::largest_length(joint.rigid).value);
   if (!(limit > 0)) return "set xrange [-1:1]\nset yrange [-1:1]\n";
   return fmt::format("set xrange [{0}:{1}]\nset yrange [{0}:{1}]\nset xtics nice({1}/2)\nset ytics nice({1}/2)\n",
                      -limit, limit);

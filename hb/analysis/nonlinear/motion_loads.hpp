@@ -9,6 +9,7 @@
 namespace hb {
 
 // Crank angles over the motion's turns. Empty where joint forces were not computed.
-[[nodiscard]] std::optional<MachineLoads> machine_loads(const Linkage& linkage, const NonlinearResult& result);
+[[nodiscard]] std::optional<MachineLoads> machine_loads(const Linkage& linkage, const NonlinearResult& result,
+                                                        LoadDetail detail = LoadDetail::all);
 
 }  // namespace hb

@@ -359,7 +359,8 @@ class Sweeper {
           if (shape)
             point.loads.push_back({rod.shape->deflection.max_abs, rod.shape->bending_moment.max_abs, rod.peak_errors,
                                    *rod.stress, rod.cycle});
-        if (const std::optional<MachineLoads> loads = machine_loads(*place.model->linkage(), answer)) {
+        if (const std::optional<MachineLoads> loads =
+                machine_loads(*place.model->linkage(), answer, LoadDetail::largest)) {
           result_.joints.clear();
           for (const BearingLoad& load : loads->bearings) result_.joints.push_back(load.joint);
           point.machine = machine_point(*loads, answer.speed);

@@ -149,9 +149,9 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
     response_error = std::max(response_error, point.rods[r].error_bound);
   }
   JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
-  point.force_errors = compared || solved.empty()
-                           ? force_errors(*model.linkage(), point.speed, forces, response_error, {}, more_modes)
-                           : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
+  point.force_errors = compared || solved.empty() ? force_errors(*model.linkage(), point.speed, forces, response_error,
+                                                                 responses, {}, more_modes)
+                                                  : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   for (const JointForce& joint : forces.joints) {
     for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
       point.joints.push_back(turn_range(joint.elastic, c));
@@ -160,8 +160,9 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
   }
   point.torque = turn_range(forces.torque, 0);
   point.torque_rigid = turn_range(forces.torque_rigid, 0);
-  point.machine =
-      machine_point(machine_loads(*model.linkage(), point.speed, forces, responses, *point.force_errors), point.speed);
+  point.machine = machine_point(
+      machine_loads(*model.linkage(), point.speed, forces, responses, *point.force_errors, LoadDetail::largest),
+      point.speed);
   return forces;
 }
 

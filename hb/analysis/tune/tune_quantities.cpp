@@ -75,7 +75,7 @@ JointForces forces_of(const SceneModel& model, double speed, const std::vector<F
 JointQuantities joint_quantities(const JointForces& forces) {
   JointQuantities result;
   for (const JointForce& joint : forces.joints) {
-    const Extremum peak = largest_length(joint.elastic);
+    const Extremum peak = fourier::largest_length(joint.elastic);
     result.names.push_back(joint.name);
     result.force.push_back(peak.value);
     result.at.push_back(peak.crank_angle);

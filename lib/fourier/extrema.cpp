@@ -1,0 +1,253 @@
+// Extrema over the turn: each sample of a grid that may be next to the highest one is improved on the function itself.
+// The grid is that of the harmonics which nearly all of the curvature is made of; what the others add is bounded.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <optional>
+
+#include "lib/constants.hpp"
+#include "lib/fourier/fourier.hpp"
+#include "lib/workspace.hpp"
+
+namespace hb::fourier {
+
+namespace {
+
+using Eigen::Index;
+using Samples = Eigen::Ref<const Eigen::VectorXd>;
+
+// A function and its derivatives at one angle.
+struct Jet {
+  double f, f1, f2, f3;
+};
+
+// Bounds over the turn of a function and of its derivatives.
+struct Bounds {
+  double f = 0, f1 = 0, f2 = 0;
+};
+
+// Components of a series, the harmonics of each after each other:  f = a + Re sum_k 2 c_k e^{ik tau}.
+class Components {
+ public:
+  // Until `memory` is used again.
+  Components(const FourierSeries& series, Index first, Index count, Workspace& memory)
+      : H_(series.num_harmonics()),
+        a_(series.c.col(0).segment(first, count).real()),
+        parts_(memory.matrix((H_ + lanes - 1) / lanes * lanes, 2 * count + 1)) {
+    parts_.bottomRows(parts_.rows() - H_).setZero();
+    auto size = parts_.rightCols<1>();
+    size.setZero();
+    for (Index i = 0; i < count; ++i) {
+      double *re = parts_.col(2 * i).data(), *im = parts_.col(2 * i + 1).data();
+      for (Index k = 0; k < H_; ++k) {
+        re[k] = 2 * series.c(first + i, k + 1).real();
+        im[k] = 2 * series.c(first + i, k + 1).imag();
+      }
+      size += parts_.col(2 * i).cwiseAbs() + parts_.col(2 * i + 1).cwiseAbs();
+    }
+  }
+
+  double mean(Index i) const { return a_(i); }
+
+  Jet at(Index i, double tau) const {
+    using Lanes = Eigen::Array<double, lanes, 1>;
+    constexpr Index afresh = 16;  // blocks: powers by multiplication lose an eps at each
+    const std::complex<double> e1 = std::polar(1.0, tau), e2 = e1 * e1, e3 = e2 * e1, e4 = e2 * e2;
+    const Lanes c0(e1.real(), e2.real(), e3.real(), e4.real()), s0(e1.imag(), e2.imag(), e3.imag(), e4.imag());
+    Lanes c = c0, s = s0, n(1, 2, 3, 4), f = Lanes::Zero(), f1 = f, f2 = f, f3 = f;
+    for (Index first = 0; first < parts_.rows(); first += lanes) {
+      if (first > 0 && first % (afresh * lanes) == 0) {
+        const std::complex<double> e = std::polar(1.0, static_cast<double>(first) * tau);
+        c = e.real() * c0 - e.imag() * s0;
+        s = e.real() * s0 + e.imag() * c0;
+      }
+      const Lanes re = Lanes::Map(&parts_(first, 2 * i)), im = Lanes::Map(&parts_(first, 2 * i + 1));
+      const Lanes x = re * c - im * s, y = n * (re * s + im * c), z = n * n;
+      f += x;
+      f1 -= y;
+      f2 -= z * x;
+      f3 += z * y;
+      const Lanes turned = e4.real() * c - e4.imag() * s;
+      s = e4.real() * s + e4.imag() * c;
+      c = turned;
+      n += static_cast<double>(lanes);
+    }
+    return {a_(i) + f.sum(), f1.sum(), f2.sum(), f3.sum()};
+  }
+
+  // Of all components together and their harmonics above K.
+  Bounds above(Index K) const {
+    Bounds sum;
+    for (Index k = K; k < H_; ++k) {
+      const double n = static_cast<double>(k + 1), size = parts_(k, parts_.cols() - 1);
+      sum.f += size;
+      sum.f1 += n * size;
+      sum.f2 += n * n * size;
+    }
+    return sum;
+  }
+  Bounds whole() const {
+    Bounds bounds = above(0);
+    bounds.f += a_.cwiseAbs().sum();
+    return bounds;
+  }
+
+  // The fewest harmonics that leave at most this share of the bound of f''.
+  Index enough(double share) const {
+    const double most = share * above(0).f2;
+    double left = 0;
+    Index K = H_;
+    for (; K > 0; --K) {
+      const double n = static_cast<double>(K);
+      left += n * n * parts_(K - 1, parts_.cols() - 1);
+      if (!(left <= most)) break;
+    }
+    return K;
+  }
+
+  // With the harmonics up to K, N x components; until the thread's next transform.
+  Eigen::Map<Eigen::MatrixXd> samples(Index K, Index samples_per_wave) const {
+    constexpr Index fewest = 16;
+    const Index N = fast_length(std::max(samples_per_wave * (K + 1), fewest));
+    RealTransform& transform = thread_transform(N, a_.size());
+    auto spectrum = transform.spectrum();
+    spectrum.bottomRows(spectrum.rows() - K - 1).setZero();
+    for (Index i = 0; i < a_.size(); ++i) {
+      spectrum(0, i) = a_(i);
+      for (Index k = 0; k < K; ++k) spectrum(k + 1, i) = {0.5 * parts_(k, 2 * i), 0.5 * parts_(k, 2 * i + 1)};
+    }
+    transform.backward();
+    return transform.samples();
+  }
+
+ private:
+  static constexpr Index lanes = 4;
+
+  Index H_;
+  Eigen::VectorXd a_;
+  // Per component the real and the imaginary parts of 2 c_k from k = 1, zeros behind them; last their sizes' sums.
+  Eigen::Map<Eigen::MatrixXd> parts_;
+};
+
+double wrapped(double tau) {
+  tau = std::fmod(tau, two_pi);
+  if (tau < 0) tau += two_pi;
+  return tau < two_pi ? tau : 0.0;
+}
+
+// Halley's iteration on f' within a step, its value kept if it is an improvement.
+template <class Function>
+Extremum climbed(const Function& at, double start, double step, double sign) {
+  constexpr double settled = 1e-5;  // moves after which Taylor's polynomial leaves rounding alone, of a step
+  constexpr int most = 20;
+  Jet here = at(start);
+  Extremum best{here.f, wrapped(start)};
+  double tau = start;
+  for (int iteration = 0; iteration < most && sign * here.f2 < 0; ++iteration) {
+    const double newton = -here.f1 / here.f2, bent = 1 + newton * here.f3 / (2 * here.f2);
+    const double move = bent > 0.5 && bent < 2 ? newton / bent : newton;
+    if (!(std::abs(tau + move - start) <= step)) break;
+    tau += move;
+    const bool last = std::abs(move) < settled * step;
+    if (last)
+      here.f += move * (here.f1 + move / 2 * (here.f2 + move / 3 * here.f3));
+    else
+      here = at(tau);
+    if (last || sign * here.f >= sign * best.value) best = {here.f, wrapped(tau)};
+    if (last) break;
+  }
+  return best;
+}
+
+// The largest value (sign 1) or the smallest (-1) of a function whose samples `g` leave out what has the bounds
+// `missing`. Empty where that could make more extrema than the samples show.
+//
+// Between samples an eighth of the shortest wave apart the true one lies half a step away at most. There it exceeds the
+// sample by (step^2/8) max|f''|, and of second differences of such a wave that is at most 0.14; twice that is taken.
+template <class Function>
+std::optional<Extremum> extremum(const Samples& g, double sign, const Bounds& missing, const Function& at) {
+  constexpr double reach = 0.28;
+  const Index N = g.size();
+  const double step = two_pi / static_cast<double>(N);
+  const auto bend = [&](Index j) { return sign * (g((j + N - 1) % N) - 2 * g(j) + g((j + 1) % N)); };
+  const double most_bent = std::max({std::abs(bend(0)), std::abs(bend(N - 1)),
+                                     (g.head(N - 2) - 2 * g.segment(1, N - 2) + g.tail(N - 2)).cwiseAbs().maxCoeff()});
+  const double top = (sign > 0 ? g.maxCoeff() : -g.minCoeff()) - 2 * missing.f;
+  Extremum best{-sign * HUGE_VAL, 0};
+  for (Index j = 0; j < N; ++j) {
+    const double here = sign * g(j);
+    if (!(here + reach * most_bent >= top)) continue;
+    const double before = sign * g((j + N - 1) % N), after = sign * g((j + 1) % N);
+    if (!(here >= before && here >= after)) continue;
+    const std::array<double, 3> bends = {bend((j + N - 1) % N), bend(j), bend((j + 1) % N)};
+    if (!(here - reach * std::min({bends[0], bends[1], bends[2]}) >= top)) continue;
+    if (missing.f2 > 0 && !(std::max({bends[0], bends[1], bends[2]}) < -2 * step * step * missing.f2)) return {};
+    const double vertex = bends[1] < 0 ? (before - after) / (2 * bends[1]) : 0;
+    const Extremum found = climbed(at, step * (static_cast<double>(j) + vertex), step, sign);
+    if (sign * found.value > sign * best.value) best = found;
+  }
+  return best;
+}
+
+// Shares of f'' that grids leave out, one after the other until the extrema are clear.
+constexpr double first_share = 1e-2;
+constexpr Index samples_per_wave = 8;
+
+}  // namespace
+
+Range range(const FourierSeries& series, Index component) {
+  thread_local Workspace memory;
+  const Components f(series, component, 1, memory);
+  const double mean = f.mean(0);
+  if (f.above(0).f <= eps / 2 * std::abs(mean)) return {{mean, 0}, {mean, 0}};
+  const auto at = [&f](double tau) { return f.at(0, tau); };
+  std::optional<Extremum> min, max;
+  for (double share = first_share; !min || !max; share *= share) {
+    const Index K = f.enough(share);
+    const Bounds missing = f.above(K);
+    const auto samples = f.samples(K, samples_per_wave).col(0);
+    if (!min) min = extremum(samples, -1, missing, at);
+    if (!max) max = extremum(samples, 1, missing, at);
+  }
+  return {*min, *max};
+}
+
+Extremum max_abs(const FourierSeries& series, Index component) {
+  const Range r = range(series, component);
+  const Extremum& larger = std::abs(r.max.value) >= std::abs(r.min.value) ? r.max : r.min;
+  return {std::abs(larger.value), larger.crank_angle};
+}
+
+// Of the square g = sum f_i^2, whose shortest wave is half as long. Where f is known but for r,
+//     |f^2 - (f - r)^2| <= 2 |f| |r|,    |(f^2 - (f - r)^2)''| <= 2 (|f''| |r| + 2 |f'| |r'| + |f| |r''|).
+Extremum largest_length(const FourierSeries& series) {
+  if (series.num_harmonics() < 0) return {};
+  if (series.num_components() == 1) return max_abs(series, 0);
+  thread_local Workspace memory;
+  const Components f(series, 0, series.num_components(), memory);
+  const auto at = [&](double tau) {
+    Jet g{0, 0, 0, 0};
+    for (Index i = 0; i < series.num_components(); ++i) {
+      const Jet x = f.at(i, tau);
+      g.f += x.f * x.f;
+      g.f1 += 2 * x.f * x.f1;
+      g.f2 += 2 * (x.f1 * x.f1 + x.f * x.f2);
+      g.f3 += 2 * (3 * x.f1 * x.f2 + x.f * x.f3);
+    }
+    return g;
+  };
+  const Bounds whole = f.whole();
+  std::optional<Extremum> peak;
+  for (double share = first_share; !peak; share *= share) {
+    const Index K = f.enough(share);
+    const Bounds r = f.above(K);
+    const Bounds missing{2 * whole.f * r.f, 0, 2 * (whole.f2 * r.f + 2 * whole.f1 * r.f1 + whole.f * r.f2)};
+    auto samples = f.samples(K, 2 * samples_per_wave);
+    samples.col(0) = samples.rowwise().squaredNorm();  // row by row in place
+    peak = extremum(samples.col(0), 1, missing, at);
+  }
+  return {std::sqrt(peak->value), peak->crank_angle};
+}
+
+}  // namespace hb::fourier
