@@ -221,8 +221,8 @@ bool Iteration::run(double tolerance, int& iterations) {
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     ++iterations;
     correction(x, f);
+    if (!f.allFinite()) return false;
     const double change = alpha_change();
-    if (!std::isfinite(change)) return false;
     const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
     const double goal = std::max(2 * eps, tolerance) * scale;
     const double rho = change / previous;
