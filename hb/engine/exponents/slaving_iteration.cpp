@@ -111,7 +111,9 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
     kappa_ = std::max(kappa_, sum);
   }
   residual_ = MatrixXd::Zero(n_ * m_, 2);
-  invert_constant_part(system);
+  scale_ = Eigen::ArrayXd::Ones(2 * n_ * m_);
+  for (Index q = 0; q < n_ * m_; ++q) scale_(n_ * m_ + q) = 1 / weight_[std::size_t(q / n_)];
+  invert_constant_part(w2, b);
   weigh_residuals();
 }
 
@@ -120,10 +122,10 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
 // for every harmonic k: in a and c
 //   a11 = wj - wg - k^2 + ik bj,   a12 = -wg ((bj - bg) + 2 ik),   a21 = (bj - bg) + 2 ik,
 //   a22 = wj - wg - k^2 - bg (bj - bg) + ik (bj - 2 bg).
-void Iteration::invert_constant_part(const ScaledSystem& system) {
+void Iteration::invert_constant_part(const VectorXd& w2, const VectorXd& b) {
   const Index nm = n_ * m_;
-  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
-  Eigen::ArrayXd wg(nm), bg(nm), wj(nm), bj(nm), weight(nm);
+  Eigen::ArrayXXd numbers(nm, 5);
+  auto wg = numbers.col(0), bg = numbers.col(1), wj = numbers.col(2), bj = numbers.col(3), weight = numbers.col(4);
   for (Index q = 0; q < nm; ++q) {
     const Index slow = S_[std::size_t(q / n_)], fast = F_[std::size_t(q % n_)];
     wg(q) = w2(slow), bg(q) = b(slow), wj(q) = w2(fast), bj(q) = b(fast);
@@ -136,7 +138,7 @@ void Iteration::invert_constant_part(const ScaledSystem& system) {
     double *M = inverse_.col(k).data(), *size = inverse_size_.col(k).data();
     in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
       using V = Numbers<width>;
-      const auto of = [q](const Eigen::ArrayXd& numbers) { return at<width>(numbers.data() + q); };
+      const auto of = [q](const auto& column) { return at<width>(column.data() + q); };
       const V apart = of(bj) - of(bg), near = of(wj) - of(wg) - n * n, v = of(weight);
       const V y11 = n * of(bj), x12 = -of(wg) * apart, y12 = -2 * n * of(wg);
       const double y21 = 2 * n;
@@ -324,26 +326,27 @@ MatrixXd Iteration::start() const {
 }
 
 double Iteration::distance(const VectorXd& x, const VectorXd& y) const {
-  const Index both = 2 * n_ * m_;
-  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(both);
-  in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
-    Numbers<width> total = Numbers<width>::Zero();
-    for (Index k = 0; k <= H_; ++k) {
-      const double *a = x.data() + 2 * both * k + q, *b = y.data() + 2 * both * k + q;
-      total += ((at<width>(a) - at<width>(b)).square() + (at<width>(a + both) - at<width>(b + both)).square()).sqrt();
-    }
-    at<width>(sum.data() + q) = total;
+  const Index nm = n_ * m_;
+  double largest = 0;
+  in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
+    Numbers<width> sum = Numbers<width>::Zero();
+    for (Index k = 0; k <= H_; ++k)
+      for (Index half = 0; half < 2; ++half) {
+        const Index real = nm * (4 * k + half) + q, imaginary = real + 2 * nm;
+        sum += ((at<width>(&x(real)) - at<width>(&y(real))).square() +
+                (at<width>(&x(imaginary)) - at<width>(&y(imaginary))).square())
+                   .sqrt();
+      }
+    largest = std::max(largest, 2 * sum.maxCoeff());
   });
-  return 2 * (sum.head(both / 2) + sum.tail(both / 2)).maxCoeff();
+  return largest;
 }
 
 void Iteration::sample(const VectorXd& x) {
   const Index both = 2 * n_ * m_;
-  Eigen::ArrayXd scales = Eigen::ArrayXd::Ones(both);
-  for (Index q = 0; q < both / 2; ++q) scales(both / 2 + q) = 1 / weight_[std::size_t(q / n_)];
   auto re = back_.re(), im = back_.im();
   in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
-    const Numbers<width> scale = at<width>(scales.data() + q);
+    const Numbers<width> scale = at<width>(scale_.data() + q);
     for (Index k = 0; k <= H_; ++k) {
       const double* from = x.data() + 2 * both * k + q;
       double *real = &re(q, k), *imaginary = &im(q, k);

@@ -78,7 +78,8 @@ class Iteration {
   // The residuals over the turn.
   void sample_residual();
   void push_through(Eigen::VectorXd& f);
-  void invert_constant_part(const ScaledSystem& system);
+  // From the means of K and G on the diagonal.
+  void invert_constant_part(const Eigen::VectorXd& w2, const Eigen::VectorXd& b);
 
   std::vector<Eigen::Index> S_, F_;
   Eigen::Index m_, n_, N_, H_;
@@ -94,6 +95,7 @@ class Iteration {
   // Of each harmonic k: real parts of A_k, of weight C_k, then the imaginary parts.
   Eigen::VectorXd x_;  // 4 n*m (H+1)
   std::vector<double> weight_;
+  Eigen::ArrayXd scale_;  // 1 of A, 1/weight of C; 2 n*m
   // Inverse M of the constant part, per harmonic: M_11, M_12, weight M_21, weight M_22, of each the real parts, then
   // the imaginary ones.
   Eigen::MatrixXd inverse_;  // 8 n*m x (H+1)
