@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -269,6 +270,11 @@ TEST_F(Sweep, PeaksAreFoundWhereThePointsHaveNoMaximum) {
   ASSERT_EQ(coarse.size(), 3u);
   ASSERT_EQ(fine.size(), 3u);
   for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(coarse[k], fine[k], 1e-6);
+
+  // A resonance foretold at 900 rpm itself, where the response only climbs to the pole behind it.
+  const std::vector<double> behind = critical(scene("eight_link") + " --only steady,stability --rpm 600:1500:300");
+  EXPECT_EQ(std::ranges::count(behind, 900.0), 0);
+  EXPECT_TRUE(std::ranges::any_of(behind, [](double rpm) { return std::abs(rpm - 1009.5692047205) < 1e-6; }));
 
   write("band.toml",
         "[hill]\nmass = [[1.0]]\nstiffness = [{ harmonic = 0, cos = [[8.85]] }, { harmonic = 1, cos = [[0.0146]] }]\n"

@@ -96,6 +96,7 @@ void add_maxima(const std::vector<ResponseSample>& samples, int component, std::
 
 std::vector<ResponseSample> resonances_between(const RodAlong& rod, const ResponsePlace& a, const ResponsePlace& b) {
   constexpr double least_flank = 0.02;  // of the interval: crossings are foretold better than that
+  constexpr double on_point = 1e-6;  // of the interval: rounding makes tops of samples that lie closer together
   std::vector<ResponseSample> found;
   const int most = std::max(a.num_harmonics, b.num_harmonics);
   for (std::size_t j = 0; j < a.modes.size() && j < std::max(a.max_abs.size(), b.max_abs.size()); ++j) {
@@ -109,6 +110,7 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const Respon
       const double x = crossing(rod, a, b, j, n), width = b.x - a.x;
       const double flank =
           std::min({std::max(3 * half_width / (high - low), least_flank) * width, 0.5 * (x - a.x), 0.5 * (b.x - x)});
+      if (flank < on_point * width) continue;  // a or b is a sample itself
       std::vector<ResponseSample> here = round_top(rod, x, flank, a.x, b.x, j);
       found.insert(found.end(), std::make_move_iterator(here.begin()), std::make_move_iterator(here.end()));
     }
