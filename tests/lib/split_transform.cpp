@@ -18,6 +18,13 @@ MatrixXd functions(Index N, Index n) {
                                [](Index t, Index j) { return std::sin(double((t + 1) * (t + 3 * j + 2) % 1009)); });
 }
 
+SplitTransform transformed(const MatrixXd& f) {
+  SplitTransform split(f.rows(), f.cols());
+  split.samples() = f;
+  split.forward();
+  return split;
+}
+
 // 8192 is too long for the short transform, 5 and 9 columns fill no vector of 4 or 8.
 constexpr Index split_lengths[] = {32, 48, 64, 96, 128, 192, 1024, 4096, 8192},
                 split_columns[] = {1, 3, 4, 5, 8, 9, 16};
@@ -26,9 +33,7 @@ TEST(SplitTransform, SpectraAreThoseOfEachColumn) {
   for (const Index N : split_lengths)
     for (const Index n : split_columns) {
       const MatrixXd f = functions(N, n);
-      SplitTransform split(N, n);
-      split.samples() = f;
-      split.forward();
+      SplitTransform split = transformed(f);
       hb::fourier::RealTransform one(N, 1);
       for (Index j = 0; j < n; ++j) {
         one.samples() = f.col(j);
@@ -45,9 +50,7 @@ TEST(SplitTransform, BackwardUndoesForwardAndKeepsTheSpectrum) {
   for (const Index N : split_lengths)
     for (const Index n : split_columns) {
       const MatrixXd f = functions(N, n);
-      SplitTransform split(N, n);
-      split.samples() = f;
-      split.forward();
+      SplitTransform split = transformed(f);
       const MatrixXd re = split.re(), im = split.im();
       split.samples().setZero();
       split.backward();

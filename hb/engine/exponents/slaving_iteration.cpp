@@ -8,7 +8,6 @@
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
-#include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::slaving {
