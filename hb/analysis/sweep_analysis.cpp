@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "hb/analysis/accuracy.hpp"
+#include "hb/analysis/sweep/point_family.hpp"
 #include "hb/analysis/sweep/resonances.hpp"
 #include "hb/analysis/sweep/rod_along.hpp"
 #include "hb/analysis/sweep/sweep_parts.hpp"
@@ -78,12 +79,11 @@ class SweepRun {
 
   void points() {
     const Stopwatch watch;
+    PointFamily family(scene_, only_);
     result_.points = work_.results<SweepPoint>(
         "sweep", values_.size(),
-        [this](std::size_t k) {
-          return work_.ends_early() ? left_out(values_[k]) : analyse_point(scene_, values_[k], only_);
-        },
-        [](auto& visit, SweepPoint& point) { visit_point(visit, point); }, "point", searching());
+        [&](std::size_t k) { return work_.ends_early() ? left_out(values_[k]) : family.at(k); },
+        [](auto& visit, SweepPoint& point) { visit_point(visit, point); }, "point", searching(), family.block_size());
     result_.stages.push_back({"points", watch.seconds(), fmt::format("{} points", values_.size())});
   }
 

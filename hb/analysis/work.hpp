@@ -34,14 +34,15 @@ class Work {
   }
 
   // A step by its results, which visit(visitor, result) writes and reads as numbers where they have to leave the
-  // process. `kind`, `ahead`: as of Parts.
+  // process. `kind`, `ahead`, `together`: as of Parts.
   template <class Result, class Visit>
   std::vector<Result> results(const std::string& what, std::size_t count,
                               const std::function<Result(std::size_t)>& compute, const Visit& visit,
-                              const std::string& kind = {}, const PartsAhead& ahead = {}) {
+                              const std::string& kind = {}, const PartsAhead& ahead = {}, std::size_t together = 1) {
     const PartsOf parts = [&](const Parts& given) {
       Parts all = given;
       all.ahead = ahead;
+      all.together = together;
       step(what, all);
     };
     return computed_parts<Result>(parts, count, compute, visit, kind);

@@ -1,6 +1,7 @@
 // Verdicts and exponents of random systems against a long double reference: no wrong verdict, no uncovered bar.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -94,6 +95,35 @@ void run_hill(stress::Family family, int trials) {
               int(family), tally.verdicts, tally.undecided, tally.wrong, tally.uncovered, tally.clearance);
 }
 
+// Begun with what slaving came to at a neighbouring speed, with that of other modes, and with noise on it: that may take
+// more time or less, and never leads elsewhere.
+void run_begun_trial(stress::Family family, std::uint64_t seed, int trial, Tally& tally) {
+  stress::Random random(seed * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family) + 30);
+  const stress::Trial t = stress::random_trial(family, random, 4);
+  const std::vector<FloquetExponent> exact = reference::floquet_exponents(t.system, t.speed);
+  const double beside = t.speed * (1 + random.power(-5, -1));
+  std::vector<SlavingStart> starts = analyse_stability(t.system, beside, {.keeps_solved = true}).solved;
+  const auto look = [&](const char* what) {
+    compare(analyse_stability(t.system, t.speed, {.starts = starts}), exact, t.speed,
+            "family " + std::to_string(int(family)) + " trial " + std::to_string(trial) + " begun " + what, tally);
+  };
+  look("beside");
+  if (starts.empty()) return;
+  std::ranges::rotate(starts, starts.begin() + 1);
+  look("with other modes");
+  for (SlavingStart& start : starts)
+    for (double& number : start.solution) number += random(-0.1, 0.1);
+  look("with noise");
+}
+
+void run_begun(stress::Family family, int trials) {
+  Tally tally;
+  for (int trial = 0; trial < stress::multiplied(trials); ++trial)
+    run_begun_trial(family, stress::seed(), trial, tally);
+  std::printf("family %2d begun: %d verdicts, %d undecided, %d wrong, %d bars uncovered, largest error/bar %.2g\n",
+              int(family), tally.verdicts, tally.undecided, tally.wrong, tally.uncovered, tally.clearance);
+}
+
 class StabilityStress : public testing::TestWithParam<int> {};
 
 TEST_P(StabilityStress, NoVerdictIsWrongAndEveryBarCovers) {
@@ -102,6 +132,12 @@ TEST_P(StabilityStress, NoVerdictIsWrongAndEveryBarCovers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Families, StabilityStress, testing::Range(0, stress::num_families));
+
+class BegunStress : public testing::TestWithParam<int> {};
+
+TEST_P(BegunStress, NoVerdictIsWrongAndEveryBarCovers) { run_begun(static_cast<stress::Family>(GetParam()), 2); }
+
+INSTANTIATE_TEST_SUITE_P(Families, BegunStress, testing::Range(0, stress::num_families));
 
 class HillStress : public testing::TestWithParam<int> {};
 

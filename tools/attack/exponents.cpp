@@ -52,7 +52,7 @@ struct Options {
   double seconds = HUGE_VAL;
   std::uint64_t seed = 1;
   std::string family, method = "automatic", references;
-  bool leading_only = false, verbose = false;
+  bool leading_only = false, beside = false, verbose = false;
   double tolerance = 1e-9;
 };
 
@@ -111,6 +111,12 @@ void compare(const Stability& result, const std::vector<ReferenceExponent>& exac
   tally.undecided += result.verdict == Verdict::undecided;
 }
 
+// A speed higher by a hundred-thousandth to a tenth, about evenly by magnitude.
+double beside(double speed, std::uint64_t number) {
+  constexpr double golden = 0.6180339887498949;
+  return speed * (1 + std::pow(10, -5 + 4 * std::fmod(golden * double(number % 1000000), 1)));
+}
+
 Tally run_case(Family family, std::uint64_t number, const Options& options, KeptReferences& references) {
   Tally tally;
   const Case c = random_case(family, number);
@@ -122,10 +128,14 @@ Tally run_case(Family family, std::uint64_t number, const Options& options, Kept
   }
   const auto method =
       std::find_if(methods.begin(), methods.end(), [&](const auto& m) { return m.first == options.method; });
+  std::vector<SlavingStart> starts;
+  if (options.beside) starts = analyse_stability(c.system, beside(c.speed, number), {.keeps_solved = true}).solved;
   const Clock::time_point start = Clock::now();
-  const Stability result = analyse_stability(
-      c.system, c.speed,
-      {.tolerance = options.tolerance, .method = method->second, .leading_only = options.leading_only});
+  const Stability result = analyse_stability(c.system, c.speed,
+                                             {.tolerance = options.tolerance,
+                                              .method = method->second,
+                                              .leading_only = options.leading_only,
+                                              .starts = starts});
   tally.slowest = seconds_since(start);
   ++tally.cases;
   compare(result, exact, c.speed, options, name, tally);
@@ -154,8 +164,9 @@ int run(const Options& options) {
       if (options.family.empty() || options.family == names[std::size_t(f)])
         tallies[std::size_t(f)].add(
             run_case(Family(f), options.seed * 1000000 + std::uint64_t(k), options, references));
-  fmt::print("{}{}, seed {}\n", options.method,
-             options.leading_only ? ", leading exponents (medians: of the leading ones alone)" : "", options.seed);
+  fmt::print("{}{}{}, seed {}\n", options.method,
+             options.leading_only ? ", leading exponents (medians: of the leading ones alone)" : "",
+             options.beside ? ", begun beside" : "", options.seed);
   fmt::print("  {:<12} {:>6} {:>9} {:>9} {:>7} {:>8} {:>9} {:>5}  {:>8} {:>8} {:>9}  {:>9}\n", "family", "cases",
              "exponents", "uncovered", "missing", "infinite", "undecided", "wrong", "median", "90 %", "allowed",
              "slowest");
@@ -191,6 +202,7 @@ int main(int argc, char** argv) {
   app.add_option("--method", options.method)->check(CLI::IsMember(known));
   app.add_option("--tolerance", options.tolerance);
   app.add_option("--references", options.references, "file that keeps the references for the next time");
+  app.add_flag("--beside", options.beside, "slaving begins with what it came to at a neighbouring speed");
   app.add_flag("--leading", options.leading_only, "leading exponents only");
   CLI11_PARSE(app, argc, argv);
   return run(options);

@@ -20,8 +20,14 @@
 namespace hb::tools {
 namespace {
 
-// Parts that are kept together: often enough for a kill to lose little, seldom enough not to wait for the disk.
-std::size_t parts_per_chunk(std::size_t count) { return std::clamp<std::size_t>(count / 100, 1, 64); }
+// Parts that are kept together: often enough for a kill to lose little, seldom enough not to wait for the disk. Those
+// that share work stay together where that leaves every thread enough, in several processes always.
+std::size_t parts_per_chunk(const Parts& parts) {
+  constexpr std::size_t most = 64, enough_groups = 16;
+  const std::size_t size = std::clamp<std::size_t>(parts.count / 100, 1, most);
+  const bool in_groups = ranks().size() > 1 || parts.count >= enough_groups * parts.together;
+  return in_groups ? std::max<std::size_t>(size / parts.together, 1) * parts.together : size;
+}
 
 // Each part after its length.
 Part joined(const Parts& parts, std::size_t from, std::size_t to) {
@@ -91,7 +97,7 @@ class SharedWork::Chunks {
       : work_(work),
         parts_(parts),
         step_(work.step_++ << 32),
-        size_(parts_per_chunk(parts.count)),
+        size_(parts_per_chunk(parts)),
         count_((parts.count + size_ - 1) / size_),
         what_(what),
         progress_(what, parts.count, work.begun_) {}

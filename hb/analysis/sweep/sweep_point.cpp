@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "hb/analysis/accuracy.hpp"
 #include "hb/analysis/machine_loads.hpp"
@@ -105,8 +106,10 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
         stress_point(stress, stress_cycle(link, coefficients, speed, q, finer, cut ? point.error_bound : HUGE_VAL));
 }
 
+// `solution` may be null.
 RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
-                     const Only& only, Responses& responses) {
+                     const Only& only, std::span<const SlavingStart> start, Responses& responses,
+                     std::vector<SlavingStart>* solution) {
   RodPoint point;
   const ScaledSystem scaled = scale_system(rod.system, speed);
   if (wants_steady(only)) {
@@ -124,7 +127,9 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     }
   }
   if (only.stability) {  // of every rod: the mechanism is stable where all are
-    const StabilityOptions options = exponent_options(settings);
+    StabilityOptions options = exponent_options(settings);
+    options.starts = start;
+    options.keeps_solved = solution != nullptr;
     if (only.all_exponents() && settings.search) {
       point.stability = stability_sample(scaled, x, options);
     } else {
@@ -133,6 +138,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
       point.stability->speed = speed;
       point.stability->stability = analyse_stability(scaled, options);
     }
+    if (solution != nullptr) *solution = std::move(point.stability->stability.solved);
   }
   return point;
 }
@@ -202,7 +208,8 @@ MachinePoint machine_point(const MachineLoads& loads, double speed) {
   return point;
 }
 
-SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) {
+SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted, const PointSolution* start,
+                         PointSolution* solution) {
   const ScenePlace place = scene.at(x);
   SweepPoint point;
   point.x = x;
@@ -212,8 +219,13 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted) 
   const Only only = available(*place.model, wanted);
   const std::vector<RodModel>& rods = place.model->rods;
   std::vector<Responses> solved(rods.size());
-  for (std::size_t r = 0; r < rods.size(); ++r)
-    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only, solved[r]));
+  if (solution != nullptr) solution->resize(rods.size());
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    const bool begun = start != nullptr && r < start->size();
+    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only,
+                                     begun ? (*start)[r] : std::span<const SlavingStart>(), solved[r],
+                                     solution != nullptr ? &(*solution)[r] : nullptr));
+  }
   std::optional<JointForces> forces;
   if (only.reactions && std::ranges::none_of(solved, [](const Responses& rod) { return rod.q.c.size() == 0; }))
     forces = add_forces(point, *place.model, solved);

@@ -68,6 +68,12 @@ struct SweepPoint {
   std::optional<MachinePoint> machine;
 };
 
-[[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted);
+// Stability::solved of each rod.
+using PointSolution = std::vector<std::vector<SlavingStart>>;
+
+// Slaving begins where `start`, if given, says: that decides how long it takes, what comes out by less than its error.
+// `solution`, if given, takes what it came to.
+[[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted,
+                                       const PointSolution* start = nullptr, PointSolution* solution = nullptr);
 
 }  // namespace hb

@@ -30,6 +30,7 @@ struct Parts {
   std::function<void(std::size_t, const Part&)> take;  // instead of computing it; throws std::out_of_range
   std::string kind = {};  // for who says beforehand how long it takes; empty: like no others
   PartsAhead ahead = {};  // after this step
+  std::size_t together = 1;  // so many, from the first on, share work
 };
 
 // Has all parts computed or taken.

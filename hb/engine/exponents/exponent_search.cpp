@@ -198,23 +198,27 @@ ExponentSearch search_by_propagation(const ScaledSystem& system, double toleranc
   return search;
 }
 
-ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, const Exponents& known) {
+ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, const Exponents& known,
+                                 std::span<const SlavingStart> starts) {
   const Index I = system.num_modes();
   ExponentSearch search;
   std::vector<Index> together;
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
-  std::vector<MatrixXd> starts(std::size_t(I), MatrixXd{});  // of the subspaces, per mode alone
+  std::vector<MatrixXd> subspaces(std::size_t(I), MatrixXd{});  // states at the start of the turn, per mode alone
+  std::vector<SlavingStart> solved(std::size_t(I), SlavingStart{});
   MatrixXd start_together(2 * I, 0);
   SampledStiffness stiffness(system);
   bool diverged = false;  // the last of `together`
   for (Index g = 0; g < I; ++g) {
     const std::array<Index, 1> one{g};
-    const ReducedSystem reduced = slave_to(stiffness, one, sufficient(system, one, tolerance), false);
+    ReducedSystem reduced = slave_to(stiffness, one, sufficient(system, one, tolerance), false,
+                                     Index(starts.size()) == I ? starts[std::size_t(g)] : SlavingStart());
     if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
     name_modes(alone[std::size_t(g)], system, {g});
-    if (reduced.converged && !alone[std::size_t(g)].s.empty())
-      starts[std::size_t(g)] = reduced.start;
-    else {
+    if (reduced.converged && !alone[std::size_t(g)].s.empty()) {
+      subspaces[std::size_t(g)] = std::move(reduced.start);
+      solved[std::size_t(g)] = std::move(reduced.solved);
+    } else {
       together.push_back(g);
       diverged = !reduced.converged;
     }
@@ -229,6 +233,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
     } else {
       search = search_by_propagation(system, tolerance);
       for (const Exponents& pair : alone) sharpen(search.exponents, pair);
+      search.solved = std::move(solved);
       return search;
     }
     search.evidence = fmt::format(
@@ -245,11 +250,12 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   Index filled = start_together.cols();
   for (Index g = 0; g < I; ++g)
     if (std::find(together.begin(), together.end(), g) == together.end()) {
-      states.middleCols(filled, 2) = starts[std::size_t(g)];
+      states.middleCols(filled, 2) = subspaces[std::size_t(g)];
       filled += 2;
       search.exponents.append(alone[std::size_t(g)]);
       search.exponents.converged = search.exponents.converged && alone[std::size_t(g)].converged;
     }
+  search.solved = std::move(solved);
   // Subspaces are as far off as their exponents are from being told apart.
   constexpr double above_errors = 1e-8, well_apart = 1e-3;
   const bool apart = !may_be_twice(search.exponents);

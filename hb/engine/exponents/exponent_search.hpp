@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ExponentSearch {
   std::string evidence;
   std::vector<Eigen::Index> kept;  // modes propagated together
   bool complete = false;  // all 2I exponents are listed, or lie below `exponents.others_below`
+  std::vector<SlavingStart> solved = {};  // per mode, of those slaved to alone
 };
 
 // Gives every exponent its mode and its unfolded frequency: pairs go to the modes of the group whose mean equation
@@ -29,9 +31,10 @@ void name_modes(Exponents& exponents, const Eigen::VectorXd& w2, const Eigen::Ve
                                                    bool leading_only = false);
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
-// reduction converges. Exponents `known` better from elsewhere take the place of those found.
+// reduction converges. Exponents `known` better from elsewhere take the place of those found. Slaving to one mode
+// begins where `starts`, if there is one for each mode, says.
 [[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance,
-                                               const Exponents& known = {});
+                                               const Exponents& known = {}, std::span<const SlavingStart> starts = {});
 
 // Only the leading exponents: the slowest modes (or `keep`) with the others slaved to them, and a bound that puts all
 // other exponents below; without such a bound all modes propagated. Empty if neither serves.

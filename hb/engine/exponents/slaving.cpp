@@ -77,7 +77,8 @@ ReducedSystem slave_to(const ScaledSystem& system, std::span<const Index> slow, 
   return slave_to(stiffness, slow, tolerance, true);
 }
 
-ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow, double tolerance, bool bounds_others) {
+ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow, double tolerance, bool bounds_others,
+                       const SlavingStart& begun) {
   const ScaledSystem& system = stiffness.system();
   const Index I = system.num_modes();
   const Partition p = slaving::partition(I, slow);
@@ -87,6 +88,17 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
   if (2 * start <= most_samples) (void)stiffness.at(2 * start);
+  // A neighbour's solution is judged by twice the samples from the beginning.
+  constexpr int few_iterations = 4;
+  if (begun.solution.size() > 0 && 2 * start <= most_samples) {
+    Iteration judged(stiffness, p, 2 * start);
+    if (judged.start_from(begun) && judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {
+      const int iterations = reduced.iterations;
+      reduced = judged.result(bounds_others);
+      reduced.iterations = iterations;
+      return reduced;
+    }
+  }
   auto iteration = std::make_unique<Iteration>(stiffness, p, start);
   for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
     if (2 * N > most_samples) break;

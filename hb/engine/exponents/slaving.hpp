@@ -13,6 +13,13 @@
 
 namespace hb {
 
+// What slaving to some modes came to, for a neighbouring system to begin with.
+struct SlavingStart {
+  Eigen::VectorXd solution;  // A and C by harmonics, as slaving works on them; empty: zero
+  double amplification = 1;  // of what a correction leaves, by repeated corrections
+  double change = 0;  // of alpha, by the last correction
+};
+
 struct ReducedSystem {
   bool converged = false;
   Eigen::Index num_modes = 0;  // m
@@ -24,6 +31,7 @@ struct ReducedSystem {
   double others_below = HUGE_VAL;
   // States (x, x') at tau = 0 of the invariant subspace, 2I x 2m: column l for x_S = e_l, column m + l for x_S' = e_l.
   Eigen::MatrixXd start;
+  SlavingStart solved;
   int iterations = 0;
 };
 
@@ -48,9 +56,9 @@ class SampledStiffness {
 // Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
 // the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
 // changes by less than `tolerance` relative to its largest value, or to rounding. `bounds_others`: others_below is
-// looked for.
+// looked for. `start` decides how many corrections that takes, not what they come to.
 [[nodiscard]] ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Eigen::Index> slow, double tolerance,
-                                     bool bounds_others);
+                                     bool bounds_others, const SlavingStart& start = {});
 [[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow,
                                      double tolerance = 0);
 

@@ -94,7 +94,8 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       C1_(A1_.data() + A_.size(), N_, n_ * m_),
       P_(forward_.samples().data(), N_, n_ * m_),
       R_(P_.data() + P_.size(), N_, n_ * m_),
-      x_(VectorXd::Zero(4 * n_ * m_ * (H_ + 1))) {
+      x_(VectorXd::Zero(4 * n_ * m_ * (H_ + 1))),
+      changed_(x_.size()) {
   if (!diagonal_damping_) {  // what alpha and beta, which depend on P and R, are found from first
     alpha_.setZero();
     beta_.setZero();
@@ -196,7 +197,17 @@ void Iteration::weigh_residuals() {
 void Iteration::start_from(const Iteration& coarse) {
   amplification_ = coarse.amplification_;
   change_ = coarse.change_;
+  changed_ = coarse.changed_;
   x_.head(coarse.x_.size()) = coarse.x_;
+}
+
+bool Iteration::start_from(const SlavingStart& start) {
+  if (start.solution.size() > x_.size()) return false;
+  amplification_ = start.amplification;
+  enough_ = 4 * start.change;
+  changed_ = start.solution.size();
+  x_.head(changed_) = start.solution;
+  return true;
 }
 
 bool Iteration::solved_by_start(double tolerance) {
@@ -208,8 +219,8 @@ bool Iteration::solved_by_start(double tolerance) {
   return solved;
 }
 
-bool Iteration::run(double tolerance, int& iterations) {
-  constexpr int most_iterations = 80, window = 8;
+bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
+  constexpr int window = 8;
   VectorXd f(x_.size()), last_x, last_f;
   VectorXd& x = x_;
   Anderson anderson;
@@ -223,9 +234,10 @@ bool Iteration::run(double tolerance, int& iterations) {
     ++iterations;
     correction(x, f);
     if (!f.allFinite()) return false;
+    f.tail(f.size() - changed_).setZero();
     const double change = alpha_change();
     const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
-    const double goal = std::max(2 * eps, tolerance) * scale;
+    const double goal = std::max(std::max(2 * eps, tolerance) * scale, enough_);
     const double rho = change / previous;
     stalled = change < 0.9 * best ? 0 : stalled + 1;
     best = std::min(best, change);
@@ -286,6 +298,7 @@ ReducedSystem Iteration::result(bool bounds_others) {
   drop_tail(reduced.beta, reduced.beta_error);
   if (bounds_others) reduced.others_below = others_below();
   reduced.start = start();
+  reduced.solved = solved();
   return reduced;
 }
 

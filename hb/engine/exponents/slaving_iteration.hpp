@@ -36,15 +36,21 @@ class Iteration {
   // Starts from what fewer samples gave.
   void start_from(const Iteration& coarse);
 
+  // Starts from a neighbour's solution, of which it changes no more harmonics than that has: those beyond them judge
+  // it. False if it has more than these samples show.
+  bool start_from(const SlavingStart& start);
+
   // Whether the start solves the equations with these samples, twice as many as it was found with: then nothing was
   // folded back or cut off that matters.
   bool solved_by_start(double tolerance);
 
   // Solves for A, C with these samples; false if it diverges, or would take too long. change_ is then what remains of
   // alpha's error but for that of too few samples.
-  bool run(double tolerance, int& iterations);
+  bool run(double tolerance, int& iterations, int most_iterations = 80);
 
   ReducedSystem result(bool bounds_others);
+
+  SlavingStart solved() const { return {x_.head(changed_), amplification_, change_}; }
 
  private:
   Iteration(const ScaledSystem& system, const SampledStiffness::Samples& samples, const Partition& p,
@@ -94,6 +100,7 @@ class Iteration {
   Eigen::Map<Eigen::MatrixXd> A_, C_, A1_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
   // Of each harmonic k: real parts of A_k, of weight C_k, then the imaginary parts.
   Eigen::VectorXd x_;  // 4 n*m (H+1)
+  Eigen::Index changed_;  // so many of x_ are solved for
   std::vector<double> weight_;
   Eigen::ArrayXd scale_;  // 1 of A, 1/weight of C; 2 n*m
   // Inverse M of the constant part, per harmonic: M_11, M_12, weight M_21, weight M_22, of each the real parts, then
@@ -102,6 +109,7 @@ class Iteration {
   Eigen::MatrixXd inverse_size_;  // |M_1c| + weight |M_2c|, c = 1, then c = 2; 2 n*m x (H+1)
   Eigen::MatrixXd residual_, effect_;  // n*m x 2: sum_k |r_k| of both invariance equations, and what each does to alpha
   double kappa_ = 0, change_ = 0, amplification_ = 1;
+  double enough_ = 0;  // of change_: what the start's own solution came to
 };
 
 }  // namespace hb::slaving

@@ -105,8 +105,9 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
     if (suffices(result) && all) return result;
     propagated = std::move(search.exponents);
   }
-  const ExponentSearch search = search_by_slaving(system, tolerance, propagated);
+  ExponentSearch search = search_by_slaving(system, tolerance, propagated, options.starts);
   Stability result = finished(system, search, tolerance);
+  if (options.keeps_solved) result.solved = std::move(search.solved);
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
   // Beyond about a second's work the fastest modes turn so often that propagation is less accurate than what is there.
   if (search.complete && propagated_cells(system) * std::pow(double(system.num_modes()), 3) > 1e6) return result;
@@ -123,6 +124,8 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
 Stability of_groups(const ScaledSystem& system, const std::vector<std::vector<int>>& groups, StabilityOptions options,
                     const char* relation) {
   options.keep = {};
+  options.starts = {};
+  options.keeps_solved = false;
   Stability whole;
   double growth = -HUGE_VAL, high = -HUGE_VAL, low = -HUGE_VAL, others = -HUGE_VAL;
   Verdict verdict = Verdict::stable;

@@ -3,9 +3,11 @@
 
 #include <cmath>
 #include <complex>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "hb/engine/exponents/slaving.hpp"
 #include "hb/engine/exponents/verdict.hpp"
 #include "hb/engine/system/scaled_system.hpp"
 #include "lib/hill_system.hpp"
@@ -34,6 +36,9 @@ struct StabilityOptions {
   bool as_found = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};
+  // Where all exponents are looked for: what slaving came to in a neighbouring system, Stability::solved.
+  std::span<const SlavingStart> starts = {};
+  bool keeps_solved = false;
 };
 
 // One Floquet exponent lambda: solutions e^{lambda t} p(t), p of period 2 pi/Omega.
@@ -66,6 +71,7 @@ struct Stability {
   StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
   std::vector<int> kept;  // modes that the leading exponents were found with, the others slaved to them
   std::string evidence;  // one sentence: what was done
+  std::vector<SlavingStart> solved = {};  // per mode what slaving to it alone came to, if it was to be kept
 };
 
 [[nodiscard]] Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options = {});

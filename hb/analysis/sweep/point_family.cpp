@@ -1,0 +1,148 @@
+#include "hb/analysis/sweep/point_family.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace hb {
+namespace {
+
+// Nodes of a block, every fourth point of a full one.
+constexpr std::size_t num_nodes = 8, most_points = 4 * (num_nodes - 1) + 1;
+// Fewer points are all nodes.
+constexpr std::size_t fewest_points = 12;
+
+// Numbers at x from those at the nodes: sum_j w_j f_j; what leaving out the farthest node changes, sum_j d_j f_j, tells
+// how good that is.
+struct Weights {
+  std::vector<double> w, d;
+};
+
+// Lagrange: w_j = prod_(i != j) (x - x_i)/(x_j - x_i), without `left_out`.
+std::vector<double> lagrange(const std::vector<double>& nodes, double x, std::size_t left_out) {
+  std::vector<double> w(nodes.size(), 0);
+  for (std::size_t j = 0; j < nodes.size(); ++j) {
+    if (j == left_out) continue;
+    w[j] = 1;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      if (i != j && i != left_out) w[j] *= (x - nodes[i]) / (nodes[j] - nodes[i]);
+  }
+  return w;
+}
+
+Weights weights(const std::vector<double>& nodes, double x) {
+  const std::size_t farthest = std::abs(x - nodes.front()) > std::abs(x - nodes.back()) ? 0 : nodes.size() - 1;
+  Weights weights{lagrange(nodes, x, nodes.size()), lagrange(nodes, x, farthest)};
+  for (std::size_t j = 0; j < nodes.size(); ++j) weights.d[j] = weights.w[j] - weights.d[j];
+  return weights;
+}
+
+// Empty where the nodes do not agree on the number of harmonics, or foretell little.
+SlavingStart interpolated(const Weights& weights, const std::vector<const SlavingStart*>& nodes) {
+  constexpr double little = 1e-4;
+  const Eigen::Index size = nodes.front()->solution.size();
+  SlavingStart start;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(size), doubt = sum;
+  for (std::size_t j = 0; j < nodes.size(); ++j) {
+    if (nodes[j]->solution.size() != size) return {};
+    sum += weights.w[j] * nodes[j]->solution;
+    doubt += weights.d[j] * nodes[j]->solution;
+    start.amplification = std::max(start.amplification, nodes[j]->amplification);
+    start.change = std::max(start.change, nodes[j]->change);
+  }
+  if (size > 0 && doubt.cwiseAbs().maxCoeff() <= little * sum.cwiseAbs().maxCoeff()) start.solution = std::move(sum);
+  return start;
+}
+
+}  // namespace
+
+PointFamily::PointFamily(const SweepScene& scene, const Only& only)
+    : scene_(scene), only_(only), values_(scene.axis().values) {
+  const std::size_t count = values_.size(), blocks = (count + most_points - 1) / most_points;
+  block_size_ = (count + blocks - 1) / blocks;
+  blocks_.resize((count + block_size_ - 1) / block_size_);
+}
+
+SweepPoint PointFamily::at(std::size_t k) {
+  const std::shared_ptr<Block> block = block_of(k);
+  const auto place = std::ranges::find(block->places, k);
+  SweepPoint point;
+  if (place != block->places.end()) {
+    const auto n = static_cast<std::size_t>(place - block->places.begin());
+    solve(*block, n, 1);
+    point = block->nodes[n].point;
+  } else {
+    solve(*block, 0, block->nodes.size());
+    const PointSolution start = foretold(*block, values_[k]);
+    point = analyse_point(scene_, values_[k], only_, &start);
+  }
+  const std::lock_guard lock(mutex_);
+  if (--block->left == 0) blocks_[k / block_size_].reset();
+  return point;
+}
+
+std::shared_ptr<PointFamily::Block> PointFamily::block_of(std::size_t k) {
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<Block>& block = blocks_[k / block_size_];
+  if (block) return block;
+  block = std::make_shared<Block>();
+  const std::size_t first = k / block_size_ * block_size_, size = std::min(block_size_, values_.size() - first);
+  block->left = size;
+  const std::size_t count = size < fewest_points ? size : num_nodes;
+  for (std::size_t j = 0; j < count; ++j)
+    block->places.push_back(first + (count > 1 ? (j * (size - 1) + (count - 1) / 2) / (count - 1) : 0));
+  block->nodes.resize(count);
+  return block;
+}
+
+void PointFamily::solve(Block& block, std::size_t first, std::size_t count) {
+  std::unique_lock lock(mutex_);
+  const auto begin = block.nodes.begin() + static_cast<std::ptrdiff_t>(first),
+             end = begin + static_cast<std::ptrdiff_t>(count);
+  for (;;) {
+    const auto node = std::find_if(begin, end, [](const Node& n) { return n.state == Node::State::untouched; });
+    if (node == end) {
+      if (std::all_of(begin, end, [](const Node& n) { return n.state == Node::State::there; })) return;
+      changed_.wait(lock);
+      continue;
+    }
+    node->state = Node::State::under_way;
+    const std::size_t k = block.places[static_cast<std::size_t>(node - block.nodes.begin())];
+    lock.unlock();
+    PointSolution solution;
+    try {
+      node->point = analyse_point(scene_, values_[k], only_, nullptr, &solution);
+    } catch (...) {
+      lock.lock();
+      node->state = Node::State::untouched;
+      changed_.notify_all();
+      throw;
+    }
+    lock.lock();
+    node->solution = std::move(solution);
+    node->state = Node::State::there;
+    changed_.notify_all();
+  }
+}
+
+PointSolution PointFamily::foretold(const Block& block, double x) const {
+  std::vector<double> places;
+  std::size_t rods = block.nodes.front().solution.size();
+  for (std::size_t j = 0; j < block.nodes.size(); ++j) {
+    places.push_back(values_[block.places[j]]);
+    rods = std::min(rods, block.nodes[j].solution.size());
+  }
+  const Weights by = weights(places, x);
+  PointSolution start(rods);
+  for (std::size_t r = 0; r < rods; ++r) {
+    std::size_t modes = block.nodes.front().solution[r].size();
+    for (const Node& node : block.nodes) modes = std::min(modes, node.solution[r].size());
+    for (std::size_t g = 0; g < modes; ++g) {
+      std::vector<const SlavingStart*> nodes;
+      for (const Node& node : block.nodes) nodes.push_back(&node.solution[r][g]);
+      start[r].push_back(interpolated(by, nodes));
+    }
+  }
+  return start;
+}
+
+}  // namespace hb
