@@ -95,8 +95,8 @@ void run_hill(stress::Family family, int trials) {
               int(family), tally.verdicts, tally.undecided, tally.wrong, tally.uncovered, tally.clearance);
 }
 
-// Begun with what slaving came to at a neighbouring speed, with that of other modes, and with noise on it: that may take
-// more time or less, and never leads elsewhere.
+// Begun with what slaving came to at a neighbouring speed, with that of other modes, and with noise on it: that may
+// take more time or less, and never leads elsewhere.
 void run_begun_trial(stress::Family family, std::uint64_t seed, int trial, Tally& tally) {
   stress::Random random(seed * 1000003 + std::uint64_t(trial) * 101 + std::uint64_t(family) + 30);
   const stress::Trial t = stress::random_trial(family, random, 4);

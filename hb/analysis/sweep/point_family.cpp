@@ -15,6 +15,7 @@ constexpr std::size_t fewest_points = 12;
 // how good that is.
 struct Weights {
   std::vector<double> w, d;
+  std::size_t above = 0;  // first node beyond x
 };
 
 // Lagrange: w_j = prod_(i != j) (x - x_i)/(x_j - x_i), without `left_out`.
@@ -31,25 +32,28 @@ std::vector<double> lagrange(const std::vector<double>& nodes, double x, std::si
 
 Weights weights(const std::vector<double>& nodes, double x) {
   const std::size_t farthest = std::abs(x - nodes.front()) > std::abs(x - nodes.back()) ? 0 : nodes.size() - 1;
-  Weights weights{lagrange(nodes, x, nodes.size()), lagrange(nodes, x, farthest)};
+  Weights weights{lagrange(nodes, x, nodes.size()), lagrange(nodes, x, farthest),
+                  static_cast<std::size_t>(std::ranges::upper_bound(nodes, x) - nodes.begin())};
   for (std::size_t j = 0; j < nodes.size(); ++j) weights.d[j] = weights.w[j] - weights.d[j];
   return weights;
 }
 
-// Empty where the nodes do not agree on the number of harmonics, or foretell little.
+// No solution where the nodes do not agree on the number of harmonics, or foretell too little: corrections with twice
+// the samples have to be few.
 SlavingStart interpolated(const Weights& weights, const std::vector<const SlavingStart*>& nodes) {
-  constexpr double little = 1e-4;
+  constexpr double foretold = 1e-4;
   const Eigen::Index size = nodes.front()->solution.size();
   SlavingStart start;
+  start.diverges = nodes[weights.above - 1]->diverges && nodes[weights.above]->diverges;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(size), doubt = sum;
   for (std::size_t j = 0; j < nodes.size(); ++j) {
-    if (nodes[j]->solution.size() != size) return {};
+    if (size == 0 || nodes[j]->solution.size() != size) return start;
     sum += weights.w[j] * nodes[j]->solution;
     doubt += weights.d[j] * nodes[j]->solution;
     start.amplification = std::max(start.amplification, nodes[j]->amplification);
     start.change = std::max(start.change, nodes[j]->change);
   }
-  if (size > 0 && doubt.cwiseAbs().maxCoeff() <= little * sum.cwiseAbs().maxCoeff()) start.solution = std::move(sum);
+  if (doubt.cwiseAbs().maxCoeff() <= foretold * sum.cwiseAbs().maxCoeff()) start.solution = std::move(sum);
   return start;
 }
 

@@ -208,11 +208,17 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   std::vector<SlavingStart> solved(std::size_t(I), SlavingStart{});
   MatrixXd start_together(2 * I, 0);
   SampledStiffness stiffness(system);
+  const bool begun = Index(starts.size()) == I;
   bool diverged = false;  // the last of `together`
   for (Index g = 0; g < I; ++g) {
+    if (begun && starts[std::size_t(g)].diverges) {
+      solved[std::size_t(g)].diverges = diverged = true;
+      together.push_back(g);
+      continue;
+    }
     const std::array<Index, 1> one{g};
     ReducedSystem reduced = slave_to(stiffness, one, sufficient(system, one, tolerance), false,
-                                     Index(starts.size()) == I ? starts[std::size_t(g)] : SlavingStart());
+                                     begun ? starts[std::size_t(g)] : SlavingStart());
     if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
     name_modes(alone[std::size_t(g)], system, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty()) {
@@ -220,7 +226,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
       solved[std::size_t(g)] = std::move(reduced.solved);
     } else {
       together.push_back(g);
-      diverged = !reduced.converged;
+      diverged = solved[std::size_t(g)].diverges = !reduced.converged;
     }
   }
   search.method = StabilityMethod::slaving;

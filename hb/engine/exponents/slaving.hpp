@@ -18,6 +18,7 @@ struct SlavingStart {
   Eigen::VectorXd solution;  // A and C by harmonics, as slaving works on them; empty: zero
   double amplification = 1;  // of what a correction leaves, by repeated corrections
   double change = 0;  // of alpha, by the last correction
+  bool diverges = false;  // so that there is no solution, nor is one expected nearby
 };
 
 struct ReducedSystem {

@@ -1,0 +1,82 @@
+// Points of a sweep that share work: what they come to, whoever asks in which order.
+#include "hb/analysis/sweep/point_family.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+namespace hb {
+namespace {
+
+SweepScene scene_along(const std::string& file, double from, double to, std::size_t points) {
+  Settings settings;
+  settings.only = {.steady = false, .stability = true, .reactions = false, .shape = false};
+  Axis axis;
+  for (std::size_t k = 0; k < points; ++k)
+    axis.values.push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(points - 1));
+  return {SceneSource(std::string(HB_SOURCE_DIR "/") + file), {}, settings, axis, 0, 0};
+}
+
+std::vector<double> numbers(const SweepPoint& point) {
+  std::vector<double> all;
+  for (const RodPoint& rod : point.rods)
+    for (const Exponent& e : rod.stability->stability.exponents)
+      all.insert(all.end(), {e.value.real(), e.value.imag(), e.error});
+  return all;
+}
+
+// The last points first, all at once by threads, each a second time in a family of its own: the same bits.
+TEST(PointFamily, DoesNotDependOnOrderThreadsOrCompany) {
+  const SweepScene scene = scene_along("tests/scenes/six_link.toml", 400, 900, 41);
+  const Only& only = scene.settings().only;
+  const std::size_t count = scene.axis().values.size();
+  std::vector<std::vector<double>> forwards(count), backwards(count), threaded(count);
+  PointFamily first(scene, only), second(scene, only), third(scene, only);
+  for (std::size_t k = 0; k < count; ++k) forwards[k] = numbers(first.at(k));
+  for (std::size_t k = count; k-- > 0;) backwards[k] = numbers(second.at(k));
+  std::vector<std::thread> threads;
+  for (std::size_t t = 0; t < 4; ++t)
+    threads.emplace_back([&, t] {
+      for (std::size_t k = t; k < count; k += 4) threaded[k] = numbers(third.at(k));
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(forwards, backwards);
+  EXPECT_EQ(forwards, threaded);
+  for (const std::size_t k : {0, 7, 19, 40}) EXPECT_EQ(numbers(PointFamily(scene, only).at(k)), forwards[k]);
+}
+
+// Begun from neighbours or not: what the errors allow apart, and errors alike.
+TEST(PointFamily, ExponentsAreThoseOfEachPlaceAlone) {
+  for (const auto& [file, from, to] : {std::tuple("tests/scenes/six_link.toml", 300.0, 580.0),
+                                       std::tuple("tests/scenes/six_link.toml", 1000.0, 3000.0),
+                                       std::tuple("results/four_bar/scene.toml", 1000.0, 1560.0),
+                                       std::tuple("results/slider_crank/scene.toml", 2000.0, 3400.0)}) {
+    const SweepScene scene = scene_along(file, from, to, 29);
+    PointFamily family(scene, scene.settings().only);
+    for (std::size_t k = 0; k < 29; ++k) {
+      const SweepPoint point = family.at(k), alone = analyse_point(scene, point.x, scene.settings().only);
+      for (std::size_t r = 0; r < point.rods.size(); ++r) {
+        const Stability &found = point.rods[r].stability->stability, &other = alone.rods[r].stability->stability;
+        ASSERT_EQ(found.exponents.size(), other.exponents.size());
+        EXPECT_EQ(found.verdict, other.verdict);
+        EXPECT_LE(found.growth_error, 10 * other.growth_error + 1e-13 * point.speed);
+        for (const Exponent& e : found.exponents) {
+          double nearest = HUGE_VAL;
+          for (const Exponent& x : other.exponents) {
+            const double turn = std::remainder(e.value.imag() - x.value.imag(), point.speed);
+            nearest = std::min(nearest, std::hypot(e.value.real() - x.value.real(), turn) - x.error);
+          }
+          EXPECT_LE(nearest, e.error) << file << " " << point.x << " " << e.value;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace hb
