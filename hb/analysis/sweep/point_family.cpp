@@ -44,10 +44,11 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
   constexpr double foretold = 1e-4;
   const Eigen::Index size = nodes.front()->solution.size();
   SlavingStart start;
+  start.modes = nodes.front()->modes;
   start.diverges = nodes[weights.above - 1]->diverges && nodes[weights.above]->diverges;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(size), doubt = sum;
   for (std::size_t j = 0; j < nodes.size(); ++j) {
-    if (size == 0 || nodes[j]->solution.size() != size) return start;
+    if (size == 0 || nodes[j]->solution.size() != size || nodes[j]->modes != nodes.front()->modes) return start;
     sum += weights.w[j] * nodes[j]->solution;
     doubt += weights.d[j] * nodes[j]->solution;
     start.amplification = std::max(start.amplification, nodes[j]->amplification);

@@ -107,9 +107,11 @@ bool too_many(const ScaledSystem& system, const std::vector<Index>& together) {
 constexpr double strong_resonance = 3e-4;
 
 // Slaves the others to `together` and to the modes that pull at these, which are added to it until that converges;
-// empty where too many would have to be kept. `diverges`: it is known that it does not with `together` alone.
+// empty where too many would have to be kept. `diverges`: it is known that it does not with `together` alone. `start`
+// serves the modes that it is of.
 std::optional<ReducedSystem> slave_to_resonant(SampledStiffness& stiffness, std::vector<Index>& together,
-                                               double tolerance, bool bounds_others, bool diverges) {
+                                               double tolerance, bool bounds_others, bool diverges,
+                                               const SlavingStart& start = {}) {
   const ScaledSystem& system = stiffness.system();
   Index next = 0;
   const auto with_next = [&] {
@@ -121,7 +123,8 @@ std::optional<ReducedSystem> slave_to_resonant(SampledStiffness& stiffness, std:
     together = with_next(), diverges = false;
   while (!too_many(system, together)) {
     if (!diverges) {
-      ReducedSystem reduced = slave_to(stiffness, together, sufficient(system, together, tolerance), bounds_others);
+      ReducedSystem reduced = slave_to(stiffness, together, sufficient(system, together, tolerance), bounds_others,
+                                       start.modes == together ? start : SlavingStart());
       if (reduced.converged) return reduced;
     }
     diverges = false;
@@ -205,10 +208,10 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   std::vector<Index> together;
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
   std::vector<MatrixXd> subspaces(std::size_t(I), MatrixXd{});  // states at the start of the turn, per mode alone
-  std::vector<SlavingStart> solved(std::size_t(I), SlavingStart{});
+  std::vector<SlavingStart> solved(std::size_t(I + 1), SlavingStart{});
   MatrixXd start_together(2 * I, 0);
   SampledStiffness stiffness(system);
-  const bool begun = Index(starts.size()) == I;
+  const bool begun = Index(starts.size()) == I + 1;
   bool diverged = false;  // the last of `together`
   for (Index g = 0; g < I; ++g) {
     if (begun && starts[std::size_t(g)].diverges) {
@@ -232,10 +235,13 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
     if (const auto reduced =
-            slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1)) {
+            slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1,
+                              begun ? starts.back() : SlavingStart())) {
       search.exponents = reduced_exponents(*reduced, tolerance);
       name_modes(search.exponents, system, together);
       start_together = reduced->start;
+      solved.back() = reduced->solved;
+      solved.back().modes = together;
     } else {
       search = search_by_propagation(system, tolerance);
       for (const Exponents& pair : alone) sharpen(search.exponents, pair);

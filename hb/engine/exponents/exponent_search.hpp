@@ -18,7 +18,7 @@ struct ExponentSearch {
   std::string evidence;
   std::vector<Eigen::Index> kept;  // modes propagated together
   bool complete = false;  // all 2I exponents are listed, or lie below `exponents.others_below`
-  std::vector<SlavingStart> solved = {};  // per mode, of those slaved to alone
+  std::vector<SlavingStart> solved = {};  // of each mode alone, then of those kept together
 };
 
 // Gives every exponent its mode and its unfolded frequency: pairs go to the modes of the group whose mean equation
@@ -31,8 +31,8 @@ void name_modes(Exponents& exponents, const Eigen::VectorXd& w2, const Eigen::Ve
                                                    bool leading_only = false);
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
-// reduction converges. Exponents `known` better from elsewhere take the place of those found. Slaving to one mode
-// begins where `starts`, if there is one for each mode, says.
+// reduction converges. Exponents `known` better from elsewhere take the place of those found. Slaving
+// begins where `starts`, of a neighbour's `solved`, say.
 [[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance,
                                                const Exponents& known = {}, std::span<const SlavingStart> starts = {});
 

@@ -88,29 +88,38 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
   if (2 * start <= most_samples) (void)stiffness.at(2 * start);
-  // A neighbour's solution is judged by twice the samples from the beginning.
-  constexpr int few_iterations = 4;
+  const auto finish = [&](Iteration& iteration) {
+    const int iterations = reduced.iterations;
+    reduced = iteration.result(bounds_others);
+    reduced.iterations = iterations;
+    return reduced;
+  };
+  // A neighbour's solution is judged by twice the samples from the beginning; what needs more corrections gets them with
+  // few samples.
+  SlavingStart nearer;
   if (begun.solution.size() > 0 && 2 * start <= most_samples) {
+    constexpr int few_iterations = 2;
     Iteration judged(stiffness, p, 2 * start);
-    if (judged.start_from(begun) && judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {
-      const int iterations = reduced.iterations;
-      reduced = judged.result(bounds_others);
-      reduced.iterations = iterations;
-      return reduced;
+    if (judged.start_from(begun)) {
+      if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) return finish(judged);
+      nearer = judged.solved();
     }
   }
-  auto iteration = std::make_unique<Iteration>(stiffness, p, start);
-  for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
-    if (2 * N > most_samples) break;
-    auto finer = std::make_unique<Iteration>(stiffness, p, 2 * N);
-    finer->start_from(*iteration);
-    iteration = std::move(finer);
-    if (!iteration->solved_by_start(tolerance)) continue;
-    const int iterations = reduced.iterations;
-    reduced = iteration->result(bounds_others);
-    reduced.iterations = iterations;
-    break;
-  }
+  const auto solve = [&](const SlavingStart& from) {
+    auto iteration = std::make_unique<Iteration>(stiffness, p, start);
+    if (from.solution.size() > 0 && !iteration->start_from(from)) return false;
+    for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
+      if (2 * N > most_samples) break;
+      auto finer = std::make_unique<Iteration>(stiffness, p, 2 * N);
+      finer->start_from(*iteration);
+      iteration = std::move(finer);
+      if (!iteration->solved_by_start(tolerance)) continue;
+      finish(*iteration);
+      return true;
+    }
+    return false;
+  };
+  if (nearer.solution.size() == 0 || !nearer.solution.allFinite() || !solve(nearer)) solve({});
   return reduced;
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <span>
+#include <vector>
 
 #include "hb/engine/system/scaled_system.hpp"
 
@@ -19,6 +20,7 @@ struct SlavingStart {
   double amplification = 1;  // of what a correction leaves, by repeated corrections
   double change = 0;  // of alpha, by the last correction
   bool diverges = false;  // so that there is no solution, nor is one expected nearby
+  std::vector<Eigen::Index> modes = {};  // slaved to
 };
 
 struct ReducedSystem {

@@ -71,7 +71,7 @@ struct Stability {
   StabilityMethod method = StabilityMethod::automatic;  // the one that gave the growth rate
   std::vector<int> kept;  // modes that the leading exponents were found with, the others slaved to them
   std::string evidence;  // one sentence: what was done
-  std::vector<SlavingStart> solved = {};  // per mode what slaving to it alone came to, if it was to be kept
+  std::vector<SlavingStart> solved = {};  // what slaving came to, if it was to be kept
 };
 
 [[nodiscard]] Stability analyse_stability(const HillSystem& system, double speed, const StabilityOptions& options = {});
