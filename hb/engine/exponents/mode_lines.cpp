@@ -9,12 +9,12 @@
 
 namespace hb {
 
-namespace mode_lines {
-
 using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+
+namespace mode_lines {
 
 // M x components, of a series cut to what M angles tell apart.
 MatrixXd at_angles(const FourierSeries& series, Index M) {
@@ -294,8 +294,6 @@ Leading next(std::vector<Line>& lines) {
 
 }  // namespace mode_lines
 
-using namespace mode_lines;
-
 double GrowthAccuracy::allowed(double change, double rate) const {
   return std::max(of_change * std::abs(change), of_rate * std::max(std::abs(rate), 0.01));
 }
@@ -303,16 +301,16 @@ double GrowthAccuracy::allowed(double change, double rate) const {
 struct UncoupledSystems::Impl {
   struct Part {
     Index first;
-    LoneModes modes;
+    mode_lines::LoneModes modes;
     MatrixXd alpha, beta;  // without what the modes alone feel; M x count*count
-    Coupling coupling;
+    mode_lines::Coupling coupling;
   };
 
   Index M;
-  std::optional<LoneModes> modes;
+  std::optional<mode_lines::LoneModes> modes;
   std::vector<Part> parts;
   std::vector<Index> leading;  // modes that may lead
-  std::vector<Line> lines;  // theirs
+  std::vector<mode_lines::Line> lines;  // theirs
   std::vector<double> orders;  // the largest growth rate, so far
 
   Impl(std::span<const PeriodicCoefficients> systems, Index num_angles) : M(num_angles) {
@@ -324,14 +322,14 @@ struct UncoupledSystems::Impl {
     Index first = 0;
     for (const PeriodicCoefficients& system : systems) {
       const Index m = system.num_modes;
-      alphas.push_back(at_angles(system.alpha, M));
+      alphas.push_back(mode_lines::at_angles(system.alpha, M));
       for (Index i = 0; i < m; ++i) {
         stiffness.col(first + i) = alphas.back().col(i * (m + 1));
         damping(first + i) = system.beta.c(i * (m + 1), 0).real();
       }
       first += m;
     }
-    modes = lone_modes(stiffness, damping);
+    modes = mode_lines::lone_modes(stiffness, damping);
     if (!modes) return;
     first = 0;
     for (std::size_t r = 0; r < systems.size(); ++r) {
@@ -341,8 +339,8 @@ struct UncoupledSystems::Impl {
         alphas[r].col(i * (m + 1)) = modes->left_out.col(first + i);
         beta.col(i * (m + 1)).setZero();
       }
-      LoneModes own = modes->part(first, m);
-      Coupling coupling(own, alphas[r], beta);
+      mode_lines::LoneModes own = modes->part(first, m);
+      mode_lines::Coupling coupling(own, alphas[r], beta);
       parts.push_back({first, std::move(own), std::move(alphas[r]), std::move(beta), std::move(coupling)});
       first += m;
     }
@@ -356,7 +354,7 @@ struct UncoupledSystems::Impl {
   }
 
   double linear(std::size_t order) {
-    while (orders.size() <= order) orders.push_back(next(lines).growth);
+    while (orders.size() <= order) orders.push_back(mode_lines::next(lines).growth);
     return orders[order];
   }
 };
@@ -374,35 +372,37 @@ std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, c
   // at least. The last order changes the answer by less than this part of what is allowed.
   constexpr double most_mixed = 0.3, settled = 0.1;
   if (!impl_->modes) return std::nullopt;
-  const LoneModes& modes = *impl_->modes;
+  const mode_lines::LoneModes& modes = *impl_->modes;
   const Index n = modes.num_modes(), M = modes.num_angles();
   const auto coupling_by = [&](const MatrixXd& alpha_samples, const MatrixXd& beta_samples) {
-    MatrixXd alpha = at_angles(fourier::analyse(alpha_samples), M), beta = at_angles(fourier::analyse(beta_samples), M);
+    MatrixXd alpha = mode_lines::at_angles(fourier::analyse(alpha_samples), M),
+             beta = mode_lines::at_angles(fourier::analyse(beta_samples), M);
     for (const Impl::Part& part : impl_->parts)
       for (Index m = part.modes.num_modes(), j = 0; j < m; ++j) {
         const Index column = part.first + n * (part.first + j);
         alpha.middleCols(column, m) += part.alpha.middleCols(m * j, m);
         beta.middleCols(column, m) += part.beta.middleCols(m * j, m);
       }
-    return Coupling(modes, alpha, beta);
+    return mode_lines::Coupling(modes, alpha, beta);
   };
-  const Coupling coupling = coupling_by(change.alpha, change.beta);
-  std::vector<Line> lines;
+  const mode_lines::Coupling coupling = coupling_by(change.alpha, change.beta);
+  std::vector<mode_lines::Line> lines;
   lines.reserve(impl_->leading.size());
   for (const Index l : impl_->leading) lines.emplace_back(modes, coupling, l);
 
   double last = HUGE_VAL;
   for (std::size_t order = 0; order < most_orders; ++order) {
-    const Leading leading = next(lines);
-    for (const Line& line : lines)
+    const mode_lines::Leading leading = mode_lines::next(lines);
+    for (const mode_lines::Line& line : lines)
       if (!(line.mixed() <= most_mixed)) return std::nullopt;
     const double linear = impl_->linear(order), found = leading.growth - linear, moved = std::abs(found - last);
+    if (!std::isfinite(found)) return std::nullopt;
     last = found;
     if (!(moved <= settled * accuracy.allowed(found, linear))) continue;
     // The leading line once more, from where it is.
     const auto half = Eigen::seqN(0, change.alpha.cols() / 2, 2);
-    const Coupling by_half = coupling_by(change.alpha(Eigen::all, half), change.beta(Eigen::all, half));
-    Line& line = lines[leading.line];
+    const mode_lines::Coupling by_half = coupling_by(change.alpha(Eigen::all, half), change.beta(Eigen::all, half));
+    mode_lines::Line& line = lines[leading.line];
     line.feel(by_half);
     line.next();
     return GrowthChange{linear, found, line.next() - linear};
