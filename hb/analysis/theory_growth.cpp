@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hb/engine/exponents/mode_lines.hpp"
 #include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/exponents/rough_growth.hpp"
 #include "hb/engine/system/periodic_system.hpp"
@@ -21,9 +22,11 @@ constexpr Index most_growth_modes = 2;  // higher ones change the six-link mecha
 // the second look.
 constexpr double negligible = 1e-6, apart = 1e-4;
 constexpr Index fewest_angles = 16;
-// The last look is the one that changes the answer by less than the first of itself, or by less than the second of the
-// growth rate or of a hundredth of the speed.
-constexpr double growth_settled = 0.02, rate_settled = 1e-7;
+// What an answer may be off by.
+constexpr GrowthAccuracy growth_accuracy{.of_change = 0.02, .of_rate = 1e-7};
+// Twice the angles leave about the square of what they change, which may be this part of the answer.
+constexpr double look_settled = 0.07;
+constexpr Index fewest_line_angles = 32;
 // Cells of a turn for each oscillation of the fastest mode, look by look.
 constexpr double cells_per_oscillation[] = {0.4, 1.2, 1.8, 2.4};
 constexpr Index fewest_cells = 12, most_cells = 100000;
@@ -60,6 +63,13 @@ std::optional<NormalForm> variations(const ExactModel& model, double speed, cons
   return normal_form({speed, std::move(exact.by_q2), std::move(exact.by_q1), std::move(exact.by_q)});
 }
 
+// Samples at N angles, those of all harmonics.
+MatrixXd sampled(const FourierSeries& series, Index N) {
+  Index finer = 1;
+  while (finer * N < 2 * series.num_harmonics() + 2) finer *= 2;
+  return fourier::synthesise(series, finer * N)(Eigen::all, Eigen::seqN(0, N, finer));
+}
+
 // Columns of both in turn.
 MatrixXd interleaved(const MatrixXd& even, const MatrixXd& odd) {
   MatrixXd all(even.rows(), 2 * even.cols());
@@ -74,15 +84,10 @@ Index most_harmonics(const std::vector<FourierSeries>& motion, double relative) 
   return H;
 }
 
-// Largest growth rate of the exact model's variations less the linear one, both by as many cells and by the harmonics
-// that the angles tell; ' = d/dtau.
-struct Growth {
-  double change = 0, linear = 0;
-};
-
-Growth growth(const NormalForm& exact, const std::vector<PeriodicCoefficients>& rods, Index num_cells) {
+// Both by as many cells and by the harmonics that the angles tell.
+GrowthChange propagated(const NormalForm& exact, const std::vector<PeriodicCoefficients>& rods, Index num_cells) {
   const Index told = (exact.alpha.cols() - 1) / 2;
-  Growth found{0, -HUGE_VAL};
+  GrowthChange found{-HUGE_VAL, 0};
   for (const PeriodicCoefficients& rod : rods) {
     const FourierSeries alpha = fourier::resized(rod.alpha, std::min(rod.alpha.num_harmonics(), told));
     found.linear = std::max(found.linear, rough_growth({alpha, rod.beta, rod.num_modes}, num_cells));
@@ -106,34 +111,105 @@ double resolving_cells(const NormalForm& exact, double largest_growth, double en
   return cells;
 }
 
-// |change of the growth rate|, at least what the last look changed it by: twice the angles, and more cells, of the one
-// before.
-std::optional<double> settled_change(const ExactModel& model, double speed, const std::vector<FourierSeries>& motion,
-                                     const std::vector<PeriodicCoefficients>& rods) {
-  Index N = fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1));
-  const Index most_angles = 24 * most_harmonics(motion, 0) + 4 * fewest_angles;
-  std::optional<NormalForm> exact = variations(model, speed, motion, N, 0, 1);
-  if (!exact) return std::nullopt;
-  std::optional<double> found;
-  double last = HUGE_VAL, resolving = 0;
-  for (std::size_t look = 0;; ++look) {
-    const double per_oscillation = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
-    const double least = std::max({resolving, per_oscillation * exact->weights().maxCoeff(), double(N / 2)});
-    if (!(least < double(most_cells))) return found;
-    const Index cells = radau_cells(std::max(fewest_cells, Index(std::ceil(least))));
-    const Growth at = growth(*exact, rods, cells);
-    const double size = std::abs(at.change), changed = std::abs(at.change - last);
-    if (std::isfinite(changed)) found = speed * std::max(size, changed);
-    const double enough = std::max(growth_settled * size, rate_settled * std::max(std::abs(at.linear), 0.01));
-    resolving = resolving_cells(*exact, at.linear + at.change, enough);
-    if ((changed <= enough && resolving <= double(cells)) || 2 * N > most_angles) return found;
-    last = at.change;
-    N *= 2;
-    const std::optional<NormalForm> odd = variations(model, speed, motion, N, 1, 2);
-    if (!odd) return std::nullopt;
-    exact = {interleaved(exact->alpha, odd->alpha), interleaved(exact->beta, odd->beta)};
-  }
+// Whether the last look, which changed the answer by so much, is near enough.
+bool settles(const GrowthChange& growth, double changed) {
+  return changed <= std::max(look_settled * std::abs(growth.change), growth_accuracy.allowed(0, growth.linear));
 }
+
+// The variations at more and more angles.
+class Looks {
+ public:
+  Looks(const ExactModel& model, double speed, const std::vector<FourierSeries>& motion,
+        const std::vector<PeriodicCoefficients>& rods)
+      : model_(model),
+        speed_(speed),
+        motion_(motion),
+        rods_(rods),
+        most_angles_(24 * most_harmonics(motion, 0) + 4 * fewest_angles),
+        N_(fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1))),
+        exact_(variations(model, speed, motion, N_, 0, 1)) {}
+
+  // |change of the growth rate|, at least what the last look changed it by; empty where the model ends, or where
+  // nothing settles.
+  std::optional<double> settled() {
+    if (!exact_) return std::nullopt;
+    std::optional<double> found = by_lines();
+    if (!exact_) return std::nullopt;
+    return found ? found : by_propagation();
+  }
+
+ private:
+  // Less the linear rods.
+  NormalForm change() const {
+    NormalForm less = *exact_;
+    const Index n = less.num_modes();
+    Index first = 0;
+    for (const PeriodicCoefficients& rod : rods_) {
+      const Index m = rod.num_modes;
+      const MatrixXd alpha = sampled(rod.alpha, N_);
+      for (Index j = 0; j < m; ++j) {
+        const Index row = first + n * (first + j);
+        less.alpha.middleRows(row, m) -= alpha.middleRows(m * j, m);
+        less.beta.middleRows(row, m).colwise() -= rod.beta.c.col(0).real().segment(m * j, m);
+      }
+      first += m;
+    }
+    return less;
+  }
+
+  // Twice the angles; false where that is too many, or the model ends.
+  bool refine() {
+    if (2 * N_ > most_angles_) return false;
+    N_ *= 2;
+    const std::optional<NormalForm> odd = variations(model_, speed_, motion_, N_, 1, 2);
+    if (odd)
+      exact_ = {interleaved(exact_->alpha, odd->alpha), interleaved(exact_->beta, odd->beta)};
+    else
+      exact_.reset();
+    return odd.has_value();
+  }
+
+  // Empty where the modes' lines do not settle.
+  std::optional<double> by_lines() {
+    std::optional<UncoupledSystems> linear;
+    std::optional<double> told;
+    do {
+      const Index M = std::max(fewest_line_angles, N_);
+      if (!linear || linear->num_angles() != M) linear.emplace(rods_, M);
+      const std::optional<GrowthChange> found = linear->growth(change(), growth_accuracy);
+      if (!found) return std::nullopt;
+      const double size = std::abs(found->change), changed = std::abs(found->change - found->by_half);
+      told = speed_ * std::max(size, changed);
+      if (settles(*found, changed)) break;
+    } while (refine());
+    return told;
+  }
+
+  std::optional<double> by_propagation() {
+    std::optional<double> found;
+    double last = HUGE_VAL, resolving = 0;
+    for (std::size_t look = 0;; ++look) {
+      const double per_oscillation = cells_per_oscillation[std::min(look, std::size(cells_per_oscillation) - 1)];
+      const double least = std::max({resolving, per_oscillation * exact_->weights().maxCoeff(), double(N_ / 2)});
+      if (!(least < double(most_cells))) return found;
+      const Index cells = radau_cells(std::max(fewest_cells, Index(std::ceil(least))));
+      const GrowthChange at = propagated(*exact_, rods_, cells);
+      const double size = std::abs(at.change), changed = std::abs(at.change - last);
+      if (std::isfinite(changed)) found = speed_ * std::max(size, changed);
+      resolving = resolving_cells(*exact_, at.linear + at.change, growth_accuracy.allowed(at.change, at.linear));
+      if (settles(at, changed) && resolving <= double(cells)) return found;
+      last = at.change;
+      if (!refine()) return exact_ ? found : std::nullopt;
+    }
+  }
+
+  const ExactModel& model_;
+  double speed_;
+  const std::vector<FourierSeries>& motion_;
+  const std::vector<PeriodicCoefficients>& rods_;
+  Index most_angles_, N_;
+  std::optional<NormalForm> exact_;
+};
 
 }  // namespace
 
@@ -153,7 +229,7 @@ std::optional<double> growth_theory_error(const Linkage& linkage, double speed, 
     motion.emplace_back(
         Eigen::MatrixXcd(moved.c.topLeftCorner(kept, 1 + fourier::significant_harmonics(moved, negligible))));
   }
-  return settled_change(theory_model(linkage, num_modes), speed, motion, linear);
+  return Looks(theory_model(linkage, num_modes), speed, motion, linear).settled();
 }
 
 }  // namespace hb

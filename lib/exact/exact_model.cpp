@@ -74,6 +74,10 @@ class Block {
       mechanism_.rods[r].shape = rods_[r].shape();
     }
     solve(Lanes(speed_), mechanism_);
+  }
+
+  // The rods in what the mechanism answers.
+  void surround() {
     for (std::size_t r = 0; r < rods_.size(); ++r)
       rods_[r].surround(mechanism_.rods[r].base, mechanism_.rods[r].axial_force);
   }
@@ -94,6 +98,7 @@ class Block {
     return std::nullopt;
   }
 
+  // After surround().
   void residual(MatrixXd& r) {
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
       const std::vector<Lanes>& own = rods_[rod].residual();
@@ -315,6 +320,7 @@ ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, cons
     end_if_wished();
     block.solve(motion, first);
     if (!result.breakdown) result.breakdown = block.breakdown();
+    block.surround();
     block.residual(result.r);
     if (derivatives) block.derivatives(result);
   }
@@ -326,16 +332,20 @@ ExactModel::Forces ExactModel::forces(double speed, const CrankAngles& angles, c
   Forces result;
   Block block(*impl_, angles, speed);
   const exact::BentMechanism<Lanes>& mechanism = block.mechanism();
+  result.forces.reserve(static_cast<std::size_t>(angles.size()));
+  result.motion.reserve(static_cast<std::size_t>(angles.size()));
   for (Index first = 0; first < angles.size(); first += Lanes::width) {
     block.solve(motion, first);
     if (!result.breakdown) result.breakdown = block.breakdown();
     for (Index lane = 0; lane < block.count(); ++lane) {
       MechanismForces& forces = result.forces.emplace_back();
+      forces.dyads.reserve(mechanism.forces.size());
       for (const exact::BentDyadForces<Lanes>& dyad : mechanism.forces)
         forces.dyads.push_back({number(dyad.joint0, lane), number(dyad.joint1, lane), number(dyad.ground, lane)});
       forces.crank_pivot = number(mechanism.crank_pivot, lane);
       forces.torque = in(mechanism.torque, lane);
       std::vector<BodyMotion>& bodies = result.motion.emplace_back();
+      bodies.reserve(mechanism.motion.size());
       for (const exact::BentMotion<Lanes>& m : mechanism.motion)
         bodies.push_back({number(m.z, lane), number(m.z1, lane), number(m.z2, lane), number(m.e, lane),
                           in(m.phi1, lane), in(m.phi2, lane)});
@@ -349,14 +359,29 @@ RitzSamples ritz_samples(std::span<const FourierSeries> q, double speed, Index n
   for (const FourierSeries& series : q) n += series.num_components();
   RitzSamples samples{MatrixXd(n, num_samples), MatrixXd(n, num_samples), MatrixXd(n, num_samples)};
   const double Omega = speed / num_turns;
+  fourier::RealTransform& transform = fourier::thread_transform(num_samples, 3 * n);  // q, q', q''
+  auto spectrum = transform.spectrum();
   Index row = 0;
   for (const FourierSeries& series : q) {
-    const Index I = series.num_components();
-    samples.q.middleRows(row, I) = fourier::synthesise(series, num_samples);
-    samples.q1.middleRows(row, I) = Omega * fourier::synthesise(fourier::derivative(series), num_samples);
-    samples.q2.middleRows(row, I) = Omega * Omega * fourier::synthesise(fourier::derivative(series, 2), num_samples);
-    row += I;
+    const Index I = series.num_components(), harmonics = series.num_harmonics() + 1;
+    if (num_samples < 2 * harmonics - 1) throw std::invalid_argument("ritz_samples: fewer samples than 2H+1");
+    for (Index i = 0; i < I; ++i, ++row) {
+      for (const Index column : {row, n + row, 2 * n + row})
+        spectrum.col(column).tail(spectrum.rows() - harmonics).setZero();
+      for (Index k = 0; k < harmonics; ++k) {
+        const double rate = static_cast<double>(k) * Omega;
+        const std::complex<double> c = series.c(i, k);
+        spectrum(k, row) = c;
+        spectrum(k, n + row) = {-rate * c.imag(), rate * c.real()};
+        spectrum(k, 2 * n + row) = -rate * rate * c;
+      }
+    }
   }
+  transform.backward();
+  const auto all = transform.samples();
+  samples.q = all.leftCols(n).transpose();
+  samples.q1 = all.middleCols(n, n).transpose();
+  samples.q2 = all.rightCols(n).transpose();
   return samples;
 }
 

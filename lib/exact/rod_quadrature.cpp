@@ -1,6 +1,7 @@
 #include "lib/exact/rod_quadrature.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "lib/constants.hpp"
 
@@ -20,6 +21,16 @@ Eigen::VectorXd legendre(Eigen::Index n, double s) {
   return P;
 }
 
+// P_{n-1} and P_n at s, n > 0.
+std::pair<double, double> last_legendre(Eigen::Index n, double s) {
+  double before = 1, last = s;
+  for (Eigen::Index k = 1; k < n; ++k) {
+    const double m = static_cast<double>(k);
+    before = std::exchange(last, ((2 * m + 1) * s * last - m * before) / (m + 1));
+  }
+  return {before, last};
+}
+
 }  // namespace
 
 // Points are the roots of P_Q by Newton's iteration, weights 2/((1 - s^2) P_Q'(s)^2) on (-1, 1). The Lagrange
@@ -33,9 +44,9 @@ RodQuadrature::RodQuadrature(double l, Eigen::Index num_modes, Eigen::Index num_
   for (Eigen::Index k = 0; k < Q; ++k) {
     double s = -std::cos(pi * (static_cast<double>(k) + 0.75) / (n + 0.5)), slope = 1;
     for (int step = 0; step < 8; ++step) {
-      const Eigen::VectorXd at_s = legendre(Q, s);
-      slope = n * (s * at_s(Q) - at_s(Q - 1)) / (s * s - 1);
-      const double change = at_s(Q) / slope;
+      const auto [before, last] = last_legendre(Q, s);
+      slope = n * (s * last - before) / (s * s - 1);
+      const double change = last / slope;
       s -= change;
       if (std::abs(change) < eps) break;
     }

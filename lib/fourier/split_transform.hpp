@@ -15,6 +15,7 @@ class SplitTransform {
 
   // N x n, column per function.
   Eigen::Map<Eigen::MatrixXd> samples() { return {data_.data(), N_, n_}; }
+  Eigen::Map<const Eigen::MatrixXd> samples() const { return {data_.data(), N_, n_}; }
   // Rows >= n x (N/2 + 1): of harmonic k of column j at (j, k), normalised. Rows from n on count for nothing.
   Eigen::Map<Eigen::MatrixXd> re() { return {re_data(), rows_, N_ / 2 + 1}; }
   Eigen::Map<Eigen::MatrixXd> im() { return {im_data(), rows_, N_ / 2 + 1}; }
