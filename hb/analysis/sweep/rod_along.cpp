@@ -14,6 +14,13 @@ std::optional<ScaledSystem> RodAlong::system(double x) const {
   return scale_system(place.model->rods[rod_].system, place.speed);
 }
 
+Eigen::VectorXd RodAlong::mean_frequencies(double x) const {
+  ++evaluations_;
+  const ScenePlace place = scene_.at(x);
+  if (!place.model) return {};
+  return squared_frequencies(place.model->rods[rod_].system, place.speed).cwiseSqrt();
+}
+
 std::optional<SteadyState> RodAlong::solved(double x, const SteadyOptions& options) const {
   ++evaluations_;
   const ScenePlace place = scene_.at(x);

@@ -139,32 +139,45 @@ void add_given(const GivenErrors& given, const Eigen::MatrixXd& L, ScaledSystem&
   add(given.stiffness, 1 / (speed * speed), scaled.K_rounding);
 }
 
-// hb/engine/README.md (S2) but for the load, and L. No bounds on rounding.
-ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::MatrixXd& L) {
+void require_speed(double speed) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
+}
+
+// L M T = 1.
+struct MassFactors {
+  Eigen::MatrixXd L, T;
+};
+
+MassFactors mass_factors(const Eigen::MatrixXd& mass) {
+  if (is_diagonal(mass) && (mass.diagonal().array() > 0).all()) {
+    const Eigen::MatrixXd root = mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+    return {root, root};
+  }
+  if (is_symmetric(mass))
+    if (const std::optional<Eigen::MatrixXd> root = dense::inverse_square_root(mass)) return {*root, *root};
+  return {dense::inverse(mass), Eigen::MatrixXd::Identity(mass.rows(), mass.rows())};
+}
+
+// Ascending, of complex ones the real part.
+Eigen::VectorXd eigenvalues_of_mean(const Eigen::MatrixXd& K0) {
+  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
+  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
+  Eigen::VectorXd values = dense::eigenvalues(K0).real();
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+// hb/engine/README.md (S2) but for the load, and L. No bounds on rounding.
+ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::MatrixXd& L) {
+  require_speed(speed);
   const Eigen::Index I = system.num_modes();
   end_if_wished();
   const FourierSeries C = stiffness_at(system, speed);
   end_if_wished();
 
-  // Left factor L and right factor T with L M T = 1.
-  Eigen::MatrixXd T;
-  const bool diagonal_mass = is_diagonal(system.mass) && (system.mass.diagonal().array() > 0).all();
-  if (diagonal_mass) {
-    T = system.mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
-    L = T;
-  } else {
-    const std::optional<Eigen::MatrixXd> root =
-        is_symmetric(system.mass) ? dense::inverse_square_root(system.mass) : std::nullopt;
-    if (root) {
-      T = *root;
-      L = T;
-    } else {
-      T = Eigen::MatrixXd::Identity(I, I);
-      L = dense::inverse(system.mass);
-    }
-  }
+  auto [left, T] = mass_factors(system.mass);
+  L = std::move(left);
 
   // Turn to the eigenvectors of the mean stiffness where that leaves far less coupling in stiffness and damping
   // together (factor by experience: a diagonal damping matrix is worth keeping).
@@ -202,13 +215,19 @@ Eigen::VectorXd ScaledSystem::mean_diagonal() const {
   return diagonal;
 }
 
-Eigen::VectorXd ScaledSystem::squared_frequencies() const {
-  const Eigen::MatrixXd K0 = mean_stiffness();
-  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
-  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
-  Eigen::VectorXd values = dense::eigenvalues(K0).real();
-  std::sort(values.begin(), values.end());
-  return values;
+Eigen::VectorXd ScaledSystem::squared_frequencies() const { return eigenvalues_of_mean(mean_stiffness()); }
+
+Eigen::VectorXd squared_frequencies(const HillSystem& system, double speed) {
+  require_speed(speed);
+  const Eigen::Index I = system.num_modes();
+  Eigen::MatrixXd C0 = Eigen::MatrixXd::Zero(I, I);
+  double factor = 1 / (speed * speed);
+  for (const FourierSeries& part : system.stiffness) {
+    if (part.c.size() > 0) C0 += factor * mean_of(part, I);
+    factor *= speed;
+  }
+  const MassFactors factors = mass_factors(system.mass);
+  return eigenvalues_of_mean(factors.L * C0 * factors.T);
 }
 
 ScaledSystem scale_unloaded(const HillSystem& system, double speed) {
