@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lib/stop_wish.hpp"
+#include "lib/rod/field_change.hpp"
 
 namespace hb {
 namespace {
@@ -12,25 +12,12 @@ namespace {
 // the error. The factor 2 covers that and neighbouring modes of unequal weight (chosen by experiment).
 constexpr double cut_safety = 2;
 
-double relative_change(const Eigen::MatrixXd& coarse, const Eigen::MatrixXd& fine) {
-  const double scale = fine.cwiseAbs().maxCoeff();
-  return scale == 0 ? 0 : cut_safety * ((coarse - fine).cwiseAbs().maxCoeff() / scale);
-}
-
 }  // namespace
 
 CutError cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                    const FourierSeries& finer) {
-  // Four points per half-wave of the finest mode, and at least as many per period of the highest harmonic. At joint 0
-  // both are zero.
-  const Eigen::Index num_x = std::max<Eigen::Index>(32, 4 * finer.num_components());
-  const Eigen::Index harmonics = std::max(q.num_harmonics(), finer.num_harmonics());
-  const Eigen::Index num_samples = fourier::fast_length(4 * std::max<Eigen::Index>(16, harmonics));
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(num_x, link.length / static_cast<double>(num_x), link.length);
-  const RodField coarse = rod_field(link, rod, speed, q, x, num_samples);
-  end_if_wished();
-  const RodField fine = rod_field(link, rod, speed, finer, x, num_samples);
-  return {relative_change(coarse.w, fine.w), relative_change(coarse.bending_moment, fine.bending_moment)};
+  const FieldChange change = field_change(link, rod, speed, q, finer);
+  return {cut_safety * change.deflection, cut_safety * change.bending_moment};
 }
 
 PeakErrors peak_errors(const Body& link, const RodShape& shape, const FourierSeries& q, double error_bound,

@@ -13,14 +13,6 @@ using Eigen::Index;
 
 constexpr Index most_unknowns = 60;
 
-// What does not vary over the turn, without loads: it has the frequencies of the whole.
-HillSystem mean_part(const HillSystem& system) {
-  HillSystem mean{system.mass, system.damping, {}, {}};
-  for (std::size_t p = 0; p < 3; ++p)
-    if (system.stiffness[p].c.size() > 0) mean.stiffness[p] = fourier::resized(system.stiffness[p], 0);
-  return mean;
-}
-
 // Omega with r(Omega) = n by Omega <- Omega r(Omega)/n, which is exact where omega_1 does not depend on the speed.
 std::optional<NearestResonance> resonance_of(const HillSystem& system, double speed, int n) {
   constexpr int most_steps = 60;
@@ -40,20 +32,19 @@ std::optional<NearestResonance> resonance_of(const HillSystem& system, double sp
 }  // namespace
 
 double frequency_ratio(const HillSystem& system, double speed) {
-  const double w2 = scale_system(system, speed).squared_frequencies()(0);
+  const double w2 = squared_frequencies(system, speed)(0);
   return w2 > 0 ? std::sqrt(w2) : 0.0;
 }
 
 std::optional<NearestResonance> nearest_resonance(const HillSystem& system, double speed) {
   if (system.num_modes() > most_unknowns) return std::nullopt;
-  const HillSystem mean = mean_part(system);
-  const double ratio = frequency_ratio(mean, speed);
+  const double ratio = frequency_ratio(system, speed);
   constexpr double most_orders = 1e6;
   if (!(ratio > 0 && ratio < most_orders)) return std::nullopt;
   const int below = std::max(1, static_cast<int>(std::floor(ratio)));
   std::optional<NearestResonance> nearest;
   for (const int n : {below, below + 1}) {
-    const std::optional<NearestResonance> found = resonance_of(mean, speed, n);
+    const std::optional<NearestResonance> found = resonance_of(system, speed, n);
     if (found && (!nearest || std::abs(found->speed - speed) < std::abs(nearest->speed - speed))) nearest = found;
   }
   return nearest;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hb/engine/steady/rough_state.hpp"
 #include "lib/rod/shear.hpp"
 
 namespace hb {
@@ -30,6 +31,16 @@ SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const Sc
   if (const double size = largest(q); size > 0) state.error_bound *= 2 * largest(state.q) / size;
   state.q = std::move(q);
   return state;
+}
+
+std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
+                                       double accuracy) {
+  constexpr double of_residual = 0.1;
+  const std::optional<FourierSeries> q =
+      RoughSolver(system, speed)
+          .solve(load_at(system, speed), of_residual * accuracy / nearest_amplification(system, speed));
+  if (!q) return std::nullopt;
+  return ritz_coordinates(*q, num_modes);
 }
 
 }  // namespace hb

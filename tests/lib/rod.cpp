@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lib/constants.hpp"
+#include "lib/rod/field_change.hpp"
 #include "tests/support/dense_steady_state.hpp"
 #include "tests/support/six_link.hpp"
 
@@ -193,6 +194,30 @@ TEST(RodShape, FieldsAtFewAnglesAreThoseOfMany) {
               1e-13 * all.bending_moment.cwiseAbs().maxCoeff())
         << few;
   }
+}
+
+TEST(RodShape, ChangeIsTheLargestDifferenceOfTwoFields) {
+  const LinkageCoefficients coefficients = linkage_coefficients(six_link::linkage());
+  const Body& rod = rod_AB();
+  const auto response = [&](Eigen::Index modes, Eigen::Index harmonics) {
+    return dense_steady_state(ritz_system(rod, coefficients.rods[0], modes), 100, harmonics);
+  };
+  const FourierSeries q = response(3, 20), finer = response(9, 24);
+  constexpr Eigen::Index places = 36, angles = 96;
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(places + 1, 0, rod.length);
+  const RodField some = rod_field(rod, coefficients.rods[0], 100, q, x, angles),
+                 all = rod_field(rod, coefficients.rods[0], 100, finer, x, angles);
+  const auto change = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+  };
+  const FieldChange found = field_change(rod, coefficients.rods[0], 100, q, finer);
+  const double w = change(some.w, all.w), moment = change(some.bending_moment, all.bending_moment);
+  EXPECT_NEAR(found.deflection, w, 1e-6 * w);
+  EXPECT_NEAR(found.bending_moment, moment, 1e-6 * moment);
+  EXPECT_EQ(field_change(rod, coefficients.rods[0], 100, q, q).deflection, 0);
+  FourierSeries wrong = finer;
+  wrong.c(0, 1) = hb::nan;
+  EXPECT_TRUE(std::isnan(field_change(rod, coefficients.rods[0], 100, q, wrong).deflection));
 }
 
 TEST(RodShape, PeaksAreTrueMaximaOfTheField) {

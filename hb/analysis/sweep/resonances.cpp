@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
+#include <optional>
+
+#include "lib/constants.hpp"
 
 namespace hb {
 namespace {
@@ -45,23 +47,27 @@ std::vector<ResponseSample> round_top(const RodAlong& rod, double x, double flan
   return samples;
 }
 
-// Frequency of mode j of the averaged system over the speed; NaN where there is none.
-double mean_ratio(const RodAlong& rod, double x, std::size_t j) {
-  const std::optional<ScaledSystem> system = rod.system(x);
-  if (!system) return std::numeric_limits<double>::quiet_NaN();
-  return std::sqrt(system->squared_frequencies()(static_cast<Eigen::Index>(j)));
-}
+// The interval between two places.
+struct Interval {
+  const RodAlong& rod;
+  const ResponsePlace &a, &b;
+  Eigen::VectorXd mean_a, mean_b;  // frequencies of the averaged system at the ends, over the speed
+};
 
-// Where mode j is met by n Omega between two places, given that it is: by the averaged system's frequency, off by what
-// it is off at both ends in proportion; without it on a straight line.
-double crossing(const RodAlong& rod, const ResponsePlace& a, const ResponsePlace& b, std::size_t j, double n) {
+// Where mode j is met by n Omega, given that it is: by the averaged system's frequency, off by what it is off at both
+// ends in proportion; without it on a straight line.
+double crossing(const Interval& interval, std::size_t j, double n) {
   constexpr int most_steps = 8;
   constexpr double enough = 1e-3;  // of the interval
+  const auto& [rod, a, b, mean_a, mean_b] = interval;
+  const auto of_mode = [mode = static_cast<Eigen::Index>(j)](const Eigen::VectorXd& frequencies) {
+    return frequencies.size() > 0 ? frequencies(mode) : nan;
+  };
   const double first = a.modes[j].frequency / a.speed - n, last = b.modes[j].frequency / b.speed - n;
-  const double off_a = first + n - mean_ratio(rod, a.x, j), off_b = last + n - mean_ratio(rod, b.x, j);
+  const double off_a = first + n - of_mode(mean_a), off_b = last + n - of_mode(mean_b);
   double low = 0, high = 1, f_low = first, f_high = last, t = first / (first - last);
   for (int step = 0; step < most_steps; ++step) {
-    const double x = a.x + t * (b.x - a.x), f = mean_ratio(rod, x, j) + off_a + t * (off_b - off_a) - n;
+    const double f = of_mode(rod.mean_frequencies(a.x + t * (b.x - a.x))) + off_a + t * (off_b - off_a) - n;
     if (!std::isfinite(f)) break;
     (f * f_low > 0 ? low : high) = t;
     (f * f_low > 0 ? f_low : f_high) = f;
@@ -98,6 +104,7 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const Respon
   constexpr double least_flank = 0.02;  // of the interval: crossings are foretold better than that
   constexpr double on_point = 1e-6;  // of the interval: rounding makes tops of samples that lie closer together
   std::vector<ResponseSample> found;
+  std::optional<Interval> interval;
   const int most = std::max(a.num_harmonics, b.num_harmonics);
   for (std::size_t j = 0; j < a.modes.size() && j < std::max(a.max_abs.size(), b.max_abs.size()); ++j) {
     const double first = a.modes[j].frequency / a.speed, last = b.modes[j].frequency / b.speed;
@@ -107,7 +114,8 @@ std::vector<ResponseSample> resonances_between(const RodAlong& rod, const Respon
     // Wide enough to show on the points themselves.
     if (!(half_width < 2 * (high - low))) continue;
     for (double n = std::max(1.0, std::floor(low) + 1); n < high && n <= most; ++n) {
-      const double x = crossing(rod, a, b, j, n), width = b.x - a.x;
+      if (!interval) interval.emplace(Interval{rod, a, b, rod.mean_frequencies(a.x), rod.mean_frequencies(b.x)});
+      const double x = crossing(*interval, j, n), width = b.x - a.x;
       const double flank =
           std::min({std::max(3 * half_width / (high - low), least_flank) * width, 0.5 * (x - a.x), 0.5 * (b.x - x)});
       if (flank < on_point * width) continue;  // a or b is a sample itself

@@ -14,6 +14,13 @@ std::optional<ScaledSystem> RodAlong::system(double x) const {
   return scale_system(place.model->rods[rod_].system, place.speed);
 }
 
+Eigen::VectorXd RodAlong::mean_frequencies(double x) const {
+  ++evaluations_;
+  const ScenePlace place = scene_.at(x);
+  if (!place.model) return {};
+  return squared_frequencies(place.model->rods[rod_].system, place.speed).cwiseSqrt();
+}
+
 std::optional<SteadyState> RodAlong::solved(double x, const SteadyOptions& options) const {
   ++evaluations_;
   const ScenePlace place = scene_.at(x);
@@ -25,8 +32,15 @@ std::optional<SteadyState> RodAlong::solved(double x, const SteadyOptions& optio
 }
 
 std::optional<FourierSeries> RodAlong::rough_response(double x) const {
-  std::optional<SteadyState> state =
-      solved(x, {.tolerance = peak_accuracy(settings()).rough, .method = settings().steady_method});
+  const double accuracy = peak_accuracy(settings()).rough;
+  const ScenePlace place = scene_.at(x);
+  if (!place.model) return std::nullopt;
+  const RodModel& rod = place.model->rods[rod_];
+  if (std::optional<FourierSeries> q = rough_rod(rod.system, rod.num_modes, place.speed, accuracy)) {
+    ++evaluations_;
+    return q;
+  }
+  std::optional<SteadyState> state = solved(x, {.tolerance = accuracy, .method = settings().steady_method});
   if (!state) return std::nullopt;
   return std::move(state->q);
 }

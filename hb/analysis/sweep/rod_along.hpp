@@ -1,6 +1,7 @@
 // One rod along a sweep, as functions of x.
 #pragma once
 
+#include <Eigen/Core>
 #include <atomic>
 #include <cstddef>
 #include <optional>
@@ -22,6 +23,9 @@ class RodAlong {
 
   // Empty where there is no linkage.
   [[nodiscard]] std::optional<ScaledSystem> system(double x) const;
+
+  // Of the averaged system, ascending, over the speed: NaN where negative. Empty where there is no linkage.
+  [[nodiscard]] Eigen::VectorXd mean_frequencies(double x) const;
 
   // To a few digits; empty also where it is singular.
   [[nodiscard]] std::optional<FourierSeries> rough_response(double x) const;

@@ -10,8 +10,6 @@
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/analysis/stress_cycle.hpp"
 #include "hb/analysis/theory_growth.hpp"
-#include "hb/engine/steady/rough_state.hpp"
-#include "lib/rod/shear.hpp"
 
 namespace hb {
 namespace {
@@ -49,17 +47,14 @@ StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
 
 // The response with more modes, for errors by comparison. Where q is accurate, what more modes add is not seen below
 // `accuracy` of it; else it is so much more accurate that the difference shows the error of q, whose highest harmonics
-// count most in joint forces. Needs no error bound of its own; what is left of the load grows by the resonance. Empty
-// where there is none.
+// count most in joint forces. Needs no error bound of its own. Empty where there is none.
 FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings) {
-  constexpr double accuracy = 1e-6, better = 1e-2, of_residual = 0.1;
+  constexpr double accuracy = 1e-6, better = 1e-2;
   SteadyOptions options = response_options(settings);
   const bool accurate = options.tolerance <= better * accuracy;
   options.tolerance = accurate ? accuracy : std::min(accuracy, better * options.tolerance);
   const Eigen::Index num_modes = comparison_modes(rod.num_modes);
-  const double left = of_residual * options.tolerance / nearest_amplification(rod.finer, speed);
-  if (const auto q = RoughSolver(rod.finer, speed).solve(load_at(rod.finer, speed), left))
-    return ritz_coordinates(*q, num_modes);
+  if (std::optional<FourierSeries> q = rough_rod(rod.finer, num_modes, speed, options.tolerance)) return *std::move(q);
   SteadyState state = solve_rod(rod.finer, num_modes, speed, options);
   return state.status == SteadyStatus::singular ? FourierSeries() : std::move(state.q);
 }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hb/engine/boundaries/frozen_frequencies.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
+#include "lib/modulus.hpp"
 
 namespace hb {
 
@@ -123,64 +125,31 @@ MatrixXd harmonic(const ScaledSystem& system, const MeanModes& modes, Index k) {
   return modes.Y * K.cwiseAbs() * modes.X;
 }
 
-// Frequencies over the turn with the stiffness held at each angle, ascending, for each mode's own damping b, to second
-// order in how fast the modes turn; empty where they change too fast to be followed through the turn.
-VectorXd frozen_frequencies(const ScaledSystem& system, const VectorXd& b) {
-  constexpr Index most_harmonics = 31, angles = 64;
-  constexpr double least_apart = 4, least_frequency = 2, most_correction = 0.02;
-  const Index I = system.num_modes(), H = std::min(system.K.num_harmonics(), most_harmonics);
-  const double left_out = 2 * system.K.c.rightCols(system.K.num_harmonics() - H).cwiseAbs().sum();
-  const FourierSeries K = fourier::resized(system.K, H);
-  const MatrixXd samples = fourier::synthesise(K, angles), slopes = fourier::synthesise(fourier::derivative(K), angles);
-  VectorXd sum = VectorXd::Zero(I), correction = VectorXd::Zero(I);
-  for (Index j = 0; j < angles; ++j) {
-    const Eigen::Map<const MatrixXd> at(samples.col(j).data(), I, I), slope(slopes.col(j).data(), I, I);
-    const dense::SymmetricEigenpairs frozen = dense::symmetric_eigenpairs(at);
-    VectorXd w = frozen.values - 0.25 * b.cwiseAbs2();
-    if (!(w.minCoeff() > least_frequency * least_frequency)) return {};
-    w = w.cwiseSqrt();
-    if (!(left_out < most_correction * w.minCoeff())) return {};
-    sum += w;
-    const MatrixXd turned = frozen.vectors.transpose() * slope * frozen.vectors;
-    for (Index i = 0; i < I; ++i) {
-      correction(i) -= std::pow(turned(i, i), 2) / (32 * std::pow(w(i), 5));
-      for (Index l = 0; l < I; ++l) {
-        if (l == i) continue;
-        if (!(std::abs(w(l) - w(i)) > least_apart)) return {};
-        const double apart = w(l) * w(l) - w(i) * w(i), rate = turned(i, l) / apart;
-        correction(i) -= rate * rate * (w(l) * w(l) + 3 * w(i) * w(i)) / (2 * w(i) * apart);
-      }
-    }
-  }
-  sum /= static_cast<double>(angles);
-  correction /= static_cast<double>(angles);
-  if (!(correction.cwiseAbs().maxCoeff() < most_correction)) return {};
-  return sum + correction;
-}
-
 bool symmetric_stiffness(const ScaledSystem& system) {
   const Index I = system.num_modes();
-  const double scale = system.K.c.cwiseAbs().maxCoeff();
+  double largest = 0, apart = 0;  // squares of moduli
   for (Index k = 0; k <= system.K.num_harmonics(); ++k) {
     const Eigen::Map<const MatrixXcd> K(system.K.c.col(k).data(), I, I);
-    if (!((K - K.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * scale)) return false;
+    largest = std::max(largest, K.cwiseAbs2().maxCoeff());
+    for (Index j = 0; j < I; ++j)
+      for (Index i = 0; i < j; ++i) apart = std::max(apart, std::norm(K(i, j) - K(j, i)));
   }
-  return true;
+  return apart <= 1e-24 * largest;
 }
 
-bool symmetric_everywhere(const ScaledSystem& system) {
-  if (!symmetric_stiffness(system)) return false;
-  if (system.diagonal_damping) return true;
-  return is_symmetric(system.G) && dense::symmetric_eigenpairs(system.G).values.minCoeff() >= 0;
+bool passive_damping(const ScaledSystem& system) {
+  return system.diagonal_damping ||
+         (is_symmetric(system.G) && dense::symmetric_eigenpairs(system.G).values.minCoeff() >= 0);
 }
 
+// Of a system with symmetric stiffness.
 void add_frozen(std::vector<MeanExponent>& mean, const ScaledSystem& system) {
   const auto I = static_cast<std::size_t>(system.num_modes());
   // Mean exponents name those that modulation shifts less.
   constexpr double named_by_means = 0.5;
   if (I < 2 || I > most_modes_frozen ||
       std::ranges::none_of(mean, [](const MeanExponent& m) { return shift_by_modulation(m) > named_by_means; }) ||
-      !symmetric_everywhere(system))
+      !passive_damping(system))
     return;
   VectorXd b(system.num_modes());
   for (std::size_t i = 0; i < I; ++i) {
@@ -188,7 +157,7 @@ void add_frozen(std::vector<MeanExponent>& mean, const ScaledSystem& system) {
     if (!(mu.imag() > 0)) return;
     b(static_cast<Index>(i)) = -2 * mu.real();
   }
-  const VectorXd w = frozen_frequencies(system, b);
+  const VectorXd w = frozen_frequencies(system.K, b);
   for (std::size_t i = 0; i < I && w.size() > 0; ++i) {
     mean[I + i].frozen = w(static_cast<Index>(i));
     mean[I - 1 - i].frozen = -w(static_cast<Index>(i));
@@ -225,15 +194,14 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
   std::vector<MeanExponent> result(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) result[static_cast<std::size_t>(i)].value = modes.mu(i);
   if (H == 0) return result;
-  MatrixXd sizes = MatrixXd::Zero(system.num_modes(), system.num_modes());
-  for (Index k = 1; k <= H; ++k)
-    sizes += Eigen::Map<const MatrixXcd>(system.K.c.col(k).data(), sizes.rows(), sizes.cols()).cwiseAbs();
+  const MatrixXd sizes =
+      moduli(system.K.c.rightCols(H)).rowwise().sum().reshaped(system.num_modes(), system.num_modes());
   // All ways of all orders: C + C C/delta + ... = C (1 - C/delta)^-1, which is positive where the sum converges.
   const MatrixXd C = modes.Y * sizes * modes.X;
   const MatrixXd ways = dense::inverse(MatrixXd(MatrixXd::Identity(n, n) - C / least_detuning));
   const bool converges = ways.allFinite() && ways.minCoeff() >= 0;
   const MatrixXd all = converges ? MatrixXd(C * ways) : MatrixXd::Constant(n, n, HUGE_VAL);
-  const bool drifts = !symmetric_stiffness(system);
+  const bool symmetric = symmetric_stiffness(system);
   for (Index i = 0; i < n; ++i) {
     MeanExponent& mean = result[static_cast<std::size_t>(i)];
     mean.modulation = C.row(i).maxCoeff();
@@ -241,15 +209,15 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
       if (j == i) continue;
       const double pulled = margin * std::sqrt(all(i, j) * all(j, i));
       mean.coupling = std::max(mean.coupling, pulled);
-      if (drifts && !are_conjugate(modes.mu(i), modes.mu(j))) mean.drift = std::max(mean.drift, pulled);
+      if (!symmetric && !are_conjugate(modes.mu(i), modes.mu(j))) mean.drift = std::max(mean.drift, pulled);
     }
   }
-  add_frozen(result, system);
+  if (symmetric) add_frozen(result, system);
   return result;
 }
 
 ParametricCoupling::ParametricCoupling(const ScaledSystem& system, int max_order)
-    : symmetric_(symmetric_everywhere(system)), max_order_(max_order) {
+    : symmetric_(symmetric_stiffness(system) && passive_damping(system)), max_order_(max_order) {
   const MeanModes modes = mean_modes(system);
   mu_ = modes.mu;
   std::vector<MatrixXd> E;

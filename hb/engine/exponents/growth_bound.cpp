@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lib/dense.hpp"
+#include "lib/fourier/transpose.hpp"
 
 namespace hb {
 
@@ -177,8 +178,13 @@ double growth_bound(const SampledSystem& system) {
 
 double growth_bound(const ScaledSystem& system) {
   if (!system.diagonal_damping) return HUGE_VAL;
-  const Index N = fourier::fast_length(2 * system.K.num_harmonics() + 12);
-  return growth_bound(SampledSystem{fourier::synthesise(system.K, N).transpose(), {}, system.damping_diagonal()});
+  const Eigen::MatrixXcd& K = system.K.c;
+  const Index N = fourier::fast_length(2 * K.cols() + 10);
+  fourier::RealTransform& stiffness = fourier::thread_transform(N, K.rows());
+  fourier::transpose_singly(K, stiffness.spectrum().topRows(K.cols()));
+  stiffness.spectrum().bottomRows(N / 2 + 1 - K.cols()).setZero();
+  stiffness.backward();
+  return growth_bound(SampledSystem{stiffness.samples(), {}, system.damping_diagonal()});
 }
 
 }  // namespace hb

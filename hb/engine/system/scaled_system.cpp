@@ -38,6 +38,17 @@ double coupling(const Eigen::MatrixXd& A) {
   return largest;
 }
 
+// L A T, with the same roundings where L and T are diagonal.
+Eigen::MatrixXd between(const Eigen::MatrixXd& L, const Eigen::MatrixXd& A, const Eigen::MatrixXd& T) {
+  if (is_diagonal(L) && is_diagonal(T)) return L.diagonal().asDiagonal() * A * T.diagonal().asDiagonal();
+  return L * A * T;
+}
+
+Eigen::MatrixXd inverse(const Eigen::MatrixXd& T) {
+  if (is_diagonal(T)) return T.diagonal().cwiseInverse().asDiagonal();
+  return dense::inverse(T);
+}
+
 // Every matrix coefficient c_k becomes left * c_k * right.
 FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   const Eigen::Index I = left.rows();
@@ -60,28 +71,33 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
 // mode whose own stiffness is small beside its couplings these count. Other modes' stiffnesses do not: they may be 1e20
 // times as large.
 FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
-  const Eigen::VectorXd each = K.c.cwiseAbs2().rowwise().maxCoeff().cwiseSqrt();
-  const Eigen::Map<const Eigen::MatrixXd> largest(each.data(), I, I);
+  Eigen::ArrayXXd square(I * I, K.c.cols());  // of every coefficient
+  Eigen::ArrayXd most = Eigen::ArrayXd::Zero(I * I);
+  for (Eigen::Index k = 0; k < K.c.cols(); ++k) {
+    square.col(k) = K.c.col(k).cwiseAbs2();
+    most = most.max(square.col(k));
+  }
+  const Eigen::MatrixXd largest = most.sqrt().reshaped(I, I);
   const Eigen::VectorXd couplings = largest.rowwise().maxCoeff().cwiseMax(largest.colwise().maxCoeff().transpose());
   const Eigen::VectorXd scale = mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * 1e-8).cwiseSqrt();
-  const Eigen::MatrixXd least = 1e-17 * scale * scale.transpose();
-  const Eigen::Map<const Eigen::ArrayXd> rounding(least.data(), I * I);
-  const auto negligible = [&](Eigen::Index k) { return (K.c.col(k).array().abs2().sqrt() <= rounding).all(); };
+  const Eigen::ArrayXd rounding = (1e-17 * scale * scale.transpose()).reshaped();
   Eigen::Index H = K.num_harmonics();
-  while (H > 0 && negligible(H)) --H;
+  while (H > 0 && (square.col(H).sqrt() <= rounding).all()) --H;
   return fourier::resized(K, H);
 }
 
 // Sum over the powers of Omega and all harmonics of the size of every component: what rounding errors are relative to.
 Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index num_components, double speed) {
-  Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
-  double factor = 1;
+  Eigen::VectorXd parts = Eigen::VectorXd::Zero(2 * num_components);  // real and imaginary ones in turn
+  double factor = 2;
   for (const FourierSeries& part : powers) {
     end_if_wished();
-    if (part.c.size() > 0) size += 2 * factor * (part.c.real().cwiseAbs() + part.c.imag().cwiseAbs()).rowwise().sum();
+    const Eigen::Map<const Eigen::MatrixXd> c(reinterpret_cast<const double*>(part.c.data()), 2 * part.c.rows(),
+                                              part.c.cols());
+    for (Eigen::Index k = 0; k < c.cols(); ++k) parts += factor * c.col(k).cwiseAbs();
     factor *= speed;
   }
-  return size;
+  return parts.reshaped(2, num_components).colwise().sum().transpose();
 }
 
 // The part of the mean in half of that.
@@ -89,7 +105,7 @@ Eigen::VectorXd mean_sizes(const std::array<FourierSeries, 3>& powers, Eigen::In
   Eigen::VectorXd size = Eigen::VectorXd::Zero(num_components);
   double factor = 1;
   for (const FourierSeries& part : powers) {
-    if (part.c.size() > 0) size += factor * part.c.col(0).cwiseAbs();
+    if (part.c.size() > 0) size += factor * part.c.col(0).real().cwiseAbs();
     factor *= speed;
   }
   return size;
@@ -139,36 +155,49 @@ void add_given(const GivenErrors& given, const Eigen::MatrixXd& L, ScaledSystem&
   add(given.stiffness, 1 / (speed * speed), scaled.K_rounding);
 }
 
-// hb/engine/README.md (S2) but for the load, and L. No bounds on rounding.
-ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::MatrixXd& L) {
+void require_speed(double speed) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
+}
+
+// L M T = 1.
+struct MassFactors {
+  Eigen::MatrixXd L, T;
+};
+
+MassFactors mass_factors(const Eigen::MatrixXd& mass) {
+  if (is_diagonal(mass) && (mass.diagonal().array() > 0).all()) {
+    const Eigen::MatrixXd root = mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
+    return {root, root};
+  }
+  if (is_symmetric(mass))
+    if (const std::optional<Eigen::MatrixXd> root = dense::inverse_square_root(mass)) return {*root, *root};
+  return {dense::inverse(mass), Eigen::MatrixXd::Identity(mass.rows(), mass.rows())};
+}
+
+// Ascending, of complex ones the real part.
+Eigen::VectorXd eigenvalues_of_mean(const Eigen::MatrixXd& K0) {
+  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
+  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
+  Eigen::VectorXd values = dense::eigenvalues(K0).real();
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+// hb/engine/README.md (S2) but for the load, and L. No bounds on rounding.
+ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::MatrixXd& L) {
+  require_speed(speed);
   const Eigen::Index I = system.num_modes();
   end_if_wished();
   const FourierSeries C = stiffness_at(system, speed);
   end_if_wished();
 
-  // Left factor L and right factor T with L M T = 1.
-  Eigen::MatrixXd T;
-  const bool diagonal_mass = is_diagonal(system.mass) && (system.mass.diagonal().array() > 0).all();
-  if (diagonal_mass) {
-    T = system.mass.diagonal().cwiseSqrt().cwiseInverse().asDiagonal();
-    L = T;
-  } else {
-    const std::optional<Eigen::MatrixXd> root =
-        is_symmetric(system.mass) ? dense::inverse_square_root(system.mass) : std::nullopt;
-    if (root) {
-      T = *root;
-      L = T;
-    } else {
-      T = Eigen::MatrixXd::Identity(I, I);
-      L = dense::inverse(system.mass);
-    }
-  }
+  auto [left, T] = mass_factors(system.mass);
+  L = std::move(left);
 
   // Turn to the eigenvectors of the mean stiffness where that leaves far less coupling in stiffness and damping
   // together (factor by experience: a diagonal damping matrix is worth keeping).
-  const Eigen::MatrixXd K0 = L * mean_of(C, I) * T, B0 = L * system.damping * T;
+  const Eigen::MatrixXd K0 = between(L, mean_of(C, I), T), B0 = between(L, system.damping, T);
   if (I > 1 && is_symmetric(K0)) {
     const Eigen::MatrixXd Q = dense::symmetric_eigenpairs(K0).vectors;
     if (coupling(Q.transpose() * B0 * Q) < 0.1 * (coupling(K0) + coupling(B0))) {
@@ -180,8 +209,8 @@ ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::Matr
   ScaledSystem scaled;
   scaled.speed = speed;
   scaled.T = T;
-  scaled.T_inverse = dense::inverse(T);
-  scaled.G = L * system.damping * T / speed;
+  scaled.T_inverse = inverse(T);
+  scaled.G = between(L, system.damping, T) / speed;
   scaled.diagonal_damping = is_diagonal(scaled.G);
   scaled.K = transformed(C, L, T);
   end_if_wished();
@@ -202,13 +231,19 @@ Eigen::VectorXd ScaledSystem::mean_diagonal() const {
   return diagonal;
 }
 
-Eigen::VectorXd ScaledSystem::squared_frequencies() const {
-  const Eigen::MatrixXd K0 = mean_stiffness();
-  const bool symmetric = (K0 - K0.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * dense::largest(K0);
-  if (symmetric) return dense::symmetric_eigenpairs(K0).values;
-  Eigen::VectorXd values = dense::eigenvalues(K0).real();
-  std::sort(values.begin(), values.end());
-  return values;
+Eigen::VectorXd ScaledSystem::squared_frequencies() const { return eigenvalues_of_mean(mean_stiffness()); }
+
+Eigen::VectorXd squared_frequencies(const HillSystem& system, double speed) {
+  require_speed(speed);
+  const Eigen::Index I = system.num_modes();
+  Eigen::MatrixXd C0 = Eigen::MatrixXd::Zero(I, I);
+  double factor = 1 / (speed * speed);
+  for (const FourierSeries& part : system.stiffness) {
+    if (part.c.size() > 0) C0 += factor * mean_of(part, I);
+    factor *= speed;
+  }
+  const MassFactors factors = mass_factors(system.mass);
+  return eigenvalues_of_mean(between(factors.L, C0, factors.T));
 }
 
 ScaledSystem scale_unloaded(const HillSystem& system, double speed) {

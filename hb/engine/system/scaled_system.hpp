@@ -44,5 +44,7 @@ struct GivenErrors {
 [[nodiscard]] ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given = {});
 // The same without the load, bounds and `conservative`.
 [[nodiscard]] ScaledSystem scale_unloaded(const HillSystem& system, double speed);
+// ScaledSystem::squared_frequencies of it, from the mean stiffness alone.
+[[nodiscard]] Eigen::VectorXd squared_frequencies(const HillSystem& system, double speed);
 
 }  // namespace hb
