@@ -39,34 +39,34 @@ class Members {
   template <class Value>
   void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value) {
     members_.push_back({key, {}, [nx = map.x.size(), &points, value](TextPieces& pieces) {
-                          std::string& text = pieces.text();
-                          RepeatedDigits digits;
-                          text += '[';
-                          for (std::size_t p = 0; p < points.size(); ++p) {
-                            const bool begins = p % nx == 0;
-                            if (begins) pieces.end_row();
-                            text += !begins ? "," : p > 0 ? "],[" : "[";
-                            if (missing(points[p]))
-                              text += "null";
-                            else
-                              digits.append_to(text, value(points[p]));
+                          const ValueText none(std::nan(""));
+                          RepeatedText<decltype(value(points[0]))> texts;
+                          for (std::size_t row = 0; row < points.size(); row += nx) {
+                            pieces.add(row > 0 ? "," : "[");
+                            pieces.add(nx * (1 + ValueText::longest), [&](char* at) {
+                              for (std::size_t p = row; p < row + nx; ++p) {
+                                *at++ = p > row ? ',' : '[';
+                                at = (missing(points[p]) ? none : texts.of(value(points[p]))).copy(at);
+                              }
+                              return at;
+                            });
+                            pieces.add("]");
                           }
-                          text += "]]";
+                          pieces.add("]");
                         }});
   }
   void write(TextPieces& pieces) const {
-    std::string& text = pieces.text();
-    char before = '{';
+    const char* before = "{";
     for (const Member& member : members_) {
-      text += before;
-      before = ',';
-      text += printable(Json(member.key).dump()) + ":";
+      pieces.add(before);
+      before = ",";
+      pieces.add(printable(Json(member.key).dump()) + ":");
       if (member.write)
         member.write(pieces);
       else
-        text += printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace));
+        pieces.add(printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace)));
     }
-    text += '}';
+    pieces.add("}");
   }
 
  private:
@@ -275,7 +275,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   json.add("units", units_json(document.scene.units));
   TextPieces pieces(sink);
   json.write(pieces);
-  pieces.text() += '\n';
+  pieces.add("\n");
   pieces.hand_on();
 }
 
