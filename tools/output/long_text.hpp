@@ -21,6 +21,10 @@ class TextPieces {
   TextPieces& operator=(const TextPieces&) = delete;
 
   void add(std::string_view text) {
+    if (text.size() > room_) {
+      hand_on();
+      return sink_(text);
+    }
     add(text.size(), [&](char* at) { return std::ranges::copy(text, at).out; });
   }
   // What `write` puts at the place it is given, at most so many characters; it returns their end.
