@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 namespace hb::dense {
@@ -33,7 +34,7 @@ void BandLu::factorise() {
     const Index count = last_column - k + 1;
     double* own = &at(k, k);
     if (p != k) std::swap_ranges(own, own + count, &at(p, k));
-    const double inverse = 1 / own[0];
+    const double inverse = own[0] = 1 / own[0];
     for (Index i = k + 1; i <= last_row; ++i) {
       double* below = &at(i, k);
       const double factor = below[0] *= inverse;
@@ -44,17 +45,36 @@ void BandLu::factorise() {
 }
 
 void BandLu::solve_in_place(Eigen::VectorXd& b) const {
-  for (Index k = 0; k < n_; ++k) {
-    std::swap(b(k), b(pivot_[static_cast<std::size_t>(k)]));
-    const Index last = std::min(n_ - 1, k + half_);
-    for (Index i = k + 1; i <= last; ++i) b(i) -= at(i, k) * b(k);
-  }
-  for (Index k = n_; k-- > 0;) {
-    const Index last = std::min(n_ - 1, k + 2 * half_);
-    double sum = b(k);
-    for (Index j = k + 1; j <= last; ++j) sum -= at(k, j) * b(j);
-    b(k) = sum / at(k, k);
-  }
+  if (half_ == 3)  // of one mode and one harmonic
+    substitute(std::integral_constant<Index, 3>(), b.data());
+  else
+    substitute(half_, b.data());
+}
+
+template <class Half>
+void BandLu::substitute(Half half, double* x) const {
+  const auto forward = [&](Index k, auto most) {
+    std::swap(x[k], x[pivot_[static_cast<std::size_t>(k)]]);
+    const double here = x[k], *below = &rows_[static_cast<std::size_t>(k * width_ + half_)];
+    for (Index i = 1; i <= most; ++i) x[k + i] -= *(below += width_ - 1) * here;
+  };
+  const auto backward = [&](Index k, auto most) {
+    const double* own = &rows_[static_cast<std::size_t>(k * width_ + half_)];
+    double sum = x[k];
+    for (Index j = 1; j <= most; ++j) sum -= own[j] * x[k + j];
+    x[k] = sum * own[0];
+  };
+  const auto twice = [&] {
+    if constexpr (std::is_same_v<Half, Index>)
+      return 2 * half;
+    else
+      return std::integral_constant<Index, 2 * Half::value>();
+  }();
+  Index k = 0;
+  for (; k < n_ - half; ++k) forward(k, half);
+  for (; k < n_; ++k) forward(k, n_ - 1 - k);
+  for (; k > 0 && n_ - k < twice; --k) backward(k - 1, n_ - k);
+  for (; k > 0; --k) backward(k - 1, twice);
 }
 
 }  // namespace hb::dense

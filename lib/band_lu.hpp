@@ -22,9 +22,13 @@ class BandLu {
   void solve_in_place(Eigen::VectorXd& b) const;
 
  private:
-  // Row i holds columns i - half_width .. i + 2 half_width.
+  // Row i holds columns i - half_width .. i + 2 half_width; factorised 1/u_ii on the diagonal.
   double& at(Eigen::Index i, Eigen::Index j) { return rows_[std::size_t(i * width_ + j - i + half_)]; }
   double at(Eigen::Index i, Eigen::Index j) const { return rows_[std::size_t(i * width_ + j - i + half_)]; }
+
+  // `half` is the half width, known to the compiler where it is small.
+  template <class Half>
+  void substitute(Half half, double* x) const;
 
   Eigen::Index n_, half_, width_;
   std::vector<double> rows_;

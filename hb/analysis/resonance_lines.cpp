@@ -91,6 +91,8 @@ std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<dou
     int i, j, sign;
   };
   for (const Kind kind : {Kind{0, 0, 1}, Kind{0, 1, 1}, Kind{1, 1, 1}, Kind{0, 1, -1}}) {
+    if (std::ranges::all_of(w[static_cast<std::size_t>(kind.j)], [](double value) { return std::isnan(value); }))
+      continue;
     for (int k = 1; k <= max_order; ++k) {
       std::vector<double> detuning(places.size());
       for (std::size_t p = 0; p < places.size(); ++p) {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "lib/exact/lanes.hpp"
+#include "lib/lanes.hpp"
 
 namespace hb {
 

@@ -7,6 +7,20 @@
 
 namespace hb::fourier {
 
+// a x + b y and a x - b y: the first product is made first, of numbers and of columns, so that both round alike.
+template <class V>
+inline V weighted_sum(double a, const V& x, double b, const V& y) {
+  const V first = a * x;
+  const V second = b * y;
+  return first + second;
+}
+template <class V>
+inline V weighted_difference(double a, const V& x, double b, const V& y) {
+  const V first = a * x;
+  const V second = b * y;
+  return first - second;
+}
+
 // The four outputs.
 template <class V>
 struct Butterfly {
@@ -20,8 +34,14 @@ inline Butterfly<V> butterfly(V ar, V ai, V br, V bi, V cr, V ci, V dr, V di, do
   const V pr = ar + cr, pi = ai + ci, qr = ar - cr, qi = ai - ci;
   const V rr = br + dr, ri = bi + di, tr = br - dr, ti = bi - di;
   const V ur = qr + ti, ui = qi - tr, vr = pr - rr, vi = pi - ri, xr = qr - ti, xi = qi + tr;
-  return {pr + rr,           pi + ri,           c1 * ur + s1 * ui, c1 * ui - s1 * ur,
-          c2 * vr + s2 * vi, c2 * vi - s2 * vr, c3 * xr + s3 * xi, c3 * xi - s3 * xr};
+  return {pr + rr,
+          pi + ri,
+          weighted_sum(c1, ur, s1, ui),
+          weighted_difference(c1, ui, s1, ur),
+          weighted_sum(c2, vr, s2, vi),
+          weighted_difference(c2, vi, s2, vr),
+          weighted_sum(c3, xr, s3, xi),
+          weighted_difference(c3, xi, s3, xr)};
 }
 
 // With all twiddles 1.

@@ -244,14 +244,14 @@ void ShortTransform::backward(const std::complex<double>* spectrum, double* samp
 void ShortTransform::forward(const double* samples, std::complex<double>* spectrum, double factor,
                              std::size_t columns) const {
   std::size_t c = lanes::in_lanes(N_, columns, [&](std::size_t first, std::size_t count) {
-    Lanes{*this}.forward(samples + first * N_, reinterpret_cast<double*>(spectrum + first * (M_ + 1)), factor, count);
+    Columns{*this}.forward(samples + first * N_, reinterpret_cast<double*>(spectrum + first * (M_ + 1)), factor, count);
   });
   for (; c < columns; ++c) forward(samples + c * N_, spectrum + c * (M_ + 1), factor);
 }
 
 void ShortTransform::backward(const std::complex<double>* spectrum, double* samples, std::size_t columns) const {
   std::size_t c = lanes::in_lanes(N_, columns, [&](std::size_t first, std::size_t count) {
-    Lanes{*this}.backward(reinterpret_cast<const double*>(spectrum + first * (M_ + 1)), samples + first * N_, count);
+    Columns{*this}.backward(reinterpret_cast<const double*>(spectrum + first * (M_ + 1)), samples + first * N_, count);
   });
   for (; c < columns; ++c) backward(spectrum + c * (M_ + 1), samples + c * N_);
 }
@@ -261,19 +261,19 @@ std::size_t ShortTransform::lane_width() { return lanes::width; }
 void ShortTransform::forward(const double* samples, double* re, double* im, std::size_t apart, double factor,
                              std::size_t columns) const {
   for (std::size_t c = 0; c < columns; c += lanes::width)
-    Lanes{*this}.forward(samples + c * N_, factor, std::min(lanes::width, columns - c),
-                         [&](std::size_t k, lanes::Vector real, lanes::Vector imaginary) {
-                           lanes::store(re + k * apart + c, real);
-                           lanes::store(im + k * apart + c, imaginary);
-                         });
+    Columns{*this}.forward(samples + c * N_, factor, std::min(lanes::width, columns - c),
+                           [&](std::size_t k, Lanes real, Lanes imaginary) {
+                             real.store(re + k * apart + c);
+                             imaginary.store(im + k * apart + c);
+                           });
 }
 
 void ShortTransform::backward(const double* re, const double* im, std::size_t apart, double* samples,
                               std::size_t columns) const {
   for (std::size_t c = 0; c < columns; c += lanes::width)
-    Lanes{*this}.backward([&](std::size_t k) { return lanes::load(re + k * apart + c); },
-                          [&](std::size_t k) { return lanes::load(im + k * apart + c); }, samples + c * N_,
-                          std::min(lanes::width, columns - c));
+    Columns{*this}.backward([&](std::size_t k) { return Lanes::load(re + k * apart + c); },
+                            [&](std::size_t k) { return Lanes::load(im + k * apart + c); }, samples + c * N_,
+                            std::min(lanes::width, columns - c));
 }
 
 }  // namespace hb::fourier

@@ -43,7 +43,7 @@ class ShortTransform {
   // In split form; the result lies in (re, im), the other pair is scratch.
   void transform(double*& re, double*& im, double*& other_re, double*& other_im) const;
   // short_transform_lanes.hpp
-  struct Lanes;
+  struct Columns;
 
   std::size_t N_, M_;
   std::vector<Pass> passes_;

@@ -4,8 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wignored-attributes"  // of vector types as arguments of templates
+#include "lib/lanes.hpp"
 
 namespace hb::fourier {
 
@@ -26,21 +25,17 @@ void transpose_singly(const From& from, To&& to) {
 
 // Of real numbers, as many at once as the machine's vectors hold.
 inline void transpose(const Eigen::Ref<const Eigen::MatrixXd>& from, Eigen::Ref<Eigen::MatrixXd> to) {
-  using Vector = Eigen::internal::packet_traits<double>::type;
-  constexpr Eigen::Index width = Eigen::internal::packet_traits<double>::size;
+  constexpr Eigen::Index width = Lanes::width;
   const Eigen::Index rows = from.rows() / width * width, cols = from.cols() / width * width;
-  Eigen::internal::PacketBlock<Vector, static_cast<int>(width)> block;
+  Lanes block[width];
   for (Eigen::Index i = 0; i < rows; i += width)
     for (Eigen::Index j = 0; j < cols; j += width) {
-      for (Eigen::Index c = 0; c < width; ++c)
-        block.packet[c] = Eigen::internal::ploadu<Vector>(&from.coeffRef(i, j + c));
-      Eigen::internal::ptranspose(block);
-      for (Eigen::Index c = 0; c < width; ++c) Eigen::internal::pstoreu(&to.coeffRef(j, i + c), block.packet[c]);
+      for (Eigen::Index c = 0; c < width; ++c) block[c] = Lanes::load(&from.coeffRef(i, j + c));
+      transpose(block);
+      for (Eigen::Index c = 0; c < width; ++c) block[c].store(&to.coeffRef(j, i + c));
     }
   transpose_singly(from.rightCols(from.cols() - cols), to.bottomRows(from.cols() - cols));
   transpose_singly(from.bottomLeftCorner(from.rows() - rows, cols), to.topRightCorner(cols, from.rows() - rows));
 }
 
 }  // namespace hb::fourier
-
-#pragma GCC diagnostic pop

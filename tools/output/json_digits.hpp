@@ -1,75 +1,127 @@
 // Values of long arrays as JSON, straight into a text.
 #pragma once
 
-#include <fmt/compile.h>
 #include <fmt/format.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
-#include <string>
+#include <cstring>
 #include <string_view>
 
 namespace hb::tools {
 
-// The digits of one value.
-class Digits {
+// The eight digits of n < 10^8, the first in the lowest byte: of halves, then quarters, then digits beside each other.
+inline std::uint64_t eight_digits(std::uint64_t n) {
+  const std::uint64_t halves = n / 10000 | n % 10000 << 32;
+  const std::uint64_t hundreds = halves * 10486 >> 20 & 0x7f0000007f;
+  const std::uint64_t quarters = hundreds | (halves - 100 * hundreds) << 16;
+  const std::uint64_t tens = quarters * 103 >> 10 & 0xf000f000f000f;
+  return (tens | (quarters - 10 * tens) << 8) + 0x3030303030303030;
+}
+
+// The text of one value: of a number the fewest digits that are it in its type, with a point or an exponent as in the
+// rest of a document, null where it is not finite; of a word at most 30 letters between quotes; 1 or 0 of yes or no.
+class ValueText {
  public:
-  // The fewest that are this number of this type, with a point or an exponent, as in the rest of a document; null where
-  // it is not finite.
+  static constexpr std::size_t longest = 32;  // characters; -1.2345678901234567e-308 has 24
+
+  ValueText() = default;
   template <std::floating_point Number>
-  explicit Digits(Number value) {
+  explicit ValueText(Number value) {
     if (!std::isfinite(value)) {
       add("null");
       return;
     }
-    size_ = static_cast<std::size_t>(fmt::format_to(digits_, FMT_COMPILE("{}"), value) - digits_);
-    if (text().find_first_of(".e") == std::string_view::npos) add(".0");
+    if (std::signbit(value)) add("-");
+    if (value == 0) {
+      add("0.0");
+      return;
+    }
+    const auto decimal = fmt::detail::dragonbox::to_decimal(std::abs(value));
+    add(decimal.significand, decimal.exponent);
   }
-  Digits() = default;
-  std::string_view text() const { return {digits_, size_}; }
+  explicit ValueText(const char* word) {
+    add("\"");
+    add(word);
+    add("\"");
+  }
+  explicit ValueText(std::same_as<bool> auto yes) { add(yes ? "1" : "0"); }
+
+  // Copied to `at`, where there is room for the longest; returns its end.
+  char* copy(char* at) const {
+    std::memcpy(at, text_, longest);
+    return at + size_;
+  }
 
  private:
-  void add(std::string_view more) { size_ += more.copy(digits_ + size_, more.size()); }
+  void add(std::string_view more) { size_ += more.copy(text_ + size_, more.size()); }
 
-  char digits_[32] = {};  // -1.2345678901234567e-308 is the longest
+  // significand 10^exponent, as d.ddd 10^power where the power is below -4 or above 15.
+  void add(std::uint64_t significand, int exponent) {
+    constexpr std::uint64_t eight = 100'000'000;
+    const int count = fmt::detail::count_digits(significand), power = exponent + count - 1;
+    char all[2 * most_digits];
+    all[0] = static_cast<char>('0' + significand / (eight * eight));
+    put(all + 1, eight_digits(significand / eight % eight));
+    put(all + 9, eight_digits(significand % eight));
+    const char* digits = all + most_digits - count;
+    const bool scientific = power < -4 || power > 15;
+    const int before_point = scientific ? 1 : power + 1;
+    if (before_point <= 0) {
+      put(text_ + size_, std::bit_cast<std::uint64_t>(std::array{'0', '.', '0', '0', '0', '0', '0', '0'}));
+      size_ += static_cast<std::size_t>(2 - before_point);
+      add_digits(digits, count);
+    } else if (before_point < count) {
+      add_digits(digits, before_point);
+      text_[size_++] = '.';
+      add_digits(digits + before_point, count - before_point);
+    } else {
+      add_digits(digits, count);
+      add(std::string_view("000000000000000", static_cast<std::size_t>(before_point - count)));
+      if (!scientific) add(".0");
+    }
+    if (scientific) add_power(power);
+  }
+
+  void add_digits(const char* digits, int count) {
+    std::memcpy(text_ + size_, digits, most_digits);
+    size_ += static_cast<std::size_t>(count);
+  }
+
+  void add_power(int power) {
+    add(power < 0 ? "e-" : "e+");
+    const auto size = static_cast<unsigned>(std::abs(power));
+    if (size >= 100) text_[size_++] = static_cast<char>('0' + size / 100);
+    text_[size_++] = static_cast<char>('0' + size / 10 % 10);
+    text_[size_++] = static_cast<char>('0' + size % 10);
+  }
+
+  static constexpr int most_digits = 17;
+  static_assert(std::endian::native == std::endian::little);
+  static void put(char* at, std::uint64_t eight) { std::memcpy(at, &eight, sizeof eight); }
+
+  char text_[2 * longest] = {};
   std::size_t size_ = 0;
 };
 
-template <std::floating_point Number>
-void append(std::string& text, Number value) {
-  text += Digits(value).text();
-}
-
-inline void append(std::string& text, const char* word) {
-  text += '"';
-  text += word;
-  text += '"';
-}
-
-// 1 or 0.
-inline void append(std::string& text, std::same_as<bool> auto yes) { text += yes ? '1' : '0'; }
-
-// Neighbours often have the same number.
-class RepeatedDigits {
+// Neighbours often have the same value.
+template <class Value>
+class RepeatedText {
  public:
-  template <class Number>
-  void append_to(std::string& text, Number value) {
-    if constexpr (std::floating_point<Number>) {
-      if (digits_.text().empty() || std::bit_cast<std::uint64_t>(double(value)) != bits_) {
-        digits_ = Digits(value);
-        bits_ = std::bit_cast<std::uint64_t>(double(value));
-      }
-      text += digits_.text();
-    } else {
-      append(text, value);
+  const ValueText& of(Value value) {
+    if (value != value_ || value == Value{}) {  // zero has two signs
+      text_ = ValueText(value);
+      value_ = value;
     }
+    return text_;
   }
 
  private:
-  std::uint64_t bits_ = 0;
-  Digits digits_;
+  Value value_{};
+  ValueText text_;
 };
 
 }  // namespace hb::tools

@@ -101,7 +101,8 @@ void add_stats(Json& document, const std::vector<Stage>& stages, const Settings&
 
 Json steady_json(const SceneModel& model, const SpeedResult& result, const Settings& settings, bool stats) {
   const Units& units = model.scene.units;
-  Json json;
+  constexpr std::size_t most_keys = 40;  // of all, of a rod
+  Json json = object_with_room(most_keys);
   json["title"] = model.scene.title;
   json["rpm"] = rpm_of(result.speed, units);
   json["omega"] = result.speed;
@@ -123,11 +124,11 @@ Json steady_json(const SceneModel& model, const SpeedResult& result, const Setti
   for (std::string& sentence : strength_warnings(model, result)) warnings.push_back(std::move(sentence));
   if (!warnings.empty()) json["warnings"] = std::move(warnings);
   json["units"] = units_json(units);
-  Json& rods = json["rods"] = Json::object();
+  Json& rods = json["rods"] = object_with_room(result.rods.size());
   for (std::size_t r = 0; r < result.rods.size(); ++r) {
     const RodResult& rod = result.rods[r];
     if (!rod.reported) continue;
-    Json& entry = rods[rod.name];
+    Json& entry = rods[rod.name] = object_with_room(most_keys);
     entry["modes"] = rod.num_modes;
     if (result.computed.steady) add_steady(entry, rod, units);
     if (result.computed.steady) add_resonance(entry, model.rods[r], rod, result.speed, units);

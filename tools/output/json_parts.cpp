@@ -84,9 +84,9 @@ void add_modes(Json& json, const std::vector<Exponent>& exponents, double speed,
 }
 
 Json joints_json(const JointForces& forces) {
-  Json joints = Json::object();
+  Json joints = object_with_room(forces.joints.size());
   for (const JointForce& joint : forces.joints) {
-    Json& entry = joints[joint.name];
+    Json& entry = joints[joint.name] = object_with_room(4);
     if (joint.rigid.num_components() == 1) {
       entry["n"] = range_json(joint.elastic, 0);
       entry["n_rigid"] = range_json(joint.rigid, 0);

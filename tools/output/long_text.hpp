@@ -1,8 +1,9 @@
 // Texts too long to be held in memory: handed on in pieces.
 #pragma once
 
+#include <algorithm>
 #include <functional>
-#include <string>
+#include <memory>
 #include <string_view>
 
 namespace hb::tools {
@@ -15,24 +16,37 @@ using LongText = std::function<void(const TextSink&)>;
 // Gathers small pieces to large ones.
 class TextPieces {
  public:
-  explicit TextPieces(const TextSink& sink) : sink_(sink) { text_.reserve(2 * piece); }
+  explicit TextPieces(const TextSink& sink) : sink_(sink) {}
   TextPieces(const TextPieces&) = delete;
   TextPieces& operator=(const TextPieces&) = delete;
 
-  // To be appended to; `end_row` now and then, `hand_on` at the end.
-  std::string& text() { return text_; }
-  void end_row() {
-    if (text_.size() >= piece) hand_on();
+  void add(std::string_view text) {
+    if (text.size() > room_) {
+      hand_on();
+      return sink_(text);
+    }
+    add(text.size(), [&](char* at) { return std::ranges::copy(text, at).out; });
   }
+  // What `write` puts at the place it is given, at most so many characters; it returns their end.
+  template <class Write>
+  void add(std::size_t most, const Write& write) {
+    if (size_ + most > room_) hand_on();
+    if (most > room_) {
+      room_ = most;
+      text_ = std::make_unique_for_overwrite<char[]>(room_);
+    }
+    size_ = static_cast<std::size_t>(write(text_.get() + size_) - text_.get());
+  }
+  // At the end.
   void hand_on() {
-    if (!text_.empty()) sink_(text_);
-    text_.clear();
+    if (size_ > 0) sink_({text_.get(), size_});
+    size_ = 0;
   }
 
  private:
-  static constexpr std::size_t piece = std::size_t{1} << 20;
   const TextSink& sink_;
-  std::string text_;
+  std::size_t size_ = 0, room_ = std::size_t{1} << 20;
+  std::unique_ptr<char[]> text_ = std::make_unique_for_overwrite<char[]>(room_);
 };
 
 }  // namespace hb::tools

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -27,6 +28,25 @@ namespace {
 
 bool missing(const MapPoint& point) { return point.source == MapSource::missing; }
 
+// Rows along x, one per y.
+template <class Value>
+void write_grid(const std::vector<MapPoint>& points, std::size_t nx, const Value& value, TextPieces& pieces) {
+  const ValueText none(std::nan(""));
+  RepeatedText<decltype(value(points[0]))> texts;
+  for (std::size_t row = 0; row < points.size(); row += nx) {
+    pieces.add(row > 0 ? "," : "[");
+    pieces.add(nx * (1 + ValueText::longest), [&](char* at) {
+      for (std::size_t p = row; p < row + nx; ++p) {
+        *at++ = p > row ? ',' : '[';
+        at = (missing(points[p]) ? none : texts.of(value(points[p]))).copy(at);
+      }
+      return at;
+    });
+    pieces.add("]");
+  }
+  pieces.add("]");
+}
+
 // The members of an object in their order. Grids, which have millions of values, go into the text without becoming
 // values of a document before.
 class Members {
@@ -35,38 +55,38 @@ class Members {
   void add(const std::string& key, const Members& object) {
     members_.push_back({key, {}, [object](TextPieces& pieces) { object.write(pieces); }});
   }
-  // Rows along x, one per y; `map` and `points` outlive the object.
+  // `map` and `points` outlive the object.
   template <class Value>
   void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value) {
-    members_.push_back({key, {}, [nx = map.x.size(), &points, value](TextPieces& pieces) {
-                          std::string& text = pieces.text();
-                          RepeatedDigits digits;
-                          text += '[';
-                          for (std::size_t p = 0; p < points.size(); ++p) {
-                            const bool begins = p % nx == 0;
-                            if (begins) pieces.end_row();
-                            text += !begins ? "," : p > 0 ? "],[" : "[";
-                            if (missing(points[p]))
-                              text += "null";
-                            else
-                              digits.append_to(text, value(points[p]));
+    members_.push_back(
+        {key, {}, [nx = map.x.size(), &points, value](TextPieces& pieces) { write_grid(points, nx, value, pieces); }});
+  }
+  // One that is said again: `kept` has its text from the first time on.
+  template <class Value>
+  void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value,
+                std::string& kept) {
+    members_.push_back({key, {}, [nx = map.x.size(), &points, value, &kept](TextPieces& pieces) {
+                          if (kept.empty()) {
+                            const TextSink keep = [&](std::string_view piece) { kept += piece; };
+                            TextPieces own(keep);
+                            write_grid(points, nx, value, own);
+                            own.hand_on();
                           }
-                          text += "]]";
+                          pieces.add(kept);
                         }});
   }
   void write(TextPieces& pieces) const {
-    std::string& text = pieces.text();
-    char before = '{';
+    const char* before = "{";
     for (const Member& member : members_) {
-      text += before;
-      before = ',';
-      text += printable(Json(member.key).dump()) + ":";
+      pieces.add(before);
+      before = ",";
+      pieces.add(printable(Json(member.key).dump()) + ":");
       if (member.write)
         member.write(pieces);
       else
-        text += printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace));
+        pieces.add(printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace)));
     }
-    text += '}';
+    pieces.add("}");
   }
 
  private:
@@ -78,11 +98,20 @@ class Members {
   std::vector<Member> members_;
 };
 
-void add_grids(Members& json, const StabilityMap& map, const std::vector<MapPoint>& points) {
-  json.add_grid("growth_rate", map, points, [](const MapPoint& p) { return p.growth_rate; });
-  json.add_grid("verdict", map, points, [](const MapPoint& p) { return to_string(p.verdict); });
-  json.add_grid("kind", map, points, [](const MapPoint& p) { return to_string(p.kind); });
-  json.add_grid("growth_error", map, points, [](const MapPoint& p) { return p.growth_error; });
+// Texts of the grids, where one rod is all there are.
+using KeptGrids = std::map<std::string, std::string>;
+
+void add_grids(Members& json, const StabilityMap& map, const std::vector<MapPoint>& points, KeptGrids* kept) {
+  const auto add = [&](const std::string& key, auto value) {
+    if (kept)
+      json.add_grid(key, map, points, value, (*kept)[key]);
+    else
+      json.add_grid(key, map, points, value);
+  };
+  add("growth_rate", [](const MapPoint& p) { return p.growth_rate; });
+  add("verdict", [](const MapPoint& p) { return to_string(p.verdict); });
+  add("kind", [](const MapPoint& p) { return to_string(p.kind); });
+  add("growth_error", [](const MapPoint& p) { return p.growth_error; });
 }
 
 Json points_json(const BoundaryCurve& curve) {
@@ -225,7 +254,9 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   json.add("y", axis_json(r.y_axis, r.y()));
   json.add("modes", document.num_modes);
   if (document.boundaries) json.add("boundary_tolerance", document.tolerance);
-  add_grids(json, first, r.worst());
+  KeptGrids kept;
+  KeptGrids* const same = r.rods.size() == 1 ? &kept : nullptr;
+  add_grids(json, first, r.worst(), same);
   json.add_grid("interpolated", first, r.worst(),
                 [](const MapPoint& p) { return p.source == MapSource::interpolated; });
   json.add_grid("growth_per_turn", first, r.worst(), growth_per_turn);
@@ -233,7 +264,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   Members rods;
   for (std::size_t k = 0; k < r.rods.size(); ++k) {
     Members rod;
-    add_grids(rod, r.maps[k], r.maps[k].points);
+    add_grids(rod, r.maps[k], r.maps[k].points, same);
     if (document.boundaries) {
       Json curves = Json::array();
       for (const BoundaryCurve& curve : r.maps[k].boundaries) curves.push_back(curve_json(curve));
@@ -275,7 +306,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   json.add("units", units_json(document.scene.units));
   TextPieces pieces(sink);
   json.write(pieces);
-  pieces.text() += '\n';
+  pieces.add("\n");
   pieces.hand_on();
 }
 

@@ -19,6 +19,8 @@
 namespace hb::tools {
 namespace {
 
+constexpr std::size_t most_keys = 40;  // of a sweep, of a rod
+
 // A number, or null where it is not finite.
 template <class Value>
 Json over_points(const std::vector<SweepPoint>& points, const Value& value) {
@@ -41,7 +43,7 @@ Json exponents_json(const Stability& stability) {
 
 Json rod_json(const SweepScene& scene, const SweepResult& result, std::size_t r,
               const std::vector<SweepPoint>& points) {
-  Json json;
+  Json json = object_with_room(most_keys);
   json["modes"] = result.rods[r].num_modes;
   const auto of_rod = [&](const auto& value) {
     return over_points(points, [&](const SweepPoint& point) { return Json(value(point.rods[r])); });
@@ -93,7 +95,7 @@ Json ranges_json(const std::vector<SweepPoint>& points,
 }
 
 void add_forces(Json& json, const SweepResult& result) {
-  Json& joints = json["joints"] = Json::object();
+  Json& joints = json["joints"] = object_with_room(result.joint_components.size());
   for (std::size_t c = 0; c < result.joint_components.size(); ++c) {
     const std::string& name = result.joint_components[c];
     const std::size_t space = name.rfind(' ');
@@ -213,7 +215,7 @@ std::string axis_label(const SweepScene& scene) {
 Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) {
   const Units& units = scene.scene().units;
   const std::vector<SweepPoint>& points = result.points;
-  Json json;
+  Json json = object_with_room(most_keys);
   json["title"] = scene.scene().title;
   json["status"] = result.shortfalls.empty() ? "reached" : "tolerance not reached";
   std::vector<std::string> notes = result.shortfalls;
@@ -234,7 +236,7 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
   json["rpm"] = std::move(rpm);
   json["omega"] = std::move(omega);
   if (result.computed.stability && !result.rods.empty()) json["verdict"] = verdicts_json(points);
-  Json& rods = json["rods"] = Json::object();
+  Json& rods = json["rods"] = object_with_room(result.rods.size());
   for (std::size_t r = 0; r < result.rods.size(); ++r)
     if (result.rods[r].reported) rods[result.rods[r].name] = rod_json(scene, result, r, points);
   if (result.searched_peaks) add_critical(json, scene, result);
@@ -247,12 +249,13 @@ Json sweep_json(const SweepScene& scene, const SweepResult& result, bool stats) 
       problems.push_back({{"index", k}, {"x", points[k].x}, {"reason", points[k].problem}});
   if (!problems.empty()) json["problems"] = std::move(problems);
   if (!result.refined.empty()) {
-    Json& refined = json["refined"] = Json::object();
+    Json& refined = json["refined"] = object_with_room(2);
     Json x = Json::array();
     for (const SweepPoint& point : result.refined) x.push_back(point.x);
     refined["x"] = std::move(x);
+    Json& refined_rods = refined["rods"] = object_with_room(result.rods.size());
     for (std::size_t r = 0; r < result.rods.size(); ++r)
-      if (result.rods[r].reported) refined["rods"][result.rods[r].name] = rod_json(scene, result, r, result.refined);
+      if (result.rods[r].reported) refined_rods[result.rods[r].name] = rod_json(scene, result, r, result.refined);
   }
   if (stats) add_stats(json, result.stages, scene.settings());
   return json;

@@ -78,7 +78,7 @@ double Doubts::beside_centre(const Place& p, const Place& q, double centre, doub
 
 double Doubts::while_stable(const Place& p, const Place& q) const {
   const double middle = 0.5 * (p.x() + q.x());
-  if (p.strands.all.empty() || q.strands.all.empty()) return middle;
+  if (p.strands().all.empty() || q.strands().all.empty()) return middle;
   if (!encounters_.resolved(p, q, most_motion)) return middle;
   // Where it is the modulation that moves them, what they do between the places is not known from their means.
   if (std::ranges::any_of(unpredicted_motions(p, q), [](double part) { return part > most_unpredicted_motion; }))
@@ -113,7 +113,7 @@ double Doubts::while_stable(const Place& p, const Place& q) const {
   // One that decays several times as fast as the leading one does not rise above zero by itself.
   constexpr double several = 4;
   const double slowest = std::min(p.growth(), q.growth());
-  for (std::size_t k = 0; k < p.strands.all.size() && p.strands.all[k].s.real() > several * slowest - least; ++k) {
+  for (std::size_t k = 0; k < p.strands().all.size() && p.strands().all[k].s.real() > several * slowest - least; ++k) {
     double high = HUGE_VAL, x = middle;
     for (const std::optional<GrowthModel>& model : {single_model(places_, p, k, q), partner_model(places_, p, k, q)}) {
       if (!model) continue;
@@ -153,7 +153,7 @@ double Doubts::in_crowds(const Place& p, const Place& q, const std::vector<Meeti
 
 double Doubts::while_unstable(const Place& p, const Place& q) const {
   const double middle = 0.5 * (p.x() + q.x());
-  if (p.strands.all.empty() || q.strands.all.empty()) return middle;
+  if (p.strands().all.empty() || q.strands().all.empty()) return middle;
   // While a pair is locked so much more deeply than it moves it stays so; half a turn farther it may have left one
   // order, where multipliers are near +1, for the next, -1, but not for the one after that.
   const double most =
@@ -191,8 +191,8 @@ std::vector<GrowthModel> Doubts::models_of_growth(const Place& p, const Place& q
   std::vector<GrowthModel> models;
   for (const Place* place : {&p, &q}) {
     const Place& other = place == &p ? q : p;
-    for (std::size_t k = 0; k < place->strands.all.size(); ++k) {
-      const Strand& strand = place->strands.all[k];
+    for (std::size_t k = 0; k < place->strands().all.size(); ++k) {
+      const Strand& strand = place->strands().all[k];
       if (!(strand.s.real() > std::max(coupling_.least_growth(), strand.error))) continue;
       std::vector<std::size_t> near = encounters_.neighbours(*place, other, k);
       if (strand.partner != no_strand) {
@@ -217,8 +217,8 @@ bool Doubts::level(const Place& p, const Place& q, double least) const {
   if (places.size() < 3) return false;
   for (const Place* place : places) {
     double growth = -HUGE_VAL;
-    for (std::size_t k = 0; k < place->strands.all.size(); ++k)
-      growth = std::max(growth, growth_by_itself(place->strands, k));
+    for (std::size_t k = 0; k < place->strands().all.size(); ++k)
+      growth = std::max(growth, growth_by_itself(place->strands(), k));
     low = std::min(low, growth);
     high = std::max(high, growth);
   }

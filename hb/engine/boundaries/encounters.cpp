@@ -18,9 +18,9 @@ struct MeanGrowth {
 
 std::vector<MeanGrowth> growth_at(const Place& place) {
   std::vector<MeanGrowth> growth(place.mean.size());
-  for (std::size_t k = 0; k < place.strands.all.size(); ++k) {
-    const Strand& strand = place.strands.all[k];
-    const double s = strand.s.real(), alone = growth_by_itself(place.strands, k);
+  for (std::size_t k = 0; k < place.strands().all.size(); ++k) {
+    const Strand& strand = place.strands().all[k];
+    const double s = strand.s.real(), alone = growth_by_itself(place.strands(), k);
     for (const std::size_t n : strand.mean) {
       MeanGrowth& of = growth[n];
       const bool drifts = place.mean[n].drift > 0;
@@ -129,7 +129,7 @@ bool Encounters::resolved(const Place& p, const Place& q, double most) const {
 
 std::vector<Meeting> Encounters::meetings(const Place& p, const Place& q, double least) const {
   std::vector<Meeting> found;
-  const Strands &sp = p.strands, &sq = q.strands;
+  const Strands &sp = p.strands(), &sq = q.strands();
   const std::vector<double> motion = motions(p, q);
   std::vector<double> mean_part;
   for (std::size_t k = 0; k < motion.size(); ++k) mean_part.push_back(2 * mean_motion(sp, sq, k));
@@ -166,12 +166,12 @@ std::vector<std::vector<std::size_t>> Encounters::crowds(const Place& p, const P
   for (const Meeting& m : meetings) {
     // A third one bends Q by kappa^2; one that stays with either of the two by no more than what they are apart.
     constexpr double part = 0.5;
-    const double growth = growth_by_itself(p.strands, m.a), other = growth_by_itself(p.strands, m.b);
+    const double growth = growth_by_itself(p.strands(), m.a), other = growth_by_itself(p.strands(), m.b);
     const double needed = part * coupling_.needed(growth, other);
     const auto bends = [&](std::size_t c, std::size_t one) {
-      const std::optional<Approach> near = approach(p.strands, q.strands, motion, c, one);
+      const std::optional<Approach> near = approach(p.strands(), q.strands(), motion, c, one);
       if (!near) return false;
-      const double here = std::abs(folded(p.strands.all[c].s - p.strands.all[one].s));
+      const double here = std::abs(folded(p.strands().all[c].s - p.strands().all[one].s));
       if (std::max(here, near->there_all) < -together * 0.5 * (growth + other)) return false;
       return !(coupling_.largest(p, c, one, StrandCoupling::Effect::quenches) < needed);
     };
@@ -186,8 +186,8 @@ std::vector<std::vector<std::size_t>> Encounters::crowds(const Place& p, const P
 std::vector<std::size_t> Encounters::neighbours(const Place& p, const Place& q, std::size_t k) const {
   const std::vector<double> motion = motions(p, q);
   std::vector<std::size_t> near;
-  for (std::size_t c = 0; c < p.strands.all.size(); ++c) {
-    if (c == k || apart(p.strands, k, c) > motion[k] + motion[c]) continue;
+  for (std::size_t c = 0; c < p.strands().all.size(); ++c) {
+    if (c == k || apart(p.strands(), k, c) > motion[k] + motion[c]) continue;
     if (coupling_.exciting_motion(p, q, k, c, coupling_.least_growth()) >= 0 || coupling_.quenched(p, q, k, c))
       near.push_back(c);
   }

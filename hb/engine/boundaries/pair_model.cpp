@@ -5,6 +5,7 @@
 
 #include "lib/constants.hpp"
 #include "lib/golden_section.hpp"
+#include "lib/zero_between.hpp"
 
 namespace hb {
 
@@ -13,17 +14,9 @@ namespace {
 // The last term of an interpolation may be small by chance.
 constexpr double of_last_term = 3, of_term_before = 0.75;
 
+// Of the distance between two places that lie beside what is looked for.
+constexpr double accuracy_inside = 1e-9;
 constexpr int steps_inside = 30;
-
-template <class Function>
-double root(const Function& f, double from, double to) {
-  const bool positive = f(from) > 0;
-  for (int step = 0; step < steps_inside; ++step) {
-    const double middle = 0.5 * (from + to);
-    ((f(middle) > 0) == positive ? from : to) = middle;
-  }
-  return 0.5 * (from + to);
-}
 
 }  // namespace
 
@@ -69,12 +62,15 @@ PairModel::Value PairModel::half_trace_at(double x) const {
   return c;
 }
 
-GrowthBounds PairModel::leading(double x) const {
+PairModel::Bounds PairModel::bounds(double x) const {
   const Value mean = at(x, mean_), c = half_trace_at(x);
-  const double E = c.error + half_trace_error_, e = mean.error + mean_error_, size = std::abs(c.value);
-  return {mean.value - e + std::acosh(std::max(1.0, size - E)) / two_pi,
-          mean.value + e + std::acosh(std::max(1.0, size + E)) / two_pi};
+  const double E = c.error + half_trace_error_, e = mean.error + mean_error_, size = std::abs(c.value),
+               most_apart = std::acosh(std::max(1.0, size + E)) / two_pi;
+  return {{mean.value - e + std::acosh(std::max(1.0, size - E)) / two_pi, mean.value + e + most_apart},
+          mean.value - e - most_apart};
 }
+
+GrowthBounds PairModel::leading(double x) const { return bounds(x).leading; }
 
 double PairModel::predicted(double x) const {
   return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
@@ -82,12 +78,6 @@ double PairModel::predicted(double x) const {
 
 double PairModel::lower(double x) const {
   return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
-}
-
-double PairModel::lowest(double x) const {
-  const Value mean = at(x, mean_), c = half_trace_at(x);
-  return mean.value - mean.error - mean_error_ -
-         std::acosh(std::max(1.0, std::abs(c.value) + c.error + half_trace_error_)) / two_pi;
 }
 
 std::vector<double> PairModel::telling() const {
@@ -100,7 +90,8 @@ std::vector<double> PairModel::telling() const {
   std::ranges::transform(places, values.begin(), c);
   for (std::size_t k = 0; k + 1 < places.size(); ++k) {
     const double here = std::abs(values[k]), next = std::abs(values[k + 1]);
-    if ((values[k] > 0) != (values[k + 1] > 0)) found.push_back(root(c, places[k], places[k + 1]));
+    if ((values[k] > 0) != (values[k + 1] > 0))
+      found.push_back(zero_between(places[k], places[k + 1], accuracy_inside * (places[k + 1] - places[k]), c));
     if (k == 0) continue;
     const double before = std::abs(values[k - 1]);
     if (here >= before && here >= next)

@@ -25,11 +25,15 @@ class PairModel {
   // Growth of the two at x, an estimate: the error is three times the last term of the interpolation, or 3/4 of the one
   // before, and that of the nodes; of the half trace the remainder of a cosine of as many turns at least.
   GrowthBounds leading(double x) const;
-  // The same without errors.
+  // Besides, what the growth of the one that decays faster is at least.
+  struct Bounds {
+    GrowthBounds leading;
+    double lowest;
+  };
+  Bounds bounds(double x) const;
+  // Of either without errors.
   double predicted(double x) const;
-  // Of the one that decays faster, predicted and with errors.
   double lower(double x) const;
-  double lowest(double x) const;
   // Where growth may be largest or smallest between the first two nodes: dense beside them, where the interpolation's
   // error vanishes with the distance, and where the half trace turns round or passes zero.
   std::vector<double> telling() const;

@@ -36,7 +36,6 @@ Place place_of(const StabilitySample& sample, const SystemAt& at) {
   if (made.mean.empty()) {
     if (const std::optional<ScaledSystem> system = at(sample.x)) made.mean = mean_exponents(*system);
   }
-  made.strands = strands_of(sample, made.mean);
   made.pair = leading_pair(sample);
   made.alone = leading_alone(sample);
   made.unstable = is_unstable(sample);
@@ -45,8 +44,9 @@ Place place_of(const StabilitySample& sample, const SystemAt& at) {
 
 const std::vector<std::size_t>& onward(const Place& p, const Place& q) {
   const auto known = p.continued_at.find(q.x());
-  return known != p.continued_at.end() ? known->second
-                                       : p.continued_at.emplace(q.x(), continued(p.strands, q.strands)).first->second;
+  return known != p.continued_at.end()
+             ? known->second
+             : p.continued_at.emplace(q.x(), continued(p.strands(), q.strands())).first->second;
 }
 
 double apart(const Strands& strands, std::size_t a, std::size_t b) {
@@ -57,15 +57,15 @@ std::vector<double> unpredicted_motions(const Place& p, const Place& q) {
   const std::vector<std::size_t>& at_q = onward(p, q);
   std::vector<double> unpredicted(at_q.size(), 0);
   for (std::size_t k = 0; k < at_q.size(); ++k) {
-    const Strand& strand = p.strands.all[k];
+    const Strand& strand = p.strands().all[k];
     if (at_q[k] == no_strand || strand.mean.empty() || p.mean.size() != q.mean.size()) continue;
-    const double moved = (q.strands.all[at_q[k]].s - strand.s).imag();
+    const double moved = (q.strands().all[at_q[k]].s - strand.s).imag();
     double least = HUGE_VAL;
     for (const std::size_t n : strand.mean) {
       const double apart = moved - (q.mean[n].value - p.mean[n].value).imag();
       least = std::min(least, std::abs(apart - std::round(apart)));
     }
-    unpredicted[k] = std::max(least, grown_shift(p, strand, q, q.strands.all[at_q[k]]));
+    unpredicted[k] = std::max(least, grown_shift(p, strand, q, q.strands().all[at_q[k]]));
   }
   return unpredicted;
 }
@@ -74,8 +74,8 @@ std::vector<double> motions(const Place& p, const Place& q) {
   const std::vector<std::size_t>& at_q = onward(p, q);
   std::vector<double> motion = unpredicted_motions(p, q);
   for (std::size_t k = 0; k < motion.size(); ++k) {
-    motion[k] = 2 * (motion[k] + mean_motion(p.strands, q.strands, k));
-    if (at_q[k] != no_strand) motion[k] += std::abs(folded(q.strands.all[at_q[k]].s - p.strands.all[k].s).imag());
+    motion[k] = 2 * (motion[k] + mean_motion(p.strands(), q.strands(), k));
+    if (at_q[k] != no_strand) motion[k] += std::abs(folded(q.strands().all[at_q[k]].s - p.strands().all[k].s).imag());
   }
   return motion;
 }

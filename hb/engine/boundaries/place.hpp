@@ -17,13 +17,18 @@ namespace hb {
 // A sample and its exponents.
 struct Place {
   StabilitySample sample;
-  Strands strands;
   std::vector<MeanExponent> mean;
   mutable std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
   std::optional<LeadingPair> pair, alone;
   bool unstable = false;
   // Which strands of other places, by x, these go on as; filled by `onward`.
   mutable std::map<double, std::vector<std::size_t>> continued_at;
+
+  const Strands& strands() const {
+    if (!known_strands) known_strands = strands_of(sample, mean);
+    return *known_strands;
+  }
+  mutable std::optional<Strands> known_strands;
 
   double x() const { return sample.x; }
   double growth() const { return sample.stability.growth_rate / sample.speed; }

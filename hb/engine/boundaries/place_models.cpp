@@ -12,7 +12,9 @@ using cplx = std::complex<double>;
 // Models take places no farther away than that.
 constexpr double most_motion_of_models = 0.5;
 
-bool usable(const Place& place, const Place& like) { return !place.strands.all.empty() && !like.strands.all.empty(); }
+bool usable(const Place& place, const Place& like) {
+  return !place.strands().all.empty() && !like.strands().all.empty();
+}
 
 // Where strands of p are at another place of its window, from place to place.
 std::optional<std::vector<std::size_t>> followed(const Places& places, const Place& p, const Place& to,
@@ -100,8 +102,8 @@ std::optional<GrowthModel> single_model(const Places& places, const Place& p, st
   for (const Place* place : window(places, p, q)) {
     const auto at = followed(places, p, *place, {k});
     if (!at) continue;
-    if (place != &p && place != &q && mean_motion(p.strands, place->strands, k) > most_motion_of_models) continue;
-    const Strand& s = place->strands.all[(*at)[0]];
+    if (place != &p && place != &q && mean_motion(p.strands(), place->strands(), k) > most_motion_of_models) continue;
+    const Strand& s = place->strands().all[(*at)[0]];
     nodes.push_back({place->x(), s.s.real(), s.s.imag(), 0, s.error, 0});
   }
   return consistent_model(std::move(nodes), p, q);
@@ -113,12 +115,13 @@ std::optional<GrowthModel> pair_model(const Places& places, const Place& p, std:
   for (const Place* place : window(places, p, q)) {
     const auto at = followed(places, p, *place, {a, b});
     if (!at) continue;
-    const Strand &s = place->strands.all[(*at)[0]], &t = place->strands.all[(*at)[1]];
+    const Strand &s = place->strands().all[(*at)[0]], &t = place->strands().all[(*at)[1]];
     // Farther apart they are nearer on the other side.
     constexpr double farthest = 0.4;
     if (!(std::abs(folded(s.s - t.s).imag()) <= farthest)) continue;
     if (place != &p && place != &q &&
-        mean_motion(p.strands, place->strands, a) + mean_motion(p.strands, place->strands, b) > most_motion_of_models)
+        mean_motion(p.strands(), place->strands(), a) + mean_motion(p.strands(), place->strands(), b) >
+            most_motion_of_models)
       continue;
     nodes.push_back(pair_node(place->x(), s.s, t.s, s.error, t.error));
   }
@@ -136,7 +139,7 @@ std::optional<ClusterModel> cluster_model(const Places& places, const Place& p, 
     if (!at) continue;
     double lowest = 0, highest = 0;
     for (std::size_t j = 0; j < s.size(); ++j) {
-      const Strand& strand = place->strands.all[(*at)[j]];
+      const Strand& strand = place->strands().all[(*at)[j]];
       s[j] = strand.s;
       error[j] = strand.error;
       const double away = folded(s[j] - s[0]).imag();
@@ -152,9 +155,9 @@ std::optional<ClusterModel> cluster_model(const Places& places, const Place& p, 
 std::optional<GrowthModel> partner_model(const Places& places, const Place& p, std::size_t k, const Place& q) {
   std::size_t partner = no_strand;
   double least = HUGE_VAL;
-  for (std::size_t other = 0; other < p.strands.all.size(); ++other) {
+  for (std::size_t other = 0; other < p.strands().all.size(); ++other) {
     if (other == k) continue;
-    const double distance = apart(p.strands, k, other);
+    const double distance = apart(p.strands(), k, other);
     if (distance < least) {
       least = distance;
       partner = other;

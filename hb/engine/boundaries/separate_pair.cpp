@@ -35,12 +35,17 @@ double others_between(const LeadingPair& p, const LeadingPair& q) {
 
 // The two mean exponents that decay slowest; both the same if a third one decays as slowly.
 std::array<std::size_t, 2> slowest(const std::vector<MeanExponent>& mean) {
-  std::vector<std::size_t> order(mean.size());
-  for (std::size_t n = 0; n < order.size(); ++n) order[n] = n;
   const auto growth = [&](std::size_t n) { return mean[n].value.real(); };
-  std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return growth(a) > growth(b); });
-  if (order.size() > 2 && !(growth(order[1]) > growth(order[2]))) return {order[0], order[0]};
-  return {std::min(order[0], order[1]), std::max(order[0], order[1])};
+  std::size_t first = 0, second = 1;
+  double third = -HUGE_VAL;  // the growth of the next one
+  if (growth(second) > growth(first)) std::swap(first, second);
+  for (std::size_t n = 2; n < mean.size(); ++n) {
+    third = std::max(third, std::min(growth(n), growth(second)));
+    if (growth(n) > growth(second)) second = n;
+    if (growth(second) > growth(first)) std::swap(first, second);
+  }
+  if (mean.size() > 2 && !(growth(second) > third)) return {first, first};
+  return {std::min(first, second), std::max(first, second)};
 }
 
 PairModel model_of(const std::vector<const Place*>& places, Apart what) {
@@ -119,9 +124,9 @@ std::optional<double> doubtful_while_apart(const std::vector<const Place*>& plac
   const PairModel model = model_of(places, what);
   double worst = p.unstable ? 0 : least, where = nan;
   for (const double x : model.telling()) {
-    if (!(model.lowest(x) > others))
+    const auto [growth, lowest] = model.bounds(x);
+    if (!(lowest > others))
       return what == Apart::alone || model.lower(x) > others ? std::optional(middle) : std::nullopt;
-    const GrowthBounds growth = model.leading(x);
     const double beyond = p.unstable ? -growth.low : growth.high;
     if (beyond < worst) continue;
     worst = beyond;

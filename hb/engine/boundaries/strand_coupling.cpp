@@ -56,7 +56,7 @@ double StrandCoupling::needed(double growth, double other) const {
 // at most, twice as far as their mean exponents, by the stronger coupling of both places; negative: they do not.
 double StrandCoupling::motion_towards(const Place& p, const Place& q, std::size_t a, std::size_t b, double needed,
                                       Effect effect) const {
-  const Strand &s = p.strands.all[a], &t = p.strands.all[b];
+  const Strand &s = p.strands().all[a], &t = p.strands().all[b];
   const bool comparable = p.mean.size() == q.mean.size();
   double motion = s.mean.empty() || t.mean.empty() ? HUGE_VAL : -1;
   for (const std::size_t n : s.mean) {
@@ -86,7 +86,7 @@ double StrandCoupling::motion_towards(const Place& p, const Place& q, std::size_
 
 // Upper estimate of the coupling of two strands of p; infinite if they cannot be named.
 double StrandCoupling::largest(const Place& p, std::size_t a, std::size_t b, Effect effect) const {
-  const Strand &s = p.strands.all[a], &t = p.strands.all[b];
+  const Strand &s = p.strands().all[a], &t = p.strands().all[b];
   const ParametricCoupling* strength = of(p);
   if (strength == nullptr || s.mean.empty() || t.mean.empty()) return HUGE_VAL;
   const auto coupled = [&](std::size_t from_n, std::size_t to_r, int order) {
@@ -111,18 +111,18 @@ double StrandCoupling::largest(const Place& p, std::size_t a, std::size_t b, Eff
 
 // Strand a grows like g by itself, b decays like d: where their mean decays a falls to zero if kappa^2 >= g d (B9).
 bool StrandCoupling::quenched(const Place& p, const Place& q, std::size_t a, std::size_t b) const {
-  const double g = p.strands.all[a].s.real(), d = -growth_by_itself(p.strands, b);
+  const double g = p.strands().all[a].s.real(), d = -growth_by_itself(p.strands(), b);
   if (!(d > 0)) return false;
   const std::vector<std::size_t>& at_q = onward(p, q);
   if (at_q[a] != no_strand && at_q[b] != no_strand &&
-      grow_together(g - d, q.strands.all[at_q[a]].s.real() + q.strands.all[at_q[b]].s.real()))
+      grow_together(g - d, q.strands().all[at_q[a]].s.real() + q.strands().all[at_q[b]].s.real()))
     return false;
   return motion_towards(p, q, a, b, std::sqrt(g * d), Effect::quenches) >= 0;
 }
 
 // kappa^2 >= g max(d, g/4), hb/engine/README.md (B21).
 bool StrandCoupling::ended(const Place& p, const Place& q, std::size_t a, std::size_t c, double g) const {
-  const double d = std::max(0.0, -growth_by_itself(p.strands, c));
+  const double d = std::max(0.0, -growth_by_itself(p.strands(), c));
   const auto with_partner = [](const Strands& at, std::size_t k) {
     return (at.all[k].partner == no_strand ? 1 : 2) * growth_by_itself(at, k);
   };
@@ -131,7 +131,7 @@ bool StrandCoupling::ended(const Place& p, const Place& q, std::size_t a, std::s
   };
   const std::vector<std::size_t>& at_q = onward(p, q);
   if (at_q[a] != no_strand && at_q[c] != no_strand &&
-      grow_together(all_grow(p.strands, a, c), all_grow(q.strands, at_q[a], at_q[c])))
+      grow_together(all_grow(p.strands(), a, c), all_grow(q.strands(), at_q[a], at_q[c])))
     return false;
   return motion_towards(p, q, a, c, std::sqrt(g * std::max(d, 0.25 * g)), Effect::quenches) >= 0;
 }

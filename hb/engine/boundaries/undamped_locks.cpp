@@ -19,17 +19,17 @@ constexpr double slack = 1e-12;  // of a turn, beside a multiplier +1 or -1
 
 // The stiffness is symmetric at all angles and nothing damps: exponents are s, -s in pairs.
 bool is_undamped(const Place& place) {
-  return place.strands.all.size() == place.mean.size() &&
+  return place.strands().all.size() == place.mean.size() &&
          std::ranges::none_of(place.mean, [](const MeanExponent& m) { return m.value.real() != 0 || m.drift != 0; });
 }
 
 // Half traces cosh 2 pi s beyond 1, of multipliers of one sign, descending.
 std::vector<LeadingPair> locks_of(const Place& place, double sign) {
   std::vector<LeadingPair> locks;
-  for (const Strand& strand : place.strands.all) {
+  for (const Strand& strand : place.strands().all) {
     const double g = strand.s.real(), turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn;
     if (strand.partner == no_strand || !(g > 4 * strand.error) || !(away <= slack)) continue;
-    const Strand& partner = place.strands.all[strand.partner];
+    const Strand& partner = place.strands().all[strand.partner];
     if (!(std::abs(g + partner.s.real()) <= strand.error + partner.error)) continue;
     LeadingPair lock;
     lock.half_trace = sign * std::cosh(two_pi * g);
@@ -108,7 +108,7 @@ double growth_of_comers(const Place& p, const Place& q, double sign) {
   const std::vector<double> motion = motions(p, q);
   double most = 0;
   for (std::size_t k = 0; k < motion.size(); ++k) {
-    const Strand& strand = p.strands.all[k];
+    const Strand& strand = p.strands().all[k];
     const double turn = std::abs(strand.s.imag()), away = sign > 0 ? turn : 0.5 - turn, reach = 0.5 * motion[k];
     const bool locked_there = strand.partner != no_strand && away <= slack;
     if (!locked_there && away < reach)

@@ -201,9 +201,28 @@ ExponentSearch search_by_propagation(const ScaledSystem& system, double toleranc
   return search;
 }
 
+namespace {
+
+// One mode, which no other follows and which has the whole plane.
+ExponentSearch search_single(const ScaledSystem& system, double tolerance, const Exponents& known) {
+  const std::vector<Index> all{0};
+  ExponentSearch search;
+  search.exponents = reduced_exponents(slave_to(system, all), tolerance);
+  if (search.exponents.s.empty()) return search_by_propagation(system, tolerance);
+  name_modes(search.exponents, system, all);
+  search.method = StabilityMethod::slaving;
+  search.evidence = "one mode, its exponents from the phase function, Hill's determinant or one turn's propagation";
+  search.complete = true;
+  if (!may_be_twice(search.exponents)) sharpen(search.exponents, known);
+  return search;
+}
+
+}  // namespace
+
 ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, const Exponents& known,
                                  std::span<const SlavingStart> starts) {
   const Index I = system.num_modes();
+  if (I == 1) return search_single(system, tolerance, known);
   ExponentSearch search;
   std::vector<Index> together;
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
@@ -272,8 +291,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   constexpr double above_errors = 1e-8, well_apart = 1e-3;
   const bool apart = !may_be_twice(search.exponents);
   const double least = apart ? above_errors : well_apart;
-  search.complete = I == 1 ||  // one mode has the whole plane
-                    (add_up(system, search.exponents) && spans(system, std::move(states), least));
+  search.complete = add_up(system, search.exponents) && spans(system, std::move(states), least);
   if (search.complete && apart) sharpen(search.exponents, known);
   return search;
 }

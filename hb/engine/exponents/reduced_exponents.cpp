@@ -57,7 +57,9 @@ std::optional<Exponents> by_determinant(const ReducedSystem& reduced, double tol
                                        .damping_error = reduced.beta_error(0)});
   if (!pair) return std::nullopt;
   Exponents result;
-  for (std::size_t i : {0, 1}) result.add(pair->s[i], pair->error[i]);
+  result.s.assign(pair->s.begin(), pair->s.end());
+  result.error.assign(pair->error.begin(), pair->error.end());
+  result.imaginary_error = result.error;
   result.converged = pair->error[0] <= allowed(tolerance, pair->s[0]);
   return result;
 }

@@ -198,6 +198,7 @@ Stability analyse_stability(const ScaledSystem& system, const StabilityOptions& 
     result.evidence += fmt::format("; K repeats {} times a turn", g);
     return result;
   }
+  if (system.num_modes() == 1) return of_group(system, options);
   const auto groups = independent_groups(system);
   if (groups.size() > 1) return of_groups(system, groups, options, "that do not feel each other");
   const auto one_way = one_way_groups(system);

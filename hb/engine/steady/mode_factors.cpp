@@ -42,11 +42,11 @@ Index own_harmonics(const Operator& A, Index i) {
 ModeFactors::ModeFactors(const Operator& A) : H_(A.num_harmonics()) {
   const Index I = A.num_modes();
   Index most = 0;
-  for (Index first = 0; first < I; first += lanes) {
+  for (Index first = 0; first < I; first += Lanes::width) {
     end_if_wished();
     Band& band = bands_.emplace_back();
     band.first = first;
-    band.count = std::min<Index>(lanes, I - first);
+    band.count = std::min(Lanes::width, I - first);
     for (Index i = first; i < first + band.count; ++i) band.p = std::max(band.p, own_harmonics(A, i));
     most = std::max(most, band.p);
     assemble(A, band);
@@ -60,25 +60,38 @@ void ModeFactors::assemble(const Operator& A, Band& band) const {
   const Index p = band.p;
   band.rows = std::make_unique_for_overwrite<Complex[]>(std::size_t((H_ + 1 + p) * (2 * p + 1)));
   std::vector<Complex> E(std::size_t(2 * p + 1));
-  for (Index m = 1; m <= p; ++m)
-    for (Index c = 0; c < lanes; ++c) {
-      const std::complex<double> coefficient = s.K(band.mode(c) * (s.I + 1), m);
-      for (const Index place : {p + m, p - m}) E[std::size_t(place)].re(c) = coefficient.real();
-      E[std::size_t(p + m)].im(c) = coefficient.imag();
-      E[std::size_t(p - m)].im(c) = -coefficient.imag();
-    }
+  // value(mode) of each.
+  const auto of_modes = [&](const auto& value) {
+    return Complex{Lanes::of([&](Index c) { return value(band.mode(c)).real(); }),
+                   Lanes::of([&](Index c) { return value(band.mode(c)).imag(); })};
+  };
+  for (Index m = 1; m <= p; ++m) {
+    const Complex here = of_modes([&](Index i) { return s.K(i * (s.I + 1), m); });
+    E[std::size_t(p + m)] = here;
+    E[std::size_t(p - m)] = {here.re, -here.im};
+  }
   for (Index k = H_; k >= -p; --k) {
     Complex* row = band.row(H_, k);
     std::copy(E.begin(), E.end(), row - p);
-    for (Index c = 0; c < lanes; ++c) {
-      const std::complex<double> D = A.D()(std::abs(k), band.mode(c));
-      row->re(c) = D.real();
-      row->im(c) = k < 0 ? -D.imag() : D.imag();
-    }
+    *row = of_modes([&](Index i) { return A.D()(std::abs(k), i); });
+    if (k < 0) row->im = -row->im;
   }
 }
 
-// Without exchange of rows; of a pivot that vanishes to rounding another one of that size takes the place.
+// What is no larger than smallest(lane) makes place for that.
+template <class Smallest>
+ModeFactors::Complex ModeFactors::regular(const Complex& pivot, const Smallest& smallest) {
+  Lanes::Values re = pivot.re.values(), im = pivot.im.values();
+  for (std::size_t c = 0; c < re.size(); ++c) {
+    const double least = smallest(Index(c));
+    if (re[c] * re[c] + im[c] * im[c] > least * least) continue;
+    re[c] = least;
+    im[c] = 0;
+  }
+  return {Lanes::load(re.data()), Lanes::load(im.data())};
+}
+
+// Without exchange of rows; a pivot that vanishes to rounding is replaced by one of that size.
 void ModeFactors::factorise(const Operator& A, Band& band) const {
   const Index p = band.p;
   for (Index k = H_; k >= -p; --k) {
@@ -89,15 +102,9 @@ void ModeFactors::factorise(const Operator& A, Band& band) const {
           band.row(H_, -l)[m - l] = {image.re, -image.im};
         }
     Complex* const row = band.row(H_, k);
-    Lanes square = row->re.square() + row->im.square();
-    for (Index c = 0; c < lanes; ++c) {
-      const double smallest = eps * A.magnitude()(std::abs(k), band.mode(c));
-      if (square(c) > smallest * smallest) continue;
-      row->re(c) = smallest;
-      row->im(c) = 0;
-      square(c) = smallest * smallest;
-    }
-    *row = {row->re / square, -row->im / square};
+    const Complex pivot = regular(*row, [&](Index c) { return eps * A.magnitude()(std::abs(k), band.mode(c)); });
+    const Lanes square = pivot.re * pivot.re + pivot.im * pivot.im;
+    *row = {pivot.re / square, -pivot.im / square};
     const Index count = std::min(p, k + p);
     for (Index j = 1; j <= count; ++j) {
       Complex* const other = band.row(H_, k - j) - j;
@@ -144,22 +151,16 @@ void ModeFactors::substitute(const Band& band) {
 
 void ModeFactors::solve_in_place(Spectrum& x) {
   for (const Band& band : bands_) {
-    std::array<std::complex<double>*, lanes> columns;
-    for (Index c = 0; c < lanes; ++c) columns[std::size_t(c)] = x.col(band.mode(c)).data();
-    for (Index k = 0; k <= H_; ++k) {
-      Complex& unknown = unknowns_[std::size_t(H_ - k)];
-      for (Index c = 0; c < lanes; ++c) {
-        unknown.re(c) = columns[std::size_t(c)][k].real();
-        unknown.im(c) = columns[std::size_t(c)][k].imag();
-      }
-    }
+    std::array<std::complex<double>*, std::size_t(Lanes::width)> columns;
+    for (Index c = 0; c < Lanes::width; ++c) columns[std::size_t(c)] = x.col(band.mode(c)).data();
+    for (Index k = 0; k <= H_; ++k)
+      unknowns_[std::size_t(H_ - k)] = {Lanes::of([&](Index c) { return columns[std::size_t(c)][k].real(); }),
+                                        Lanes::of([&](Index c) { return columns[std::size_t(c)][k].imag(); })};
     substitute(band);
-    for (Index c = 0; c < band.count; ++c) {
-      for (Index k = 0; k <= H_; ++k) {
-        const Complex& unknown = unknowns_[std::size_t(H_ - k)];
-        columns[std::size_t(c)][k] = {unknown.re(c), unknown.im(c)};
-      }
-      columns[std::size_t(c)][0].imag(0);
+    for (Index k = 0; k <= H_; ++k) {
+      const Complex& unknown = unknowns_[std::size_t(H_ - k)];
+      const Lanes::Values re = unknown.re.values(), im = unknown.im.values();
+      for (std::size_t c = 0; c < std::size_t(band.count); ++c) columns[c][k] = {re[c], k > 0 ? im[c] : 0};
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hb/engine/steady/steady_operator.hpp"
+#include "lib/lanes.hpp"
 
 namespace hb::steady {
 
@@ -18,8 +19,6 @@ class ModeFactors {
 
  private:
   // Modes side by side, as many as the machine's vectors hold numbers; lanes that are left repeat the last one.
-  static constexpr int lanes = Eigen::internal::packet_traits<double>::size;
-  using Lanes = Eigen::Array<double, lanes, 1>;
   struct Complex {
     Lanes re, im;
   };
@@ -32,6 +31,8 @@ class ModeFactors {
     Complex* row(Eigen::Index H, Eigen::Index k) const { return &rows[std::size_t((H - k) * (2 * p + 1) + p)]; }
     Eigen::Index mode(Eigen::Index lane) const { return first + std::min(lane, count - 1); }
   };
+  template <class Smallest>
+  static Complex regular(const Complex& pivot, const Smallest& smallest);
   void assemble(const Operator& A, Band& band) const;
   void factorise(const Operator& A, Band& band) const;
   void substitute(const Band& band);

@@ -7,6 +7,7 @@
 
 #include "hb/engine/steady/response_interpolant.hpp"
 #include "lib/constants.hpp"
+#include "lib/zero_between.hpp"
 
 namespace hb {
 
@@ -129,7 +130,7 @@ double rise(const ResponseInterpolant& response, double x) {
 // Within c -+ r, where it rises no longer; empty where it is largest at an end, on the side returned by `beside`.
 std::optional<ResponsePeak> highest(const ResponseInterpolant& response, double c, double r, double error,
                                     int& beside) {
-  constexpr int parts = 16, halvings = 44;
+  constexpr int parts = 16;
   const double step = 2 * r / parts;
   int best = 0;
   double value = -HUGE_VAL;
@@ -140,12 +141,9 @@ std::optional<ResponsePeak> highest(const ResponseInterpolant& response, double 
     }
   beside = best == 0 ? -1 : best == parts ? 1 : 0;
   if (beside != 0) return std::nullopt;
-  double low = c - r + step * (best - 1), high = low + 2 * step;
-  for (int k = 0; k < halvings && high - low > eps * std::abs(c); ++k) {
-    const double middle = 0.5 * (low + high);
-    (rise(response, middle) > 0 ? low : high) = middle;
-  }
-  const double x = 0.5 * (low + high), h = 0.25 * step;
+  const double top = c - r + step * best, h = 0.25 * step;
+  const double x =
+      zero_between(top - step, top + step, eps * std::abs(c), [&](double at) { return rise(response, at); });
   const auto turned = [&](double within) { return rise(response, x - within) - rise(response, x + within); };
   // Two angles may be as high there: then the slope jumps, and it is the heights that tell.
   constexpr double nearer = 0.125;

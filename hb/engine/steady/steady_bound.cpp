@@ -19,10 +19,24 @@ constexpr double safety = 3;
 // Cap on the amplification granted to omitted rows that are coupled more strongly than their diagonal: a choice.
 constexpr double most_tail_slack = 30;
 
-double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) { return (T.cwiseAbs() * sizes).maxCoeff(); }
+// max_i sum_j |T_ij| sizes_j
+double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) {
+  double largest = 0;
+  for (Index i = 0; i < T.rows(); ++i) {
+    double sum = 0;
+    for (Index j = 0; j < T.cols(); ++j) sum += std::abs(T(i, j)) * sizes(j);
+    if (!std::isfinite(sum)) return sum;
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
 
-Eigen::VectorXd wiener(const Eigen::MatrixXd& moduli) {
-  return 2 * moduli.colwise().sum().transpose() - moduli.row(0).transpose();
+// Of moduli, an expression.
+template <class Moduli>
+Eigen::VectorXd wiener(const Moduli& moduli) {
+  Eigen::VectorXd norms(moduli.cols());
+  for (Index i = 0; i < norms.size(); ++i) norms(i) = 2 * moduli.col(i).sum() - moduli(0, i);
+  return norms;
 }
 
 // Numbers between -1 and 1 at random, the same ones every time; the first few are kept.
@@ -165,11 +179,15 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
 
 Eigen::VectorXd sizes_of_rows(const WeightedSystem& system, const Spectrum& rows, Index first,
                               const Eigen::MatrixXd& T) {
-  Eigen::MatrixXd sizes = moduli(rows);
-  for (Index i = 0; i < sizes.cols(); ++i)
-    for (Index k = 0; k < sizes.rows(); ++k)
-      if (sizes(k, i) > 0) sizes(k, i) /= modulus(system.D(i, first + k));
-  return (sizes * T.cwiseAbs().transpose()).rowwise().maxCoeff();
+  Eigen::VectorXd result(rows.rows()), sizes(rows.cols());
+  for (Index k = 0; k < result.size(); ++k) {
+    for (Index i = 0; i < sizes.size(); ++i) {
+      const double size = modulus(rows(k, i));
+      sizes(i) = size > 0 ? size / modulus(system.D(i, first + k)) : size;
+    }
+    result(k) = weigh(sizes, T);
+  }
+  return result;
 }
 
 // Coupling E shifts w^2 by about E^2/|D(k +- m)|, |D(k +- m)| >= k.

@@ -12,7 +12,7 @@ using Index = Eigen::Index;
 Index factor_harmonics(const WeightedSystem& system) {
   constexpr double factor_accuracy = 1e-10;
   Index P = system.P;
-  const Eigen::ArrayXd scale = factor_accuracy * (1 + system.mean.array().abs());
+  const auto scale = [&](Index i) { return factor_accuracy * (1 + std::abs(system.mean(i))); };
   const auto negligible = [&](Index m) {
     for (Index j = 0; j < system.I; ++j)
       for (Index i = 0; i < system.I; ++i)

@@ -15,9 +15,9 @@ double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x)));
 }  // namespace
 
 Eigen::VectorXd wiener_norms(const Spectrum& x) {
-  if (x.rows() == 0) return Eigen::VectorXd::Zero(x.cols());
-  Eigen::VectorXd norms = 2 * moduli(x).colwise().sum().transpose();
-  return norms - moduli(x.row(0)).transpose();
+  Eigen::VectorXd norms = Eigen::VectorXd::Zero(x.cols());
+  for (Eigen::Index i = 0; i < x.cols() && x.rows() > 0; ++i) norms(i) = 2 * moduli(x.col(i)).sum() - modulus(x(0, i));
+  return norms;
 }
 
 WeightedSystem weighted(const ScaledSystem& system) {

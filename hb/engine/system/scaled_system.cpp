@@ -155,6 +155,18 @@ void add_given(const GivenErrors& given, const Eigen::MatrixXd& L, ScaledSystem&
   add(given.stiffness, 1 / (speed * speed), scaled.K_rounding);
 }
 
+// Turns to the eigenvectors of the mean stiffness where that leaves far less coupling in stiffness and damping together
+// (factor by experience: a diagonal damping matrix is worth keeping).
+void turn_to_eigenvectors(const Eigen::MatrixXd& mean, const Eigen::MatrixXd& damping, Eigen::MatrixXd& L,
+                          Eigen::MatrixXd& T) {
+  const Eigen::MatrixXd K0 = between(L, mean, T);
+  if (!is_symmetric(K0)) return;
+  const Eigen::MatrixXd B0 = between(L, damping, T), Q = dense::symmetric_eigenpairs(K0).vectors;
+  if (!(coupling(Q.transpose() * B0 * Q) < 0.1 * (coupling(K0) + coupling(B0)))) return;
+  L = Q.transpose() * L;
+  T = T * Q;
+}
+
 void require_speed(double speed) {
   if (!(speed > 0 && std::isfinite(speed)))
     throw std::invalid_argument("scale_system: speed must be positive and finite, is " + std::to_string(speed));
@@ -195,16 +207,7 @@ ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::Matr
   auto [left, T] = mass_factors(system.mass);
   L = std::move(left);
 
-  // Turn to the eigenvectors of the mean stiffness where that leaves far less coupling in stiffness and damping
-  // together (factor by experience: a diagonal damping matrix is worth keeping).
-  const Eigen::MatrixXd K0 = between(L, mean_of(C, I), T), B0 = between(L, system.damping, T);
-  if (I > 1 && is_symmetric(K0)) {
-    const Eigen::MatrixXd Q = dense::symmetric_eigenpairs(K0).vectors;
-    if (coupling(Q.transpose() * B0 * Q) < 0.1 * (coupling(K0) + coupling(B0))) {
-      L = Q.transpose() * L;
-      T = T * Q;
-    }
-  }
+  if (I > 1) turn_to_eigenvectors(mean_of(C, I), system.damping, L, T);
 
   ScaledSystem scaled;
   scaled.speed = speed;

@@ -1,4 +1,4 @@
-// Numbers at several crank angles side by side, one vector register: an operation serves them all.
+// Numbers side by side, as many as a vector register of the machine holds: an operation serves them all.
 #pragma once
 
 #include <Eigen/Core>
@@ -20,16 +20,19 @@ class Lanes {
   Lanes() : Lanes(0.0) {}
   Lanes(double all) : packet_(Eigen::internal::pset1<Packet>(all)) {}  // NOLINT(google-explicit-constructor)
 
+  // `width` numbers one after the other, wherever they begin.
+  static Lanes load(const double* numbers) { return {Eigen::internal::ploadu<Packet>(numbers), Taken()}; }
+  void store(double* numbers) const { Eigen::internal::pstoreu(numbers, packet_); }
   // value(lane) in each.
   template <class Value>
   static Lanes of(const Value& value) {
     Values values;
     for (std::size_t lane = 0; lane < values.size(); ++lane) values[lane] = value(static_cast<Eigen::Index>(lane));
-    return Lanes(Eigen::internal::ploadu<Packet>(values.data()), Taken());
+    return load(values.data());
   }
   Values values() const {
     Values values;
-    Eigen::internal::pstoreu(values.data(), packet_);
+    store(values.data());
     return values;
   }
 
@@ -53,6 +56,14 @@ class Lanes {
   Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
   Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
   Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
+
+  // Of `width` rows.
+  friend void transpose(Lanes* rows) {
+    Eigen::internal::PacketBlock<Packet, static_cast<int>(width)> block;
+    for (Eigen::Index i = 0; i < width; ++i) block.packet[i] = rows[i].packet_;
+    Eigen::internal::ptranspose(block);
+    for (Eigen::Index i = 0; i < width; ++i) rows[i].packet_ = block.packet[i];
+  }
 
  private:
   struct Taken {};
