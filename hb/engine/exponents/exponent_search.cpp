@@ -253,9 +253,8 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   }
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
-    if (const auto reduced =
-            slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1,
-                              begun ? starts.back() : SlavingStart())) {
+    if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1,
+                                               begun ? starts.back() : SlavingStart())) {
       search.exponents = reduced_exponents(*reduced, tolerance);
       name_modes(search.exponents, system, together);
       start_together = reduced->start;

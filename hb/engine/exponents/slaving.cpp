@@ -94,8 +94,8 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
     reduced.iterations = iterations;
     return reduced;
   };
-  // A neighbour's solution is judged by twice the samples from the beginning; what needs more corrections gets them with
-  // few samples.
+  // A neighbour's solution is judged by twice the samples from the beginning; what needs more corrections gets them
+  // with few samples.
   SlavingStart nearer;
   if (begun.solution.size() > 0 && 2 * start <= most_samples) {
     constexpr int few_iterations = 2;
