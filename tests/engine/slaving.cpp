@@ -42,6 +42,30 @@ void expect_covered(const HillSystem& system, StabilityMethod method, double mos
   }
 }
 
+// With 32 samples A has harmonics up to 15: strong modulation takes more of them, a neighbour's solution all it has.
+TEST(Slaving, GetsAsManyHarmonicsAsItTakes) {
+  int with_more = 0;
+  for (const double modulation : {0.1, 0.2, 0.25, 0.3}) {
+    const Eigen::Matrix2d mean = (Eigen::Matrix2d() << 90, 9, 9, 700).finished(),
+                          first = (Eigen::Matrix2d() << 90 * modulation, 20, 20, 600 * modulation).finished();
+    const ScaledSystem system = scale_system(two_modes(0.1, mean, first), 1),
+                       beside = scale_system(two_modes(0.1, 1.0001 * mean, first), 1);
+    const std::array<Eigen::Index, 1> slow{0};
+    const ReducedSystem reduced = slave_to(system, slow, 1e-12);
+    ASSERT_TRUE(reduced.converged) << modulation;
+    if (reduced.solved.solution.size() > 4 * 16) ++with_more;
+    SampledStiffness stiffness(beside);
+    const ReducedSystem begun = slave_to(stiffness, slow, 1e-12, false, reduced.solved),
+                        alone = slave_to(beside, slow, 1e-12);
+    ASSERT_TRUE(begun.converged && alone.converged) << modulation;
+    EXPECT_LT(begun.iterations, alone.iterations) << modulation;
+    const Eigen::Index H = std::min(begun.alpha.num_harmonics(), alone.alpha.num_harmonics());
+    EXPECT_LE((begun.alpha.c.leftCols(H + 1) - alone.alpha.c.leftCols(H + 1)).cwiseAbs().maxCoeff(),
+              begun.alpha_error(0) + alone.alpha_error(0));
+  }
+  EXPECT_GT(with_more, 0);
+}
+
 // Equal modes coupled by a ten-millionth: the residual of the reduction was weighed by the coupling alone, though it
 // moves the fast mode by its size over the distance of the two frequencies.
 TEST(Slaving, WeaklyCoupledEqualModesHaveErrorsThatHold) {

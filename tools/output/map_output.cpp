@@ -13,9 +13,9 @@
 #include "lib/constants.hpp"
 #include "lib/scene/scene_keys.hpp"
 #include "tools/output/json.hpp"
-#include "tools/output/json_digits.hpp"
 #include "tools/output/json_output.hpp"
 #include "tools/output/map_loads_output.hpp"
+#include "tools/output/map_members.hpp"
 #include "tools/output/map_theory_output.hpp"
 #include "tools/output/output_units.hpp"
 #include "tools/output/path_unit.hpp"
@@ -26,80 +26,9 @@
 namespace hb::tools {
 namespace {
 
-bool missing(const MapPoint& point) { return point.source == MapSource::missing; }
-
-// Rows along x, one per y.
-template <class Value>
-void write_grid(const std::vector<MapPoint>& points, std::size_t nx, const Value& value, TextPieces& pieces) {
-  const ValueText none(std::nan(""));
-  RepeatedText<decltype(value(points[0]))> texts;
-  for (std::size_t row = 0; row < points.size(); row += nx) {
-    pieces.add(row > 0 ? "," : "[");
-    pieces.add(nx * (1 + ValueText::longest), [&](char* at) {
-      for (std::size_t p = row; p < row + nx; ++p) {
-        *at++ = p > row ? ',' : '[';
-        at = (missing(points[p]) ? none : texts.of(value(points[p]))).copy(at);
-      }
-      return at;
-    });
-    pieces.add("]");
-  }
-  pieces.add("]");
-}
-
-// The members of an object in their order. Grids, which have millions of values, go into the text without becoming
-// values of a document before.
-class Members {
- public:
-  void add(const std::string& key, Json value) { members_.push_back({key, std::move(value), {}}); }
-  void add(const std::string& key, const Members& object) {
-    members_.push_back({key, {}, [object](TextPieces& pieces) { object.write(pieces); }});
-  }
-  // `map` and `points` outlive the object.
-  template <class Value>
-  void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value) {
-    members_.push_back(
-        {key, {}, [nx = map.x.size(), &points, value](TextPieces& pieces) { write_grid(points, nx, value, pieces); }});
-  }
-  // One that is said again: `kept` has its text from the first time on.
-  template <class Value>
-  void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value,
-                std::string& kept) {
-    members_.push_back({key, {}, [nx = map.x.size(), &points, value, &kept](TextPieces& pieces) {
-                          if (kept.empty()) {
-                            const TextSink keep = [&](std::string_view piece) { kept += piece; };
-                            TextPieces own(keep);
-                            write_grid(points, nx, value, own);
-                            own.hand_on();
-                          }
-                          pieces.add(kept);
-                        }});
-  }
-  void write(TextPieces& pieces) const {
-    const char* before = "{";
-    for (const Member& member : members_) {
-      pieces.add(before);
-      before = ",";
-      pieces.add(printable(Json(member.key).dump()) + ":");
-      if (member.write)
-        member.write(pieces);
-      else
-        pieces.add(printable(member.value.dump(-1, ' ', false, Json::error_handler_t::replace)));
-    }
-    pieces.add("}");
-  }
-
- private:
-  struct Member {
-    std::string key;
-    Json value;
-    std::function<void(TextPieces&)> write;  // instead of the value
-  };
-  std::vector<Member> members_;
-};
-
 // Texts of the grids, where one rod is all there are.
 using KeptGrids = std::map<std::string, std::string>;
+constexpr std::size_t most_points_kept = 1'000'000;  // some 80 bytes each
 
 void add_grids(Members& json, const StabilityMap& map, const std::vector<MapPoint>& points, KeptGrids* kept) {
   const auto add = [&](const std::string& key, auto value) {
@@ -255,7 +184,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
   json.add("modes", document.num_modes);
   if (document.boundaries) json.add("boundary_tolerance", document.tolerance);
   KeptGrids kept;
-  KeptGrids* const same = r.rods.size() == 1 ? &kept : nullptr;
+  KeptGrids* const same = r.rods.size() == 1 && r.worst().size() <= most_points_kept ? &kept : nullptr;
   add_grids(json, first, r.worst(), same);
   json.add_grid("interpolated", first, r.worst(),
                 [](const MapPoint& p) { return p.source == MapSource::interpolated; });

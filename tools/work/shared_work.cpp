@@ -21,12 +21,13 @@ namespace hb::tools {
 namespace {
 
 // Parts that are kept together: often enough for a kill to lose little, seldom enough not to wait for the disk. Those
-// that share work stay together where that leaves every thread enough, in several processes always.
+// that share work stay together where that leaves enough chunks for many threads. The same with any number of threads
+// and processes, or --resume would take parts for others.
 std::size_t parts_per_chunk(const Parts& parts) {
-  constexpr std::size_t most = 64, enough_groups = 16;
+  constexpr std::size_t most = 64, enough_groups = 32;
   const std::size_t size = std::clamp<std::size_t>(parts.count / 100, 1, most);
-  const bool in_groups = ranks().size() > 1 || parts.count >= enough_groups * parts.together;
-  return in_groups ? std::max<std::size_t>(size / parts.together, 1) * parts.together : size;
+  if (parts.count < enough_groups * parts.together) return size;
+  return std::max<std::size_t>(size / parts.together, 1) * parts.together;
 }
 
 // Each part after its length.
@@ -50,6 +51,7 @@ void split(const Part& numbers, const Parts& parts, std::size_t from, std::size_
     parts.take(k, Part(next, next + size));
     next += size;
   }
+  if (next != numbers.end()) throw std::out_of_range("part of a result: of more parts");
 }
 
 }  // namespace

@@ -71,8 +71,8 @@ struct SweepPoint {
 // Stability::solved of each rod.
 using PointSolution = std::vector<std::vector<SlavingStart>>;
 
-// Slaving begins where `start`, if given, says: that decides how long it takes, what comes out by less than its error.
-// `solution`, if given, takes what it came to.
+// Slaving begins where `start`, if given, says: that decides how long it takes and moves what comes out by less than
+// its error. `solution`, if given, takes what it came to.
 [[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted,
                                        const PointSolution* start = nullptr, PointSolution* solution = nullptr);
 

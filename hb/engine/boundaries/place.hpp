@@ -24,6 +24,7 @@ struct Place {
   // Which strands of other places, by x, these go on as; filled by `onward`.
   mutable std::map<double, std::vector<std::size_t>> continued_at;
 
+  // Computed when they are asked for.
   const Strands& strands() const {
     if (!known_strands) known_strands = strands_of(sample, mean);
     return *known_strands;

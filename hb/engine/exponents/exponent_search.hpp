@@ -31,8 +31,8 @@ void name_modes(Exponents& exponents, const Eigen::VectorXd& w2, const Eigen::Ve
                                                    bool leading_only = false);
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
-// reduction converges. Exponents `known` better from elsewhere take the place of those found. Slaving
-// begins where `starts`, of a neighbour's `solved`, say.
+// reduction converges. Exponents `known` better from elsewhere take the place of those found. Slaving begins where
+// `starts`, a neighbour's `solved`, say.
 [[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance,
                                                const Exponents& known = {}, std::span<const SlavingStart> starts = {});
 

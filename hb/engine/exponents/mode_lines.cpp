@@ -405,7 +405,7 @@ std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, c
     mode_lines::Line& line = lines[leading.line];
     line.feel(by_half);
     line.next();
-    return GrowthChange{linear, found, line.next() - linear};
+    return GrowthChange{linear, found, line.next() - impl_->linear(order + 2)};
   }
   return std::nullopt;
 }

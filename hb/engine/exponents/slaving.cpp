@@ -92,23 +92,29 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
     const int iterations = reduced.iterations;
     reduced = iteration.result(bounds_others);
     reduced.iterations = iterations;
-    return reduced;
   };
+  // As many samples as the neighbour's harmonics were found with.
+  const auto numbers = [&](Index N) { return 4 * Index(p.F.size() * p.S.size()) * ((N - 1) / 2 + 1); };
+  Index own = start;
+  while (numbers(own) < begun.solution.size()) own *= 2;
   // A neighbour's solution is judged by twice the samples from the beginning; what needs more corrections gets them
   // with few samples.
   SlavingStart nearer;
-  if (begun.solution.size() > 0 && 2 * start <= most_samples) {
+  if (begun.solution.size() > 0 && own <= 4 * start && 2 * own <= most_samples) {
     constexpr int few_iterations = 2;
-    Iteration judged(stiffness, p, 2 * start);
-    if (judged.start_from(begun)) {
-      if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) return finish(judged);
-      nearer = judged.solved();
+    Iteration judged(stiffness, p, 2 * own);
+    judged.start_from(begun);
+    if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {
+      finish(judged);
+      return reduced;
     }
+    nearer = judged.solved();
   }
   const auto solve = [&](const SlavingStart& from) {
-    auto iteration = std::make_unique<Iteration>(stiffness, p, start);
-    if (from.solution.size() > 0 && !iteration->start_from(from)) return false;
-    for (Index N = start; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
+    const Index first = from.solution.size() > 0 ? own : start;
+    auto iteration = std::make_unique<Iteration>(stiffness, p, first);
+    iteration->start_from(from);
+    for (Index N = first; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
       if (2 * N > most_samples) break;
       auto finer = std::make_unique<Iteration>(stiffness, p, 2 * N);
       finer->start_from(*iteration);

@@ -201,13 +201,12 @@ void Iteration::start_from(const Iteration& coarse) {
   x_.head(coarse.x_.size()) = coarse.x_;
 }
 
-bool Iteration::start_from(const SlavingStart& start) {
-  if (start.solution.size() > x_.size()) return false;
+void Iteration::start_from(const SlavingStart& start) {
+  if (start.solution.size() == 0) return;
   amplification_ = start.amplification;
   enough_ = 4 * start.change;
   changed_ = start.solution.size();
   x_.head(changed_) = start.solution;
-  return true;
 }
 
 bool Iteration::solved_by_start(double tolerance) {
@@ -216,6 +215,7 @@ bool Iteration::solved_by_start(double tolerance) {
   const double change = alpha_change(), scale = alpha_.cwiseAbs().maxCoeff() + 1;
   const bool solved = change <= std::max(std::max(1e-13, tolerance) * scale, 4 * change_);
   change_ = change;
+  if (!solved) changed_ = x_.size();
   return solved;
 }
 

@@ -36,9 +36,9 @@ class Iteration {
   // Starts from what fewer samples gave.
   void start_from(const Iteration& coarse);
 
-  // Starts from a neighbour's solution, of which it changes no more harmonics than that has: those beyond them judge
-  // it. False if it has more than these samples show.
-  bool start_from(const SlavingStart& start);
+  // Starts from a neighbour's solution, if there is one, of no more harmonics than these samples show, and changes no
+  // more than that has: those beyond them judge it.
+  void start_from(const SlavingStart& start);
 
   // Whether the start solves the equations with these samples, twice as many as it was found with: then nothing was
   // folded back or cut off that matters.
