@@ -62,7 +62,10 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
 
 PointFamily::PointFamily(const SweepScene& scene, const Only& only)
     : scene_(scene), only_(only), values_(scene.axis().values) {
-  const std::size_t count = values_.size(), blocks = (count + most_points - 1) / most_points;
+  const bool shares = only.all_exponents() && std::ranges::any_of(scene.first().rods, [](const RodModel& rod) {
+                        return rod.system.num_modes() > 1;
+                      });
+  const std::size_t count = values_.size(), most = shares ? most_points : 1, blocks = (count + most - 1) / most;
   block_size_ = (count + blocks - 1) / blocks;
   blocks_.resize((count + block_size_ - 1) / block_size_);
 }

@@ -1,6 +1,6 @@
 // Neighbouring points of a sweep share work: a few of each block of points are solved from nothing, the others begin
-// with what polynomials through these foretell. Each point depends on its place alone, so that neither threads nor the
-// order of the points matter.
+// with what polynomials through these foretell. Each point depends on the sweep's values alone, so that neither threads
+// nor the order in which points are asked for matter.
 #pragma once
 
 #include <condition_variable>
@@ -20,7 +20,8 @@ class PointFamily {
 
   // Of values[k]; may be asked by several threads at once.
   [[nodiscard]] SweepPoint at(std::size_t k);
-  // Points of a block: they share work, and what they share is kept until all were asked for.
+  // Points of a block: they share work, and what they share is kept until all were asked for. 1 where there is nothing
+  // to share: slaving serves all exponents of several modes.
   [[nodiscard]] std::size_t block_size() const { return block_size_; }
 
  private:
