@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "lib/golden_section.hpp"
-#include "lib/rod/rod_terms.hpp"
 
 namespace hb {
 namespace {
@@ -71,7 +70,15 @@ Eigen::Index largest_harmonics(const FourierSeries& series, double length) {
 }  // namespace
 
 FourierSeries axial_series(const RodCoefficients& rod, double speed) {
-  return FourierSeries(Eigen::MatrixXcd(rod_terms::coefficients_at(rod, speed).c.middleRows(2, 3)));
+  Eigen::Index H = 0;
+  for (const FourierSeries& f : rod.f) H = std::max(H, f.num_harmonics());
+  FourierSeries sum(3, H);
+  double power = 1;
+  for (const FourierSeries& f : rod.f) {
+    if (f.num_harmonics() >= 0) sum.c.leftCols(f.c.cols()) += power * f.c.middleRows(2, 3);
+    power *= speed;
+  }
+  return sum;
 }
 
 RodStress rod_stress(const Body& link, const RodCoefficients& rod, double tail, double speed, double bending_moment,
