@@ -248,7 +248,7 @@ Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool
   if (determinant && determinant->converged) return *std::move(determinant);
   const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
   const bool phase_may_settle = reduced.num_modes == 1 && frequency > 3;
-  constexpr double fast = 25;
+  constexpr double fast = 8;
   if (phase_may_settle && frequency > fast)
     if (std::optional<Exponents> result = by_phase(reduced, tolerance)) return *std::move(result);
   Exponents result = propagated_exponents(reduced, tolerance, leading_only);

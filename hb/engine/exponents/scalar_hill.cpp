@@ -59,34 +59,43 @@ struct Mean {
   }
 };
 
+// What |d| <= dQ does to the frequency mean(psi) - mean d/(2 psi) of psi^2 = Q - psi''/(2 psi) + 3/4 (psi'/psi)^2 + d.
+// With e = int |d|/(2 psi) over the turn the half trace of its map is within cosh e - 1 of cos 2 pi frequency; infinite
+// where the multipliers may be real.
+double second_order(double dQ, double smallest_psi, double frequency) {
+  const double half = std::sinh(0.5 * pi * dQ / smallest_psi), off = 2 * half * half;
+  const double sine = std::abs(std::sin(two_pi * frequency));
+  return off < 0.5 * sine * sine ? off / (pi * sine) : HUGE_VAL;
+}
+
 // psi = e^L at M nodes of the turn, and what follows from it.
 struct PhaseFunction {
-  // left: how much the last correction differed.
-  PhaseFunction(double sigma, double left, const FourierSeries& L, const FourierSeries& alpha,
-                const FourierSeries& beta, Index M)
-      : PhaseFunction(sigma, left, sampled({{alpha, 0}, {beta, 0}, {beta, 1}, {L, 0}, {L, 1}, {L, 2}}, M)) {}
+  // left: how much the last correction differed; given: alpha, beta, beta' at these nodes.
+  PhaseFunction(double sigma, double left, const FourierSeries& L, const Eigen::ArrayXXd& given)
+      : PhaseFunction(sigma, left, given, sampled({{L, 0}, {L, 1}, {L, 2}}, given.rows())) {}
 
   [[nodiscard]] ExponentPair exponents(double alpha_error, double beta_error) const {
     return sigma > 0 ? oscillating(alpha_error, beta_error) : overdamped(alpha_error, beta_error);
   }
 
   double sigma, left;
-  ArrayXd a, b, b1, psi, psi2, correction;
+  ArrayXd a, b, b1, psi, psi2, correction, d;
   double defect;
   Mean frequency;
 
  private:
-  // alpha, beta, beta', L, L', L''.
-  PhaseFunction(double sigma, double left, const Eigen::ArrayXXd& at)
+  // L: with L', L''.
+  PhaseFunction(double sigma, double left, const Eigen::ArrayXXd& given, const Eigen::ArrayXXd& L)
       : sigma(sigma),
         left(left),
-        a(at.col(0)),
-        b(at.col(1)),
-        b1(at.col(2)),
-        psi(at.col(3).exp()),
+        a(given.col(0)),
+        b(given.col(1)),
+        b1(given.col(2)),
+        psi(L.col(0).exp()),
         psi2(psi.square()),
-        correction(schwarzian(at.col(4), at.col(5))),
-        defect((psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)).abs().maxCoeff()),
+        correction(schwarzian(L.col(1), L.col(2))),
+        d(psi2 - sigma * (a - b.square() / 4 - b1 / 2 + correction)),
+        defect(d.abs().maxCoeff()),
         frequency(psi) {}
 
   [[nodiscard]] ExponentPair oscillating(double alpha_error, double beta_error) const;
@@ -99,12 +108,15 @@ struct PhaseFunction {
 
 ExponentPair PhaseFunction::oscillating(double alpha_error, double beta_error) const {
   const double largest_b = b.abs().maxCoeff();
+  const Mean corrected(psi - d / (2 * psi));
+  const double second = second_order(dQ(), psi.minCoeff(), corrected.value), first = dQ() / floor();
+  const Mean& mean = second < first ? corrected : frequency;
   ExponentPair pair;
   const double error =
-      (dQ() + alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor() +
-      beta_error + 4 * eps * (psi.maxCoeff() + largest_b) + frequency.change;
-  pair.s = {std::complex<double>(-b.mean() / 2, frequency.value),
-            std::complex<double>(-b.mean() / 2, -frequency.value)};
+      std::min(second, first) +
+      (alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor() + beta_error +
+      4 * eps * (psi.maxCoeff() + largest_b) + mean.change;
+  pair.s = {cplx(-b.mean() / 2, mean.value), cplx(-b.mean() / 2, -mean.value)};
   pair.error = {error, error};
   return pair;
 }
@@ -150,10 +162,11 @@ ExponentPair PhaseFunction::overdamped(double alpha_error, double beta_error) co
 std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, const FourierSeries& given_beta,
                                             double alpha_error, double beta_error, double tolerance) {
   const FourierSeries alpha = above_rounding(given_alpha, alpha_error), beta = above_rounding(given_beta, beta_error);
-  const Index start = fourier::fast_length(4 * std::max({alpha.num_harmonics(), beta.num_harmonics(), Index(8)}) + 4);
-  for (Index N = start; N <= 4 * start; N *= 2) {
-    const Eigen::ArrayXXd given = sampled({{alpha, 0}, {beta, 0}, {beta, 1}}, N);
-    const ArrayXd Q = given.col(0) - given.col(1).square() / 4 - given.col(2) / 2;
+  const Index start = fourier::fast_length(2 * std::max({alpha.num_harmonics(), beta.num_harmonics(), Index(8)}) + 4);
+  for (Index N = start; N <= 8 * start; N *= 2) {
+    const Eigen::ArrayXXd given = sampled({{alpha, 0}, {beta, 0}, {beta, 1}}, 2 * N);
+    const ArrayXd finer = given.col(0) - given.col(1).square() / 4 - given.col(2) / 2;
+    const ArrayXd Q = finer(Eigen::seqN(0, N, 2));
     // sigma = +1: oscillating, psi real; sigma = -1: overdamped, psi = -i chi with chi real.
     const double sigma = Q.minCoeff() > 0 ? 1 : -1;
     if (!((sigma * Q).minCoeff() > 0)) return std::nullopt;
@@ -165,7 +178,8 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
     ArrayXd correction = ArrayXd::Zero(N), next = sigma * Q;
     double left = HUGE_VAL;
     for (int iteration = 0; iteration < 40; ++iteration) {
-      const FourierSeries log_psi = fourier::analyse((0.5 * next.log()).matrix().transpose());
+      const ArrayXd logarithm = 0.5 * next.log();
+      const FourierSeries log_psi = fourier::analyse(logarithm.matrix().transpose());
       const Eigen::ArrayXXd slopes = sampled({{log_psi, 1}, {log_psi, 2}}, N);
       const ArrayXd term = schwarzian(slopes.col(0), slopes.col(1));
       const double change = (term - correction).abs().maxCoeff();
@@ -175,12 +189,14 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
       correction = term;
       next = sigma * (Q + term);
       if (!next.allFinite() || !(next.minCoeff() > 0)) break;
-      if (left <= unseen * tolerance * std::sqrt(next.minCoeff())) break;
+      const ArrayXd psi = next.sqrt();
+      const double allowed = unseen * tolerance, smallest = psi.minCoeff();
+      if (left <= allowed * smallest || (sigma > 0 && second_order(2 * left, smallest, psi.mean()) <= allowed)) break;
     }
     if (!std::isfinite(left)) return std::nullopt;
     // From here on psi = exp(L), L a trigonometric polynomial, is what it is; its defect at twice the nodes says how
     // good it is, sampling included.
-    const PhaseFunction phase{sigma, left, L, alpha, beta, 2 * N};
+    const PhaseFunction phase(sigma, left, L, given);
     const ExponentPair pair = phase.exponents(alpha_error, beta_error);
     if (std::isfinite(pair.error[0]) && pair.error[0] <= tolerance && std::isfinite(pair.error[1])) return pair;
     if (!(phase.defect > 2 * left)) return std::nullopt;  // a finer grid helps only against lost harmonics

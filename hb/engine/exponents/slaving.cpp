@@ -59,14 +59,10 @@ ReducedSystem unreduced(const ScaledSystem& system) {
 
 }  // namespace
 
-// Slaving asks for twice as many angles in the end: these show the others, too.
 const SampledStiffness::Samples& SampledStiffness::at(Index num_samples) {
   const auto [place, is_new] = samples_.try_emplace(num_samples);
   if (is_new) {
-    const Index I = system_.num_modes();
-    const auto finer = samples_.find(2 * num_samples);
-    place->second.K = finer != samples_.end() ? MatrixXd(finer->second.K(Eigen::seqN(0, num_samples, 2), Eigen::all))
-                                              : sampled(system_.K, I, num_samples);
+    place->second.K = sampled(system_.K, system_.num_modes(), num_samples);
     place->second.largest = place->second.K.cwiseAbs().colwise().maxCoeff();
   }
   return place->second;
@@ -84,10 +80,10 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   const Partition p = slaving::partition(I, slow);
   if (p.F.empty()) return unreduced(system);
   ReducedSystem reduced;
-  // Few samples for the iteration; twice as many judge what it gave.
+  // Few samples for the iteration; more, at other angles for the most part, judge what it gave.
   constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
-  if (2 * start <= most_samples) (void)stiffness.at(2 * start);
+  const auto more_than = [](Index N) { return fourier::fast_length(N + 1); };
   const auto finish = [&](Iteration& iteration) {
     const int iterations = reduced.iterations;
     reduced = iteration.result(bounds_others);
@@ -96,13 +92,13 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   // As many samples as the neighbour's harmonics were found with.
   const auto numbers = [&](Index N) { return 4 * Index(p.F.size() * p.S.size()) * ((N - 1) / 2 + 1); };
   Index own = start;
-  while (numbers(own) < begun.solution.size()) own *= 2;
-  // A neighbour's solution is judged by twice the samples from the beginning; what needs more corrections gets them
+  while (numbers(own) < begun.solution.size()) own = more_than(own);
+  // A neighbour's solution is judged by more samples from the beginning; what needs more corrections gets them
   // with few samples.
   SlavingStart nearer;
-  if (begun.solution.size() > 0 && own <= 4 * start && 2 * own <= most_samples) {
+  if (begun.solution.size() > 0 && own <= 4 * start && more_than(own) <= most_samples) {
     constexpr int few_iterations = 2;
-    Iteration judged(stiffness, p, 2 * own);
+    Iteration judged(stiffness, p, more_than(own));
     judged.start_from(begun);
     if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {
       finish(judged);
@@ -114,9 +110,9 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
     const Index first = from.solution.size() > 0 ? own : start;
     auto iteration = std::make_unique<Iteration>(stiffness, p, first);
     iteration->start_from(from);
-    for (Index N = first; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N *= 2) {
-      if (2 * N > most_samples) break;
-      auto finer = std::make_unique<Iteration>(stiffness, p, 2 * N);
+    for (Index N = first; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N = more_than(N)) {
+      if (more_than(N) > most_samples) break;
+      auto finer = std::make_unique<Iteration>(stiffness, p, more_than(N));
       finer->start_from(*iteration);
       iteration = std::move(finer);
       if (!iteration->solved_by_start(tolerance)) continue;

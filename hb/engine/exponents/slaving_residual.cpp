@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "hb/engine/exponents/slaving_iteration.hpp"
+#include "lib/constants.hpp"
 #include "lib/modulus.hpp"
 
 namespace hb::slaving {
@@ -55,13 +56,20 @@ void reached(const VectorXd& size, const VectorXd& carried, VectorXd& result) {
 double Iteration::carried_change(const FourierSeries& alpha) {
   const auto re = forward_.re(), im = forward_.im();
   const Index nm = n_ * m_;
-  double sum = 0, squares = 0;
+  // What matters less than this part of alpha's rounding is not looked into.
+  const double negligible = 0.01 * 4 * eps * alpha_.cwiseAbs().maxCoeff();
+  double sum = 0, squares = 0, others = 0;
   VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1), phase(H_), carried, back, part;
   for (Index j = 0; j < n_; ++j) {
     const auto own = given_.c.row(F_[j] + I_ * F_[j]);
     const double fast = std::max(std::sqrt(std::abs(own(0).real())), 1e-3);
     for (Index l = 0; l < m_; ++l) {
       const Index q = j + n_ * l;
+      const double most = effect_.row(q).dot(residual_.row(q));
+      if (2 * most <= negligible) {
+        others += most;
+        continue;
+      }
       phase.setZero();  // |K_m|/w_F + |alpha_m|/w_S of the harmonics from 1
       phase.head(own.size() - 1) = own.tail(own.size() - 1).cwiseAbs2().cwiseSqrt() / fast;
       for (Index s = 0; s < m_; ++s)
@@ -89,7 +97,7 @@ double Iteration::carried_change(const FourierSeries& alpha) {
     }
   }
   // Rounding of harmonics is independent for the most part, what is not yet solved is not.
-  return std::min(2 * sum, 4 * std::sqrt(squares) + 0.25 * sum);
+  return std::min(2 * sum, 4 * std::sqrt(squares) + 0.25 * sum) + 2 * others;
 }
 
 }  // namespace hb::slaving
