@@ -52,6 +52,37 @@ QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
   return result;
 }
 
+namespace {
+
+// One cell backwards, all matrices row after row but R: left = V^-1, then V <- R^-1 V diag(blocks of R), V unit upper
+// triangular by blocks. `first`, `last`: of the block that each column is in.
+template <class Length>
+void step_back(Length n, const Index* first, const Index* last, const double* __restrict R, double* __restrict V,
+               double* __restrict left, double* __restrict product) {
+  for (Index k = 0; k < n * n; ++k) left[k] = k % (n + 1) == 0 ? 1 : 0;
+  for (Index r = n - 2; r >= 0; --r)
+    for (Index c = r + 1; c < n; ++c)
+      for (Index j = 0; j < n; ++j) left[r * n + j] -= V[r * n + c] * left[c * n + j];
+  for (Index r = 0; r < n; ++r)
+    for (Index c = 0; c < n; ++c) {
+      double sum = 0;
+      for (Index k = first[c]; k < last[c]; ++k) sum += V[r * n + k] * R[k + n * c];
+      product[r * n + c] = sum;
+    }
+  for (Index r = n - 1; r >= 0; --r) {
+    for (Index j = 0; j < n; ++j) V[r * n + j] = product[r * n + j];
+    for (Index c = r + 1; c < n; ++c)
+      for (Index j = 0; j < n; ++j) V[r * n + j] -= R[r + n * c] * V[c * n + j];
+    const double pivot = R[r + n * r];
+    const bool vanishes = !(std::abs(pivot) > 1e-290);
+    const double factor = vanishes ? 0 : 1 / pivot;
+    for (Index j = 0; j < n; ++j) V[r * n + j] *= factor;
+    if (vanishes) V[r * n + r] = 1;
+  }
+}
+
+}  // namespace
+
 // Solved from the last cell to the first, which contracts, since what leads grows more over a turn.
 std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
   using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -61,6 +92,11 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
   if (blocks == 1) return bases;
   const auto begin = [&](Index b) { return b == 0 ? 0 : sweep.ends[std::size_t(b - 1)]; };
   const auto width = [&](Index b) { return sweep.ends[std::size_t(b)] - begin(b); };
+  std::vector<Index> first, last;  // of the block of each column
+  for (Index b = 0; b < blocks; ++b) {
+    first.insert(first.end(), std::size_t(width(b)), begin(b));
+    last.insert(last.end(), std::size_t(width(b)), sweep.ends[std::size_t(b)]);
+  }
   Rows V = Rows::Identity(n, n), W(n, n), product(n, n), before;
   constexpr int most_turns = 8;
   constexpr Index often = 64;  // cells between looks
@@ -73,22 +109,10 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
     }
     for (Index i = N - 1; i >= 0; --i) {
       if (i % often == 0) end_if_wished();
-      const auto R = sweep.R.middleCols(n * i, n);
-      W.setIdentity();
-      for (Index r = n - 2; r >= 0; --r)
-        for (Index c = r + 1; c < n; ++c) W.row(r) -= V(r, c) * W.row(c);
+      with_size(n, [&](auto size) {
+        step_back(size, first.data(), last.data(), sweep.R.data() + n * n * i, V.data(), W.data(), product.data());
+      });
       bases.left.middleCols(n * i, n) = W;
-      for (Index b = 0; b < blocks; ++b) {
-        const auto D = R.block(begin(b), begin(b), width(b), width(b));
-        product.middleCols(begin(b), width(b)) = V.middleCols(begin(b), width(b)).lazyProduct(D);
-      }
-      V.swap(product);
-      for (Index r = n - 1; r >= 0; --r) {
-        for (Index c = r + 1; c < n; ++c) V.row(r) -= R(r, c) * V.row(c);
-        const bool vanishes = !(std::abs(R(r, r)) > 1e-290);
-        V.row(r) *= vanishes ? 0 : 1 / R(r, r);
-        if (vanishes) V(r, r) = 1;
-      }
       bases.right.middleCols(n * i, n) = V;
     }
     bool settled = turn > 0;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 namespace hb {
@@ -12,8 +11,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-constexpr int largest = 10;
 
 template <class Length>
 void product(Length n, const double* __restrict A, const double* __restrict B, double* __restrict C) {
@@ -58,17 +55,10 @@ void householder(Length n, double* A, double* Q, double* V, double* beta) {
     for (Index j = k; j < n; ++j) reflect(n, V + k * n, beta[k], Q + j * n);
 }
 
-// f(n) with n a compile-time constant where it is one of 1..10; false beyond.
-template <class Function, int... sizes>
-bool with_size(Index n, const Function& f, std::integer_sequence<int, sizes...>) {
-  return ((n == sizes + 1 && (f(std::integral_constant<Index, sizes + 1>()), true)) || ...);
-}
-
 }  // namespace
 
 void multiply(Index n, const double* A, const double* B, double* C) {
-  const auto fixed = [&](auto size) { product(size, A, B, C); };
-  if (!with_size(n, fixed, std::make_integer_sequence<int, largest>())) product(n, A, B, C);
+  with_size(n, [&](auto size) { product(size, A, B, C); });
 }
 
 void multiply(const MatrixXd& A, const MatrixXd& B, MatrixXd& C) {
@@ -85,15 +75,17 @@ void multiply_columns(const MatrixXd& matrices, Index first, const MatrixXd& B, 
 void orthogonalise(MatrixXd& A, MatrixXd& Q) {
   const Index n = A.rows();
   Q.resize(n, n);
-  const auto fixed = [&](auto size) {
-    constexpr auto count = static_cast<std::size_t>(decltype(size)::value);
-    std::array<double, count * count> V;
-    std::array<double, count> beta;
-    householder(size, A.data(), Q.data(), V.data(), beta.data());
-  };
-  if (with_size(n, fixed, std::make_integer_sequence<int, largest>())) return;
-  std::vector<double> V(static_cast<std::size_t>(n * n)), beta(static_cast<std::size_t>(n));
-  householder(n, A.data(), Q.data(), V.data(), beta.data());
+  with_size(n, [&](auto size) {
+    if constexpr (std::is_same_v<decltype(size), Index>) {
+      std::vector<double> V(static_cast<std::size_t>(n * n)), beta(static_cast<std::size_t>(n));
+      householder(size, A.data(), Q.data(), V.data(), beta.data());
+    } else {
+      constexpr auto count = static_cast<std::size_t>(decltype(size)::value);
+      std::array<double, count * count> V;
+      std::array<double, count> beta;
+      householder(size, A.data(), Q.data(), V.data(), beta.data());
+    }
+  });
 }
 
 }  // namespace hb

@@ -3,8 +3,20 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <type_traits>
+#include <utility>
 
 namespace hb {
+
+// f(n) with n known to the compiler where it is one of 1..10.
+template <class Function, int... sizes>
+void with_size(Eigen::Index n, const Function& f, std::integer_sequence<int, sizes...>) {
+  if (!((n == sizes + 1 && (f(std::integral_constant<Eigen::Index, sizes + 1>()), true)) || ...)) f(n);
+}
+template <class Function>
+void with_size(Eigen::Index n, const Function& f) {
+  with_size(n, f, std::make_integer_sequence<int, 10>());
+}
 
 // C = A B; n x n, columns contiguous. C is none of A, B.
 void multiply(Eigen::Index n, const double* A, const double* B, double* C);
