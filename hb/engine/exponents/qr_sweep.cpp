@@ -54,31 +54,50 @@ QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
 
 namespace {
 
-// One cell backwards, all matrices row after row but R: left = V^-1, then V <- R^-1 V diag(blocks of R), V unit upper
-// triangular by blocks. `first`, `last`: of the block that each column is in.
+// What one step needs besides V, row after row: W = V^-1, one cell's R and its diagonal blocks, and V diag(blocks).
+struct StepBack {
+  std::vector<double> W, R, D, product;
+
+  explicit StepBack(Index n) : W(std::size_t(n * n)), R(W), D(W), product(W) {}
+};
+
+// One cell backwards: left = V^-1, then V <- R^-1 V diag(blocks of R), which is also `right`; V row after row, unit
+// upper triangular by blocks. `last`: of the block that each column is in, exclusive.
 template <class Length>
-void step_back(Length n, const Index* first, const Index* last, const double* __restrict R, double* __restrict V,
-               double* __restrict left, double* __restrict product) {
-  for (Index k = 0; k < n * n; ++k) left[k] = k % (n + 1) == 0 ? 1 : 0;
-  for (Index r = n - 2; r >= 0; --r)
-    for (Index c = r + 1; c < n; ++c)
-      for (Index j = 0; j < n; ++j) left[r * n + j] -= V[r * n + c] * left[c * n + j];
+void step_back(Length n, const Index* last, const double* __restrict cell, double* __restrict V, StepBack& work,
+               double* __restrict left, double* __restrict right) {
+  double* __restrict W = work.W.data();
+  double* __restrict R = work.R.data();
+  double* __restrict D = work.D.data();
+  double* __restrict product = work.product.data();
   for (Index r = 0; r < n; ++r)
     for (Index c = 0; c < n; ++c) {
-      double sum = 0;
-      for (Index k = first[c]; k < last[c]; ++k) sum += V[r * n + k] * R[k + n * c];
-      product[r * n + c] = sum;
+      R[r * n + c] = cell[r + n * c];
+      D[r * n + c] = last[r] == last[c] ? cell[r + n * c] : 0;
+      W[r * n + c] = r == c ? 1 : 0;
     }
-  for (Index r = n - 1; r >= 0; --r) {
-    for (Index j = 0; j < n; ++j) V[r * n + j] = product[r * n + j];
+  for (Index r = n - 2; r >= 0; --r)
     for (Index c = r + 1; c < n; ++c)
-      for (Index j = 0; j < n; ++j) V[r * n + j] -= R[r + n * c] * V[c * n + j];
-    const double pivot = R[r + n * r];
+      for (Index j = 0; j < n; ++j) W[r * n + j] -= V[r * n + c] * W[c * n + j];
+  for (Index r = 0; r < n; ++r) {
+    for (Index j = 0; j < n; ++j) product[r * n + j] = V[r * n] * D[j];
+    for (Index k = 1; k < n; ++k)
+      for (Index j = 0; j < n; ++j) product[r * n + j] += V[r * n + k] * D[k * n + j];
+  }
+  for (Index r = n - 1; r >= 0; --r) {
+    for (Index c = r + 1; c < n; ++c)
+      for (Index j = 0; j < n; ++j) product[r * n + j] -= R[r * n + c] * V[c * n + j];
+    const double pivot = R[r * n + r];
     const bool vanishes = !(std::abs(pivot) > 1e-290);
     const double factor = vanishes ? 0 : 1 / pivot;
-    for (Index j = 0; j < n; ++j) V[r * n + j] *= factor;
+    for (Index j = 0; j < n; ++j) V[r * n + j] = factor * product[r * n + j];
     if (vanishes) V[r * n + r] = 1;
   }
+  for (Index r = 0; r < n; ++r)
+    for (Index c = 0; c < n; ++c) {
+      left[r + n * c] = W[r * n + c];
+      right[r + n * c] = V[r * n + c];
+    }
 }
 
 }  // namespace
@@ -92,12 +111,10 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
   if (blocks == 1) return bases;
   const auto begin = [&](Index b) { return b == 0 ? 0 : sweep.ends[std::size_t(b - 1)]; };
   const auto width = [&](Index b) { return sweep.ends[std::size_t(b)] - begin(b); };
-  std::vector<Index> first, last;  // of the block of each column
-  for (Index b = 0; b < blocks; ++b) {
-    first.insert(first.end(), std::size_t(width(b)), begin(b));
-    last.insert(last.end(), std::size_t(width(b)), sweep.ends[std::size_t(b)]);
-  }
-  Rows V = Rows::Identity(n, n), W(n, n), product(n, n), before;
+  std::vector<Index> last;  // of the block of each column
+  for (Index b = 0; b < blocks; ++b) last.insert(last.end(), std::size_t(width(b)), sweep.ends[std::size_t(b)]);
+  Rows V = Rows::Identity(n, n), before;
+  StepBack work(n);
   constexpr int most_turns = 8;
   constexpr Index often = 64;  // cells between looks
   for (int turn = 0; turn < most_turns; ++turn) {
@@ -110,10 +127,9 @@ std::optional<SubspaceBases> subspace_bases(const QrSweep& sweep) {
     for (Index i = N - 1; i >= 0; --i) {
       if (i % often == 0) end_if_wished();
       with_size(n, [&](auto size) {
-        step_back(size, first.data(), last.data(), sweep.R.data() + n * n * i, V.data(), W.data(), product.data());
+        step_back(size, last.data(), sweep.R.data() + n * n * i, V.data(), work, bases.left.data() + n * n * i,
+                  bases.right.data() + n * n * i);
       });
-      bases.left.middleCols(n * i, n) = W;
-      bases.right.middleCols(n * i, n) = V;
     }
     bool settled = turn > 0;
     for (Index b = 0; b < blocks; ++b) {

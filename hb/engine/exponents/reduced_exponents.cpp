@@ -91,13 +91,24 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
   constexpr Index fewest_cells = 12;
   Index least =
       std::max({fewest_cells, Index(std::ceil(0.8 * fastest)), resolved_harmonics(reduced, 1e-3 * tolerance) + 1});
-  // As oscillator_error tells.
-  if (reduced.num_modes == 1 && reduced.alpha.c(0, 0).real() > 0) {
-    const double w = std::sqrt(reduced.alpha.c(0, 0).real()), b = reduced.beta.c(0, 0).real();
-    const double needed = oscillator_cells(w, allowed(tolerance, -b / 2));
-    if (b < w && needed < 8.0 * double(least)) least = std::max(least, Index(std::ceil(needed)));
+  const auto needed = [&](Index mode, double error) {  // as oscillator_error tells
+    const Index own = mode + reduced.num_modes * mode;
+    const double w2 = reduced.alpha.c(own, 0).real(), b = reduced.beta.c(own, 0).real();
+    const double cells = w2 > b * b ? oscillator_cells(std::sqrt(w2), error) : 0;
+    return cells < 8.0 * double(least) ? cells : 0;
+  };
+  const auto decay = [&](Index mode) { return -reduced.beta.c(mode + reduced.num_modes * mode, 0).real() / 2; };
+  if (reduced.num_modes == 1) {
+    if (reduced.alpha.c(0, 0).real() > 0)
+      least = std::max(least, Index(std::ceil(needed(0, allowed(tolerance, decay(0))))));
+    return radau_cells(least);
   }
-  return radau_cells(least);
+  // Of several, coupled, hardly fewer than each one alone.
+  double all = 0;
+  for (Index i = 0; i < reduced.num_modes; ++i) all = std::max(all, needed(i, allowed(tolerance, decay(i))));
+  Index cells = radau_cells(least);
+  while (double(radau_cells(cells + 1)) <= all) cells = radau_cells(cells + 1);
+  return cells;
 }
 
 // Exponents with so many cells, and how much each differs from those with fewer.

@@ -102,6 +102,47 @@ void close_turn(const QrSweep& sweep, const SubspaceBases& bases, std::vector<Ce
   }
 }
 
+// One cell's numbers on their way, n x n each.
+struct CellChanges {
+  std::vector<double> cell, left, right, part, frame;
+
+  explicit CellChanges(Index n) : cell(std::size_t(n * n)), left(cell), right(cell), part(cell), frame(cell) {}
+};
+
+// How the rounding of a cell's map, of variances work.cell, and of its sweep, `swept` an entry, and a bound `given` on
+// its error change W_i Q_i^T E_i Q_(i-1) V_(i-1): variances and bound. Q: Q_(i-1), Q_i.
+template <class Length>
+void carry_changes(Length n, const double* Q, const double* W, const double* V, double swept, const double* given,
+                   CellChanges& work, double* __restrict rounding, double* __restrict changed) {
+  const Index entries = Index(n) * Index(n);
+  double* __restrict left = work.left.data();
+  double* __restrict right = work.right.data();
+  double* __restrict frame = work.frame.data();
+  for (Index r = 0; r < n; ++r)
+    for (Index c = 0; c < n; ++c) frame[r + n * c] = Q[entries + c + n * r];
+  multiply(n, W, frame, left);
+  multiply(n, Q, V, right);
+  for (Index k = 0; k < entries; ++k) left[k] = std::abs(left[k]), right[k] = std::abs(right[k]);
+  if (given) {
+    multiply(n, left, given, work.part.data());
+    multiply(n, work.part.data(), right, changed);
+  }
+  for (Index k = 0; k < entries; ++k) left[k] *= left[k], right[k] *= right[k];
+  multiply(n, left, work.cell.data(), work.part.data());
+  multiply(n, work.part.data(), right, rounding);
+  // |rows of W|^2 |columns of V|^2
+  for (Index r = 0; r < n; ++r) {
+    double sum = 0;
+    for (Index k = 0; k < n; ++k) sum += W[r + n * k] * W[r + n * k];
+    left[r] = swept * sum;
+  }
+  for (Index c = 0; c < n; ++c) {
+    double sum = 0;
+    for (Index k = 0; k < n; ++k) sum += V[k + n * c] * V[k + n * c];
+    for (Index r = 0; r < n; ++r) rounding[r + n * c] += left[r] * sum;
+  }
+}
+
 // The diagonal blocks of R as chains: with V_i the bases of the invariant subspaces and W_i = V_i^-1, a change E_i of a
 // cell's map is a change W_i E_i V_(i-1) of the blocks, to first order.
 std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given, const QrSweep& sweep) {
@@ -121,29 +162,20 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
   }
   if (!bases) return chains;
   const bool exact = given.cwiseAbs().maxCoeff() == 0;
-  MatrixXd frame(n, n), left(n, n), right(n, n), part(n, n), cell(n, n), rounding(n, n), changed = MatrixXd::Zero(n, n);
+  MatrixXd rounding(n, n), changed = MatrixXd::Zero(n, n);
+  CellChanges work(n);
   constexpr Index often = 64;  // cells between looks
   for (Index i = 0; i < N; ++i) {
     if (i % often == 0) end_if_wished();
-    const auto W = bases->left.middleCols(n * i, n), V = bases->right.middleCols(n * i, n);
-    frame = sweep.frames.middleCols(n * (i + 1), n).transpose();
-    multiply(n, W.data(), frame.data(), left.data());
-    multiply(n, sweep.frames.data() + n * n * i, V.data(), right.data());
-    left = left.cwiseAbs();
-    right = right.cwiseAbs();
-    if (!exact) {
-      multiply(n, left.data(), given.data(), part.data());
-      multiply(n, part.data(), right.data(), changed.data());
-    }
-    left = left.cwiseAbs2();
-    right = right.cwiseAbs2();
-    rounding_variance(maps, i, cell.data());
-    multiply(n, left.data(), cell.data(), part.data());
-    multiply(n, part.data(), right.data(), rounding.data());
+    rounding_variance(maps, i, work.cell.data());
     // The sweep's own rounding knows no entries (E11).
     constexpr double per_entry = 0.6;
     const double swept = per_entry * sweep.R.middleCols(n * i, n).norm() / std::sqrt(double(n));
-    rounding += swept * swept * W.rowwise().squaredNorm() * V.colwise().squaredNorm();
+    with_size(n, [&](auto size) {
+      carry_changes(size, sweep.frames.data() + n * n * i, bases->left.data() + n * n * i,
+                    bases->right.data() + n * n * i, swept * swept, exact ? nullptr : given.data(), work,
+                    rounding.data(), changed.data());
+    });
     begin = 0;
     for (std::size_t b = 0; b < chains.size(); ++b) {
       const Index p = chains[b].size();
