@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <complex>
+#include <random>
 
 #include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/exponents/scalar_hill.hpp"
@@ -61,6 +62,41 @@ TEST(PhaseFunction, BarContainsWhatTheCoefficientsAreNotKnownTo) {
   const double change = std::abs(moved->s[0] - exact->s[0]);
   EXPECT_GT(change, 1e-6);
   EXPECT_GE(known->error[0], change);
+}
+
+// The looser the tolerance, the more is left to the frequency's first-order correction, at and next to resonances too.
+TEST(PhaseFunction, ErrorHoldsWhateverIsLeftOfTheEquation) {
+  std::mt19937 random(20261127);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  int settled = 0, corrected = 0;
+  for (int system = 0; system < 300; ++system) {
+    const double half = std::floor(8 + 40 * uniform(random)) / 2;
+    const double w = system % 2 == 0 ? half + 0.01 * uniform(random) : half + uniform(random) / 2;
+    FourierSeries alpha(1, 4), beta(1, 2);
+    alpha.c(0, 0) = w * w;
+    for (int k = 1; k <= 4; ++k)
+      alpha.c(0, k) = w * w * 0.08 * cplx(uniform(random) - 0.5, uniform(random) - 0.5) / double(k);
+    beta.c(0, 0) = 0.1 * uniform(random);
+    beta.c(0, 1) = 0.02 * cplx(uniform(random) - 0.5, uniform(random) - 0.5);
+    const TurnExponents turned =
+        turn_exponents(radau_turn(alpha, beta, 1, radau_cells(190)), Eigen::MatrixXd::Zero(2, 2));
+    ASSERT_EQ(turned.s.size(), 2u);
+    for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9}) {
+      const auto pair = phase_exponents(alpha, beta, 0, 0, tolerance);
+      if (!pair) continue;
+      ++settled;
+      for (std::size_t k = 0; k < 2; ++k) {
+        double off = HUGE_VAL;
+        for (const cplx s : turned.s)
+          off = std::min(off, std::hypot(s.real() - pair->s[k].real(), folded(s.imag() - pair->s[k].imag())));
+        EXPECT_LE(pair->error[k], tolerance);
+        EXPECT_LE(off, pair->error[k] + turned.error[0]) << "system " << system << " at " << tolerance;
+        if (off > 1e-12) ++corrected;
+      }
+    }
+  }
+  EXPECT_GT(settled, 400);
+  EXPECT_GT(corrected, 40);
 }
 
 TEST(PhaseFunction, RefusesWhereTheSquareOfTheFrequencyChangesSignOrTheExpansionDiverges) {

@@ -40,7 +40,7 @@ class Iteration {
   // more than that has: those beyond them judge it.
   void start_from(const SlavingStart& start);
 
-  // Whether the start solves the equations with these samples, twice as many as it was found with: then nothing was
+  // Whether the start solves the equations with these samples, more than it was found with: then nothing was
   // folded back or cut off that matters.
   bool solved_by_start(double tolerance);
 
