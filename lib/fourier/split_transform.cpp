@@ -11,6 +11,7 @@ SplitTransform::SplitTransform(Index num_samples, Index num_columns)
   const Index width = Index(ShortTransform::lane_width());
   rows_ = (n_ + width - 1) / width * width;
   data_.resize(N_ * n_ + 2 * rows_ * (N_ / 2 + 1));
+  if (rows_ == n_) return;
   re().bottomRows(rows_ - n_).setZero();
   im().bottomRows(rows_ - n_).setZero();
 }
