@@ -108,13 +108,12 @@ class Chain {
   }
   // rho -= A e of one part or both.
   void take(bool window, bool outside) {
-    Spectrum part = e_;
+    Spectrum part = e_.topRows((outside ? R_ : H_) + 1);
     if (!window) part.topRows(H_ + 1).setZero();
-    if (!outside) part.bottomRows(R_ - H_).setZero();
     A_.couple(part, R_, product_);
     rho_ -= product_;
     rho_.topRows(H_ + 1) -= A_.D().cwiseProduct(part.topRows(H_ + 1));
-    for (Index k = H_ + 1; k <= R_; ++k)
+    for (Index k = H_ + 1; k < part.rows(); ++k)
       for (Index i = 0; i < rho_.cols(); ++i) rho_(k, i) -= system().D(i, k) * part(k, i);
   }
 
