@@ -28,9 +28,9 @@ struct Correction {
   double outside = 0;  // size in q of the rows beyond the window, which no solution on the window has
   double rest = 0;  // size in q of what may be missing; infinite if the corrections do not shrink
 };
-// Steps go on until the last is below `enough`, in q.
+// Steps go on until the last is below `enough`, in q, or what the response may make of what is left is `negligible`.
 [[nodiscard]] Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response,
-                                    const Eigen::MatrixXd& T, double enough = HUGE_VAL);
+                                    const Eigen::MatrixXd& T, double enough = HUGE_VAL, double negligible = 0);
 
 // Sizes in q of rows of a residual divided by |D(k)|, those of harmonics k = first, first + 1, ...
 [[nodiscard]] Eigen::VectorXd sizes_of_rows(const WeightedSystem& system, const Spectrum& rows, Eigen::Index first,

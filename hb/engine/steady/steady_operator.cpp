@@ -67,8 +67,9 @@ Operator::Operator(const WeightedSystem& system, Eigen::Index num_harmonics)
 }
 
 const Operator::Nodes& Operator::nodes(Eigen::Index N) {
-  Nodes& store = inner_.N == 0 || inner_.N == N ? inner_ : outer_;
-  if (store.N == N) return store;
+  for (const Nodes& there : nodes_)
+    if (there.N == N) return there;
+  Nodes& store = nodes_.emplace_back();
   constexpr std::size_t at_once = 16;
   const Eigen::Index I = system_->I, P = system_->P;
   store.N = N;
@@ -101,12 +102,15 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
   return store;
 }
 
-// hb/engine/README.md (S3).
 void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {
+  couple(x, num_rows, false, result);
+}
+
+// hb/engine/README.md (S3).
+void Operator::couple(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result) {
   constexpr Eigen::Index few_products = 8;  // for one number of a result, a guess from the transforms' overhead
   end_if_wished();
   ++num_products_;
-  const bool full = num_rows > H_ && x.rows() - 1 == H_;  // sizes are wanted with the exact residual only
   if (system_->I * (2 * system_->P + 1) <= few_products)
     convolve(x, num_rows, full, result);
   else
@@ -144,10 +148,9 @@ void Operator::convolve(const Spectrum& x, Eigen::Index num_rows, bool full, Spe
 // so 1/sqrt(N) of that on every harmonic; twice that is taken.
 void Operator::multiply(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result) {
   const Eigen::Index I = system_->I, P = system_->P;
-  // Harmonics reach X+P; what is folded back lands above num_rows when N > X + P + num_rows. One length for all
-  // products with rows beyond the window.
-  const Eigen::Index X = x.rows() - 1, widest = num_rows > H_ ? std::max(X, last_row()) : X;
-  const Eigen::Index N = fourier::fast_length(std::max({widest + P + num_rows + 1, 2 * P + 2, 2 * together}));
+  // Harmonics reach X+P; what is folded back lands above num_rows when N > X + P + num_rows.
+  const Eigen::Index X = x.rows() - 1;
+  const Eigen::Index N = fourier::fast_length(std::max({X + P + num_rows + 1, 2 * P + 2, 2 * together}));
   const Nodes& at = nodes(N);
   fourier::RealTransform& fft = fourier::thread_transform(N, I);
   auto spectrum = fft.spectrum();
@@ -185,7 +188,7 @@ Spectrum Operator::residual(const Spectrum& x) {
     noise_.setZero();
     return r;
   }
-  couple(x, last_row(), product);
+  couple(x, last_row(), true, product);
   r.topRows(last_row() + 1) -= product;
   r.topRows(H_ + 1) -= D_.cwiseProduct(x);
   return r;

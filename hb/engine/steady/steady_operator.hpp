@@ -83,6 +83,8 @@ class Operator {
     std::vector<Neighbours> E;
   };
   const Nodes& nodes(Eigen::Index N);
+  // `full`: with the noise.
+  void couple(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
   void convolve(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
   void multiply(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
 
@@ -90,7 +92,7 @@ class Operator {
   Eigen::Index H_;
   Spectrum D_;
   Eigen::MatrixXd magnitude_;
-  Nodes inner_, outer_;
+  std::vector<Nodes> nodes_;  // of the window, of all rows, of all harmonics: one for each length
   std::vector<Neighbours> here_;  // of all components of x
   Eigen::VectorXd noise_;  // of the last exact residual
   int num_products_ = 0;
@@ -98,10 +100,6 @@ class Operator {
 
 // Largest |x_i| at sample points (at least four per shortest wave): at most the maximum over the turn.
 [[nodiscard]] double largest_over_turn(const Spectrum& x, Eigen::Index* component = nullptr);
-
-// How it is known that a residual is as small as asked: from the residual itself or, where the next one is formed
-// anyway or an estimate will do, from what iterations have gained so far.
-enum class Reached { seen, expected };
 
 // Approximate inverse of A on the window.
 class Inverse {

@@ -144,7 +144,8 @@ class Solver {
   // Repeats inverse and exact residual until rounding or the tolerance stops it; `correction` adds the last digits.
   bool solve(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, Spectrum& r) {
     const Index H = A.num_harmonics();
-    const double relative = std::clamp(0.03 * options_.tolerance, 1e-14, 1e-3);
+    const double relative = std::clamp(0.03 * options_.tolerance, 1e-14, 1e-3),
+                 aim = options_.without_bound ? 0.5 * relative : std::clamp(1e-5 * options_.tolerance, 3e-15, 1e-3);
     double last = HUGE_VAL;
     Spectrum change;
     r = A.residual(x);
@@ -156,7 +157,7 @@ class Solver {
       if (now <= relative * load) return true;
       if (!(now < 0.3 * last)) return now <= 1e-3 * load;
       last = now;
-      inverse.solve(r.topRows(H + 1), std::max(0.5 * relative * load / now, 1e-15), change);
+      inverse.solve(r.topRows(H + 1), std::max(aim * load / now, 1e-15), change);
       if (!change.allFinite()) return false;
       x += change;
       r = A.residual(x);
@@ -214,8 +215,9 @@ class Solver {
         return;
       }
     }
-    const steady::Correction correction =
-        steady::correction(A, inverse, r, response, T_, 0.1 * options_.tolerance * largest);
+    const double enough = 0.1 * options_.tolerance * largest,
+                 negligible = std::min(enough, std::max(1e-3 * options_.tolerance * largest, 0.25 * rounding));
+    const steady::Correction correction = steady::correction(A, inverse, r, response, T_, enough, negligible);
     if (correction.window.allFinite() && std::isfinite(correction.rest)) x += correction.window;
     const double error = correction.outside + correction.rest + rounding;
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
