@@ -170,11 +170,9 @@ class Looks {
 
   // Empty where the modes' lines do not settle.
   std::optional<double> by_lines() {
-    std::optional<UncoupledSystems> linear;
     std::optional<double> told;
     do {
-      linear.emplace(rods_, N_);
-      const std::optional<GrowthChange> found = linear->growth(change(), growth_accuracy);
+      const std::optional<GrowthChange> found = UncoupledSystems(rods_, N_).growth(change(), growth_accuracy);
       if (!found) return std::nullopt;
       const double size = std::abs(found->change), changed = std::abs(found->change - found->by_half);
       told = speed_ * std::max(size, changed);
