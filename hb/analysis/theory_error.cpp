@@ -6,12 +6,11 @@
 #include <numbers>
 
 #include "hb/analysis/nonlinear/exact_system.hpp"
+#include "hb/analysis/theory_correction.hpp"
 #include "hb/engine/nonlinear/periodic_motion.hpp"
 #include "hb/engine/steady/rough_state.hpp"
-#include "hb/engine/steady/steady_state.hpp"
 #include "lib/dense.hpp"
 #include "lib/exact/exact_forces.hpp"
-#include "lib/rod/shear.hpp"
 
 namespace hb {
 namespace {
@@ -41,15 +40,10 @@ constexpr double not_followed = 0.5;
 // The first correction's size is the theory error of q, (T2), where it is this near to that of the change followed.
 constexpr double same_size = 0.05;
 
-// Harmonics of q above so much of the largest.
-Index harmonics_above(const FourierSeries& q, double relative) {
-  const FourierSeries all(MatrixXd(q.c.cwiseAbs2().colwise().maxCoeff().cwiseSqrt()).cast<std::complex<double>>());
-  return fourier::significant_harmonics(all, relative);
-}
-
 std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods, double negligible) {
   std::vector<FourierSeries> q;
-  for (const LinearRod& rod : rods) q.push_back(fourier::resized(*rod.q, harmonics_above(*rod.q, negligible)));
+  for (const LinearRod& rod : rods)
+    q.push_back(fourier::resized(*rod.q, fourier::significant_harmonics(*rod.q, negligible)));
   return q;
 }
 
@@ -58,115 +52,47 @@ Index num_samples(const std::vector<FourierSeries>& q, const Accuracy& accuracy)
   Index H = 0, cubed = accuracy.least_cubed;
   for (const FourierSeries& series : q) {
     H = std::max(H, series.num_harmonics());
-    cubed = std::max(cubed, harmonics_above(series, accuracy.cubed));
+    cubed = std::max(cubed, fourier::significant_harmonics(series, accuracy.cubed));
   }
   return fourier::fast_length(std::max(2 * H + 2, 4 * cubed + 2));
 }
 
-// Values at N angles, an even number, of a series with any number of harmonics: at those angles harmonic k is k - N,
-// too.
-MatrixXd values(const FourierSeries& series, Index N) {
-  fourier::RealTransform& transform = fourier::thread_transform(N, series.num_components());
-  auto spectrum = transform.spectrum();
-  spectrum.setZero();
-  spectrum.row(0) = series.c.col(0).transpose();
-  for (Index k = 1; k <= series.num_harmonics(); ++k) {
-    const Index m = k % N;
-    if (m == 0 || 2 * m == N)
-      spectrum.row(m) += 2 * series.c.col(k).real().transpose();
-    else if (2 * m < N)
-      spectrum.row(m) += series.c.col(k).transpose();
-    else
-      spectrum.row(N - m) += series.c.col(k).adjoint();
-  }
-  transform.backward();
-  return transform.samples().transpose();
-}
-
-// C without the highest harmonics that are small beside the mean stiffnesses of the modes they couple.
-FourierSeries without_small(const FourierSeries& C, Index I, double relative) {
-  const Eigen::VectorXd mean = Eigen::Map<const Eigen::MatrixXcd>(C.c.col(0).data(), I, I).diagonal().cwiseAbs();
-  const MatrixXd largest = relative * (mean.cwiseSqrt() * mean.cwiseSqrt().transpose());
-  const Eigen::Map<const Eigen::VectorXd> allowed(largest.data(), I * I);
-  const auto small = [&](Index k) { return (C.c.col(k).cwiseAbs2().array() <= allowed.array().square()).all(); };
-  Index H = C.num_harmonics();
-  while (H > 0 && small(H)) --H;
-  return H == C.num_harmonics() ? C : fourier::resized(C, H);
-}
-
-// A linear rod at one speed, without what shear adds: the exact model has none.
-struct Compared {
-  MatrixXd M, B;
-  FourierSeries C, h;
-
-  Compared(const HillSystem& system, double speed)
-      : M(system.mass), B(system.damping), C(stiffness_at(system, speed)), h(load_at(system, speed)) {}
-};
-
-// M q'' + B q' + C q - h at the samples.
-MatrixXd linear_residual(const Compared& rod, const MatrixXd& q, const MatrixXd& q1, const MatrixXd& q2) {
-  const Index I = q.rows(), N = q.cols();
-  MatrixXd r = rod.M * q2 + rod.B * q1;
-  const MatrixXd C = values(rod.C, N);
-  for (Index j = 0; j < N; ++j) r.col(j) += Eigen::Map<const MatrixXd>(C.col(j).data(), I, I).lazyProduct(q.col(j));
-  if (rod.h.c.size() > 0) r -= values(rod.h, N);
-  return r;
-}
-
-// One linear rod's answers to loads at one speed.
-class Answers {
- public:
-  // C at the speed.
-  Answers(const HillSystem& system, const FourierSeries& C, double speed, double tolerance)
-      : speed_(speed),
-        unloaded_{system.mass, system.damping, {without_small(C, system.num_modes(), 0.1 * tolerance), {}, {}}, {}},
-        rough_(unloaded_, speed) {}
-
-  // What q answer to the load on them given by samples; empty at resonance.
-  std::optional<FourierSeries> operator()(const MatrixXd& samples, double tolerance) {
-    FourierSeries load = on_unknowns(fourier::analyse(samples), unloaded_.num_modes());
-    if (!load.c.allFinite()) return std::nullopt;
-    if (const auto q = rough_.solve(load, tolerance)) return ritz_coordinates(*q, samples.rows());
-    HillSystem loaded = unloaded_;
-    loaded.load[0] = std::move(load);
-    const SteadyState state = solve_steady_state(loaded, speed_, {.tolerance = tolerance});
-    if (state.status == SteadyStatus::singular || !state.q.c.allFinite()) return std::nullopt;
-    return ritz_coordinates(state.q, samples.rows());
-  }
-
- private:
-  double speed_;
-  HillSystem unloaded_;
-  RoughSolver rough_;
-};
-
 double ratio(double change, double size) { return change == 0 ? 0 : change / size; }
 
-// Of two series of samples, the largest |sum_i q_i sin(i pi x/l)| over points of the rod, the first over the second.
-double deflection_ratio(const MatrixXd& change, const MatrixXd& q) {
-  const Index I = q.rows(), points = 4 * I + 4;
-  MatrixXd shapes(points + 1, I);
-  for (Index k = 0; k <= points; ++k)
-    for (Index i = 0; i < I; ++i)
-      shapes(k, i) = std::sin(std::numbers::pi * static_cast<double>((i + 1) * k) / static_cast<double>(points));
-  return ratio(dense::largest(shapes * change), dense::largest(shapes * q));
+// Values at four angles a wave, I x N; they are at least so much of the largest.
+MatrixXd sampled(const FourierSeries& q) {
+  return fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4));
 }
-
-// Values at four angles a wave are at least so much of the largest.
 constexpr double least_sampled = 0.7;
 
-// Largest |q_i| of each component at those.
-Eigen::VectorXd sampled_largest(const FourierSeries& q) {
-  return fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4)).cwiseAbs().rowwise().maxCoeff();
-}
+double sampled_size(const FourierSeries& q) { return dense::largest(sampled(q)); }
 
 // Largest |q_i| over the turn, of components that can have it.
-double largest_value(const FourierSeries& q) {
-  const Eigen::VectorXd sampled = sampled_largest(q);
+double largest_value(const FourierSeries& q, const MatrixXd& samples) {
+  const Eigen::VectorXd largest = samples.cwiseAbs().rowwise().maxCoeff();
   double value = 0;
   for (Index i = 0; i < q.num_components(); ++i)
-    if (!(sampled(i) < least_sampled * sampled.maxCoeff())) value = std::max(value, fourier::max_abs(q, i).value);
+    if (!(largest(i) < least_sampled * largest.maxCoeff())) value = std::max(value, fourier::max_abs(q, i).value);
   return value;
+}
+
+double size(const FourierSeries& q) { return largest_value(q, sampled(q)); }
+
+// Largest |sum_i q_i sin(i pi x/l)| at the samples and at points of the rod. With s and a the sums of the odd i and of
+// the even ones, the larger of those at x and l - x is |s| + |a|.
+double largest_deflection(const MatrixXd& samples) {
+  const Index I = samples.rows(), N = samples.cols(), points = 2 * I + 2;
+  const Index odd = (I + 1) / 2, even = I / 2;
+  MatrixXd shapes(points, I);  // odd i, then even ones
+  for (Index k = 0; k < points; ++k) {
+    const double angle = std::numbers::pi / 2 * static_cast<double>(k + 1) / static_cast<double>(points);
+    for (Index i = 0; i < I; ++i)
+      shapes(k, i % 2 == 0 ? i / 2 : odd + i / 2) = std::sin(static_cast<double>(i + 1) * angle);
+  }
+  MatrixXd of_odd(odd, N), of_even(even, N);
+  for (Index i = 0; i < I; ++i) (i % 2 == 0 ? of_odd : of_even).row(i / 2) = samples.row(i);
+  const MatrixXd s = shapes.leftCols(odd).lazyProduct(of_odd), a = shapes.rightCols(even).lazyProduct(of_even);
+  return (s.cwiseAbs() + a.cwiseAbs()).maxCoeff();
 }
 
 // Joint forces and torque of q + dq beside the linear ones.
@@ -189,56 +115,6 @@ void compare_forces(const ExactModel& model, double speed, std::span<const Linea
   errors.mean_torque = std::abs(change.row(last).mean());
 }
 
-// What is asked, with what all corrections share.
-struct Question {
-  const ExactModel& model;
-  double speed;
-  std::span<const LinearRod> rods;
-  std::vector<Compared> compared;
-  std::vector<Answers> answers;
-
-  Question(const ExactModel& exact, double at_speed, std::span<const LinearRod> linear)
-      : model(exact), speed(at_speed), rods(linear) {
-    for (std::size_t r = 0; r < rods.size(); ++r) {
-      const HillSystem& system = *rods[r].system;
-      const Body& link = *body_at(model.linkage(), model.rods()[r].link);
-      if (link.elastic->shear) {
-        compared.emplace_back(rigid_in_shear(link, system, model.rods()[r].num_modes), speed);
-        answers.emplace_back(system, stiffness_at(system, speed), speed, of_theory_error.tolerance);
-      } else {
-        const Compared& same = compared.emplace_back(system, speed);
-        answers.emplace_back(system, same.C, speed, of_theory_error.tolerance);
-      }
-    }
-  }
-};
-
-// The exact model at q, and what the linear rods answer to what their model leaves out there (T1).
-struct Corrections {
-  std::vector<FourierSeries> dq;
-  std::optional<ExactBreakdown> breakdown;
-  std::optional<std::size_t> singular;  // this rod has no periodic solution
-};
-
-Corrections corrections(Question& of, const CrankAngles& angles, const std::vector<FourierSeries>& q,
-                        const Accuracy& accuracy) {
-  const ExactModel& model = of.model;
-  const double speed = of.speed;
-  Corrections found;
-  const RitzSamples motion = ritz_samples(q, speed, angles.size());
-  const ExactResidual exact = model.residual(speed, angles, motion);
-  found.breakdown = exact.breakdown;
-  for (std::size_t r = 0; r < of.rods.size() && !found.breakdown && !found.singular; ++r) {
-    const Index first = model.first_mode(r), I = model.rods()[r].num_modes;
-    const MatrixXd linear = linear_residual(of.compared[r], motion.q.middleRows(first, I),
-                                            motion.q1.middleRows(first, I), motion.q2.middleRows(first, I));
-    std::optional<FourierSeries> dq = of.answers[r](linear - exact.r.middleRows(first, I), accuracy.tolerance);
-    if (!dq) found.singular = r;
-    if (dq) found.dq.push_back(fourier::resized(*dq, harmonics_above(*dq, 0.1 * accuracy.tolerance)));
-  }
-  return found;
-}
-
 // q + dq with the harmonics that N angles hold.
 std::vector<FourierSeries> moved_by(const std::vector<FourierSeries>& q, const std::vector<FourierSeries>& dq,
                                     Index N) {
@@ -250,14 +126,7 @@ std::vector<FourierSeries> moved_by(const std::vector<FourierSeries>& q, const s
   return moved;
 }
 
-// Largest |dq_i| of each rod.
-std::vector<double> sizes(const std::vector<FourierSeries>& dq) {
-  std::vector<double> values;
-  for (const FourierSeries& own : dq) values.push_back(largest_value(own));
-  return values;
-}
-
-// Largest change itself, relative to the rod's largest, by either measure of a series.
+// Largest change itself, relative to the rod's largest, by a measure of a series.
 template <class Measure>
 double difference(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to,
                   const Measure& measure) {
@@ -268,35 +137,39 @@ double difference(const std::vector<FourierSeries>& from, const std::vector<Four
   return largest;
 }
 
-// Whether the change is larger than `most`: by samples where they leave no doubt.
-bool differs_by_more(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to, double most) {
-  const double sampled = difference(from, to, [](const FourierSeries& q) { return sampled_largest(q).maxCoeff(); });
-  if (sampled / least_sampled <= most) return false;
-  if (sampled * least_sampled > most) return true;
-  return difference(from, to, largest_value) > most;
+// Whether the change, of this size by samples, is larger than `most`: by these where they leave no doubt.
+bool differs_by_more(const std::vector<FourierSeries>& from, const std::vector<FourierSeries>& to, double most,
+                     double by_samples) {
+  if (by_samples / least_sampled <= most) return false;
+  if (by_samples * least_sampled > most) return true;
+  return difference(from, to, size) > most;
 }
 
-// (T1) at q + dq, roughly, changes dq by more than `most` of itself.
-bool second_matters(Question& of, const std::vector<FourierSeries>& dq, double most) {
-  const std::vector<FourierSeries> q = cut_responses(of.rods, of_second_look.negligible);
-  const CrankAngles angles(of.model.linkage(), num_samples(q, of_second_look));
-  const Corrections second = corrections(of, angles, moved_by(q, dq, angles.size()), of_second_look);
-  return !second.breakdown && !second.singular && differs_by_more(dq, second.dq, most);
+// (T1) at q + dq, roughly, where that changes dq by more than `most` of itself.
+std::optional<std::vector<FourierSeries>> second_correction(TheoryCorrection& correction,
+                                                            const std::vector<FourierSeries>& dq, double most) {
+  const std::vector<FourierSeries> q = cut_responses(correction.rods(), of_second_look.negligible);
+  const CrankAngles angles(correction.model().linkage(), num_samples(q, of_second_look));
+  Corrections second = correction.at(angles, moved_by(q, dq, angles.size()), of_second_look.tolerance);
+  if (second.breakdown || second.singular) return std::nullopt;
+  if (!differs_by_more(dq, second.dq, most, difference(dq, second.dq, sampled_size))) return std::nullopt;
+  return std::move(second.dq);
 }
 
 // (T1) at q + dq until dq settles; empty where it does not.
-std::optional<std::vector<FourierSeries>> repeated_corrections(Question& of, const CrankAngles& angles,
+std::optional<std::vector<FourierSeries>> repeated_corrections(TheoryCorrection& correction, const CrankAngles& angles,
                                                                const std::vector<FourierSeries>& q,
                                                                std::vector<FourierSeries> dq) {
   constexpr int most = 8;
   constexpr double settled = 0.02, slow = 0.7;
   double last = HUGE_VAL;
   for (int step = 0; step < most; ++step) {
-    Corrections next = corrections(of, angles, moved_by(q, dq, angles.size()), of_theory_error);
+    Corrections next = correction.at(angles, moved_by(q, dq, angles.size()), of_theory_error.tolerance);
     if (next.breakdown || next.singular) return std::nullopt;
-    const double change = difference(dq, next.dq, largest_value);
+    const double change = difference(dq, next.dq, sampled_size);
+    const bool done = !differs_by_more(dq, next.dq, settled, change);
     dq = std::move(next.dq);
-    if (change <= settled) return dq;
+    if (done) return dq;
     if (change > slow * last) return std::nullopt;
     last = change;
   }
@@ -334,25 +207,26 @@ std::optional<std::vector<FourierSeries>> change_by_newton(const ExactModel& mod
 
 // Next to a resonance the correction itself moves the resonance: the change itself (T3). The first correction
 // stays where the second one is small, and beyond the theory unless the change turns out to lie below.
-std::optional<std::vector<FourierSeries>> second_order(Question& of, const CrankAngles& angles,
+std::optional<std::vector<FourierSeries>> second_order(TheoryCorrection& correction, const CrankAngles& angles,
                                                        const std::vector<FourierSeries>& q,
                                                        const std::vector<FourierSeries>& dq, double first_error) {
   if (!(first_error < not_followed)) return std::nullopt;
   double amplification = 0;
-  for (const LinearRod& rod : of.rods)
-    amplification = std::max(amplification, nearest_amplification(*rod.system, of.speed));
+  for (const LinearRod& rod : correction.rods())
+    amplification = std::max(amplification, nearest_amplification(*rod.system, correction.speed()));
   const bool beyond = first_error > theory_error_limit;
   if (amplification * first_error <= (beyond ? sharp : harmless)) return std::nullopt;
   if (beyond) {
-    auto change = change_by_newton(of.model, of.speed, q, theory_error_limit);
+    auto change = change_by_newton(correction.model(), correction.speed(), q, theory_error_limit);
     for (std::size_t r = 0; change && r < q.size(); ++r)
-      if (!(largest_value((*change)[r]) <= theory_error_limit * largest_value(q[r]))) return std::nullopt;
+      if (!(size((*change)[r]) <= theory_error_limit * size(q[r]))) return std::nullopt;
     return change;
   }
-  if (!second_matters(of, dq, amplification * first_error > amplified ? most_amplified : most_second))
-    return std::nullopt;
-  auto change = repeated_corrections(of, angles, q, dq);
-  return change ? change : change_by_newton(of.model, of.speed, q, first_error);
+  const auto second =
+      second_correction(correction, dq, amplification * first_error > amplified ? most_amplified : most_second);
+  if (!second) return std::nullopt;
+  auto change = repeated_corrections(correction, angles, q, *second);
+  return change ? change : change_by_newton(correction.model(), correction.speed(), q, first_error);
 }
 
 }  // namespace
@@ -376,8 +250,8 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     }
   const std::vector<FourierSeries> q = cut_responses(rods, of_theory_error.negligible);
   const CrankAngles angles(model.linkage(), num_samples(q, of_theory_error));
-  Question question(model, speed, rods);
-  Corrections first = corrections(question, angles, q, of_theory_error);
+  TheoryCorrection correction(model, speed, rods, of_theory_error.tolerance);
+  Corrections first = correction.at(angles, q, of_theory_error.tolerance);
   if (first.breakdown) {
     errors.reason = describe(*first.breakdown, model.linkage());
     errors.steepest = first.breakdown->slope;
@@ -388,24 +262,28 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     return errors;
   }
   std::vector<FourierSeries>& dq = first.dq;
-  std::vector<double> size, change = sizes(dq);
+  std::vector<MatrixXd> turn, change_turn;
+  std::vector<double> largest, change;
   double first_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    size.push_back(largest_value(q[r]));
-    first_error = std::max(first_error, ratio(change[r], size[r]));
+    turn.push_back(sampled(q[r]));
+    change_turn.push_back(sampled(dq[r]));
+    largest.push_back(largest_value(q[r], turn[r]));
+    change.push_back(largest_value(dq[r], change_turn[r]));
+    first_error = std::max(first_error, ratio(change[r], largest[r]));
   }
-  if (auto second = second_order(question, angles, q, dq, first_error)) {
+  if (auto second = second_order(correction, angles, q, dq, first_error)) {
     dq = std::move(*second);
-    const std::vector<double> followed = sizes(dq);
-    for (std::size_t r = 0; r < rods.size(); ++r)
-      if (!(std::abs(followed[r] - change[r]) <= same_size * followed[r])) change[r] = followed[r];
+    for (std::size_t r = 0; r < rods.size(); ++r) {
+      change_turn[r] = sampled(dq[r]);
+      const double followed = largest_value(dq[r], change_turn[r]);
+      if (!(std::abs(followed - change[r]) <= same_size * followed)) change[r] = followed;
+    }
   }
   for (std::size_t r = 0; r < rods.size(); ++r) {
     TheoryErrors::Rod& rod = errors.rods[r];
-    rod.q = ratio(change[r], size[r]);
-    // Four angles a wave of the smallest harmonics, many of those that count.
-    const Index N = fourier::fast_length(4 * std::max(q[r].num_harmonics(), dq[r].num_harmonics()) + 2);
-    rod.deflection = deflection_ratio(fourier::synthesise(dq[r], N), fourier::synthesise(q[r], N));
+    rod.q = ratio(change[r], largest[r]);
+    rod.deflection = ratio(largest_deflection(change_turn[r]), largest_deflection(turn[r]));
     rod.correction = std::move(dq[r]);
   }
   if (forces != nullptr) compare_forces(model, speed, rods, *forces, errors);

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "hb/engine/system/scaled_system.hpp"
 #include "lib/exact/exact_model.hpp"
-#include "lib/hill_system.hpp"
 
 namespace hb {
 
@@ -23,6 +23,7 @@ constexpr double theory_error_limit = 0.05;
 struct LinearRod {
   const HillSystem* system = nullptr;  // that q solves
   const FourierSeries* q = nullptr;  // empty: no periodic solution
+  const ScaledSystem* scaled = nullptr;  // of the system at the speed, where at hand
 };
 
 struct TheoryErrors {

@@ -21,12 +21,11 @@ constexpr Index most_growth_modes = 2;  // higher ones change the six-link mecha
 // Harmonics of q + dq below the first of the largest are left out; those above the second are apart at the angles of
 // the second look.
 constexpr double negligible = 1e-6, apart = 1e-4;
-constexpr Index fewest_angles = 16;
+constexpr Index fewest_angles = 24;
 // What an answer may be off by.
 constexpr GrowthAccuracy growth_accuracy{.of_change = 0.02, .of_rate = 1e-7};
 // Twice the angles leave about the square of what they change, which may be this part of the answer.
 constexpr double look_settled = 0.07;
-constexpr Index fewest_line_angles = 32;
 // Cells of a turn for each oscillation of the fastest mode, look by look.
 constexpr double cells_per_oscillation[] = {0.4, 1.2, 1.8, 2.4};
 constexpr Index fewest_cells = 12, most_cells = 100000;
@@ -171,12 +170,9 @@ class Looks {
 
   // Empty where the modes' lines do not settle.
   std::optional<double> by_lines() {
-    std::optional<UncoupledSystems> linear;
     std::optional<double> told;
     do {
-      const Index M = std::max(fewest_line_angles, N_);
-      if (!linear || linear->num_angles() != M) linear.emplace(rods_, M);
-      const std::optional<GrowthChange> found = linear->growth(change(), growth_accuracy);
+      const std::optional<GrowthChange> found = UncoupledSystems(rods_, N_).growth(change(), growth_accuracy);
       if (!found) return std::nullopt;
       const double size = std::abs(found->change), changed = std::abs(found->change - found->by_half);
       told = speed_ * std::max(size, changed);

@@ -10,7 +10,7 @@ namespace hb::fourier {
 
 class SplitTransform {
  public:
-  // N >= 32 of fast_length.
+  // N >= 16 of fast_length.
   SplitTransform(Eigen::Index num_samples, Eigen::Index num_columns);
 
   // N x n, column per function.

@@ -63,6 +63,7 @@ FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings&
 struct Responses {
   FourierSeries q, finer;
   std::optional<CutError> cut;  // of q, seen by `finer`
+  ScaledSystem scaled;  // that q solves
 };
 
 // Where more modes change half of the deflection they may miss a resonance too: then nothing tells the error.
@@ -82,7 +83,7 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
                const Responses& responses) {
   const Body& link = *body_at(*model.linkage(), rod.link);
   const RodCoefficients& coefficients = model.coefficients.rods[static_cast<std::size_t>(rod.coefficients)];
-  const auto& [q, finer, cut] = responses;
+  const auto& [q, finer, cut, scaled] = responses;
   const RodShape shape = rod_shape(link, coefficients, speed, q);
   point.deflection = shape.deflection.max_abs;
   point.bending_moment = shape.bending_moment.max_abs;
@@ -106,7 +107,8 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
                      const Only& only, std::span<const SlavingStart> start, Responses& responses,
                      std::vector<SlavingStart>* solution) {
   RodPoint point;
-  const ScaledSystem scaled = scale_system(rod.system, speed);
+  responses.scaled = scale_system(rod.system, speed);
+  const ScaledSystem& scaled = responses.scaled;
   if (wants_steady(only)) {
     SteadyState state = solve_rod(rod.system, rod.num_modes, scaled, response_options(settings));
     point.steady = state.status;
@@ -171,7 +173,8 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
 void add_theory(SweepPoint& point, const SceneModel& model, const std::vector<Responses>& solved,
                 const JointForces* forces, const Only& only) {
   std::vector<LinearRod> linear;
-  for (std::size_t r = 0; r < solved.size(); ++r) linear.push_back({&model.rods[r].system, &solved[r].q});
+  for (std::size_t r = 0; r < solved.size(); ++r)
+    linear.push_back({&model.rods[r].system, &solved[r].q, &solved[r].scaled});
   const TheoryErrors errors = theory_errors(*model.exact, point.speed, linear, forces);
   for (std::size_t r = 0; r < solved.size(); ++r) {
     point.rods[r].theory_error = errors.rods[r].q;

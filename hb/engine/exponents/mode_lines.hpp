@@ -30,7 +30,7 @@ struct GrowthAccuracy {
 // Several systems that do not feel each other, their modes one after the other, at M angles.
 class UncoupledSystems {
  public:
-  // M of fast_length, 32 at least.
+  // M of fast_length, 16 at least.
   UncoupledSystems(std::span<const PeriodicCoefficients> parts, Eigen::Index num_angles);
   ~UncoupledSystems();
 

@@ -24,7 +24,10 @@ struct RoughSolver::Impl {
 };
 
 RoughSolver::RoughSolver(const HillSystem& system, double speed)
-    : impl_(std::make_unique<Impl>(scale_unloaded(system, speed), system.mass)) {}
+    : RoughSolver(scale_unloaded(system, speed), system.mass) {}
+
+RoughSolver::RoughSolver(const ScaledSystem& scaled, const Eigen::MatrixXd& mass)
+    : impl_(std::make_unique<Impl>(scaled, mass)) {}
 
 RoughSolver::~RoughSolver() = default;
 RoughSolver::RoughSolver(RoughSolver&&) noexcept = default;

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "lib/hill_system.hpp"
+#include "hb/engine/system/scaled_system.hpp"
 
 namespace hb {
 
@@ -13,6 +13,8 @@ class RoughSolver {
  public:
   // The system's own load is not looked at.
   RoughSolver(const HillSystem& system, double speed);
+  // Of the system's scaled form and its mass.
+  RoughSolver(const ScaledSystem& scaled, const Eigen::MatrixXd& mass);
   ~RoughSolver();
   RoughSolver(RoughSolver&&) noexcept;
   RoughSolver& operator=(RoughSolver&&) noexcept;

@@ -15,32 +15,35 @@ namespace {
 
 Index root(Index squared) { return Index(std::lround(std::sqrt(double(squared)))); }
 
-// A and B, column-major, become M^-1 A and M^-1 B; M is used up. Gauss' elimination with row pivots, a column at a
-// time.
-void divide(MatrixXd& M, double* A, double* B) {
-  const Index n = M.rows();
-  const auto eliminate = [&](Index k, Index pivot, double* column) {
-    std::swap(column[k], column[pivot]);
-    for (Index i = k + 1; i < n; ++i) column[i] -= M(i, k) * column[k];
-  };
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+// a <- a - factor b
+void subtract(Index count, double factor, const double* __restrict b, double* __restrict a) {
+  for (Index j = 0; j < count; ++j) a[j] -= factor * b[j];
+}
+
+// X becomes M^-1 X; M is used up. Gauss' elimination with row pivots.
+void divide(Rows& M, Rows& X) {
+  const Index n = M.rows(), width = X.cols();
   for (Index k = 0; k < n; ++k) {
     Index pivot = k;
     for (Index i = k + 1; i < n; ++i)
       if (std::abs(M(i, k)) > std::abs(M(pivot, k))) pivot = i;
-    std::swap(M(k, k), M(pivot, k));
-    for (Index i = k + 1; i < n; ++i) M(i, k) /= M(k, k);
-    for (Index j = k + 1; j < n; ++j) eliminate(k, pivot, &M(0, j));
-    for (Index j = 0; j < n; ++j) {
-      eliminate(k, pivot, A + n * j);
-      eliminate(k, pivot, B + n * j);
+    if (pivot != k) {
+      M.row(k).swap(M.row(pivot));
+      X.row(k).swap(X.row(pivot));
+    }
+    M(k, k) = 1 / M(k, k);
+    for (Index i = k + 1; i < n; ++i) {
+      const double factor = M(i, k) * M(k, k);
+      for (Index j = k + 1; j < n; ++j) M(i, j) -= factor * M(k, j);
+      subtract(width, factor, &X(k, 0), &X(i, 0));
     }
   }
-  for (Index k = n - 1; k >= 0; --k)
-    for (Index j = 0; j < n; ++j)
-      for (double* column : {A + n * j, B + n * j}) {
-        column[k] /= M(k, k);
-        for (Index i = 0; i < k; ++i) column[i] -= M(i, k) * column[k];
-      }
+  for (Index k = n - 1; k >= 0; --k) {
+    for (Index j = 0; j < width; ++j) X(k, j) *= M(k, k);
+    for (Index i = 0; i < k; ++i) subtract(width, M(i, k), &X(k, 0), &X(i, 0));
+  }
 }
 
 }  // namespace
@@ -62,11 +65,23 @@ NormalForm normal_form(const PeriodicSystem& system) {
     throw std::invalid_argument("PeriodicSystem: mass, damping and stiffness need n*n x N samples each");
   if (!(system.speed > 0 && std::isfinite(system.speed)))
     throw std::invalid_argument("PeriodicSystem: speed must be positive and finite");
-  NormalForm form{system.stiffness / (system.speed * system.speed), system.damping / system.speed};
-  MatrixXd mass(n, n);
+  NormalForm form{MatrixXd(n * n, N), MatrixXd(n * n, N)};
+  Rows mass(n, n), both(n, 2 * n);  // M; C/omega^2, B/omega
+  const double per_stiffness = 1 / (system.speed * system.speed), per_damping = 1 / system.speed;
   for (Index j = 0; j < N; ++j) {
-    mass = system.mass.col(j).reshaped(n, n);
-    divide(mass, form.alpha.col(j).data(), form.beta.col(j).data());
+    for (Index k = 0; k < n; ++k)
+      for (Index i = 0; i < n; ++i) {
+        const Index q = i + n * k;
+        mass(i, k) = system.mass(q, j);
+        both(i, k) = per_stiffness * system.stiffness(q, j);
+        both(i, n + k) = per_damping * system.damping(q, j);
+      }
+    divide(mass, both);
+    for (Index k = 0; k < n; ++k)
+      for (Index i = 0; i < n; ++i) {
+        form.alpha(i + n * k, j) = both(i, k);
+        form.beta(i + n * k, j) = both(i, n + k);
+      }
   }
   if (!form.alpha.allFinite() || !form.beta.allFinite())
     throw std::invalid_argument("PeriodicSystem: the mass is singular, or an entry is not finite");
