@@ -6,8 +6,8 @@
 namespace hb {
 namespace {
 
-// Nodes of a block, and its points: every fourth or fifth is a node.
-constexpr std::size_t num_nodes = 7, most_points = 29;
+// Nodes of a block, every fourth point of a full one.
+constexpr std::size_t num_nodes = 8, most_points = 4 * (num_nodes - 1) + 1;
 // Fewer points are all nodes.
 constexpr std::size_t fewest_points = 12;
 
