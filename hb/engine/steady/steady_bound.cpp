@@ -74,9 +74,7 @@ class Chain {
         H_(A.num_harmonics()),
         R_(std::max(H_, std::min(A.last_row(), r.rows() - 1))),
         response_(response),
-        rho_(Spectrum::Zero(R_ + 1, A.num_modes())),
-        e_(rho_),
-        tail_(Spectrum::Zero(R_ - H_, A.num_modes())) {
+        rho_(Spectrum::Zero(R_ + 1, A.num_modes())) {
     const Index rows = std::min(R_ + 1, r.rows());
     rho_.topRows(rows) = r.topRows(rows);
     if (r.rows() > R_ + 1) unanswered_ = 2 * sizes_of_rows(system(), r.bottomRows(r.rows() - R_ - 1), R_ + 1, T).sum();
@@ -102,6 +100,10 @@ class Chain {
 
   void answer_window(const Spectrum& z) { e_.topRows(H_ + 1) = z; }
   void answer_tail() {
+    if (e_.size() == 0) {
+      e_.setZero(R_ + 1, rho_.cols());
+      tail_.setZero(R_ - H_, rho_.cols());
+    }
     for (Index i = 0; i < rho_.cols(); ++i)
       for (Index k = H_ + 1; k <= R_; ++k) e_(k, i) = rho_(k, i) == 0.0 ? 0.0 : rho_(k, i) / system().D(i, k);
     tail_ += e_.bottomRows(R_ - H_);
@@ -124,6 +126,7 @@ class Chain {
 
   // Size in q of what is answered beyond the window.
   double outside() const {
+    if (tail_.size() == 0) return unanswered_;
     Eigen::VectorXd sizes(tail_.cols());
     for (Index i = 0; i < sizes.size(); ++i) sizes(i) = 2 * moduli(tail_.col(i)).sum();
     return weigh(sizes, T_) + unanswered_;
@@ -165,8 +168,8 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
     for (Index i = 0; i < I; ++i) {
       const double re = random();
       const double im = k > 0 ? random() : 0;
-      const double n = static_cast<double>(k);
-      rhs(k, i) = std::complex<double>(re, im) / (A.system().coupling(i) + 1 + n) * (1 + std::abs(A.system().mean(i)));
+      const double size = (1 + std::abs(A.system().mean(i))) / (A.system().coupling(i) + 1 + static_cast<double>(k));
+      rhs(k, i) = {re * size, im * size};
     }
   double largest = 1;
   for (int step = 0; step < 2; ++step) {
@@ -177,7 +180,7 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
     const double gained = size_in_q(z, T) / size;
     if (!std::isfinite(gained)) return std::nan("");
     largest = std::max(largest, gained);
-    rhs = (z * (1 / moduli(z).maxCoeff())).cwiseProduct(A.magnitude().cast<std::complex<double>>());
+    rhs = z.array() * (A.magnitude() / moduli(z).maxCoeff()).array();
   }
   return largest;
 }
