@@ -81,18 +81,19 @@ double size(const FourierSeries& q) { return largest_value(q, sampled(q)); }
 // Largest |sum_i q_i sin(i pi x/l)| at the samples and at points of the rod. With s and a the sums of the odd i and of
 // the even ones, the larger of those at x and l - x is |s| + |a|.
 double largest_deflection(const MatrixXd& samples) {
-  const Index I = samples.rows(), N = samples.cols(), points = 2 * I + 2;
-  const Index odd = (I + 1) / 2, even = I / 2;
-  MatrixXd shapes(points, I);  // odd i, then even ones
-  for (Index k = 0; k < points; ++k) {
-    const double angle = std::numbers::pi / 2 * static_cast<double>(k + 1) / static_cast<double>(points);
+  const Index I = samples.rows(), points = 2 * I + 2;
+  const MatrixXd by_angle = samples.transpose();
+  Eigen::ArrayXd s(by_angle.rows()), a(by_angle.rows());
+  double largest = 0;
+  for (Index k = 1; k <= points; ++k) {
+    const double angle = std::numbers::pi / 2 * static_cast<double>(k) / static_cast<double>(points);
+    s.setZero();
+    a.setZero();
     for (Index i = 0; i < I; ++i)
-      shapes(k, i % 2 == 0 ? i / 2 : odd + i / 2) = std::sin(static_cast<double>(i + 1) * angle);
+      (i % 2 == 0 ? s : a) += std::sin(static_cast<double>(i + 1) * angle) * by_angle.col(i).array();
+    largest = std::max(largest, (s.abs() + a.abs()).maxCoeff());
   }
-  MatrixXd of_odd(odd, N), of_even(even, N);
-  for (Index i = 0; i < I; ++i) (i % 2 == 0 ? of_odd : of_even).row(i / 2) = samples.row(i);
-  const MatrixXd s = shapes.leftCols(odd).lazyProduct(of_odd), a = shapes.rightCols(even).lazyProduct(of_even);
-  return (s.cwiseAbs() + a.cwiseAbs()).maxCoeff();
+  return largest;
 }
 
 // Joint forces and torque of q + dq beside the linear ones.

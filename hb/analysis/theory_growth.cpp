@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 
 constexpr Index most_growth_modes = 2;  // higher ones change the six-link mechanism's value by 1 %
 // Harmonics of q + dq below the first of the largest are left out; those above the second are apart at the angles of
-// the second look.
+// the first look.
 constexpr double negligible = 1e-6, apart = 1e-4;
 constexpr Index fewest_angles = 24;
 // What an answer may be off by.
@@ -125,7 +125,7 @@ class Looks {
         motion_(motion),
         rods_(rods),
         most_angles_(24 * most_harmonics(motion, 0) + 4 * fewest_angles),
-        N_(fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1))),
+        N_(fourier::fast_length(std::max(fewest_angles, 2 * most_harmonics(motion, apart) + 2))),
         exact_(variations(model, speed, motion, N_, 0, 1)) {}
 
   // |change of the growth rate|, at least what the last look changed it by; empty where the model ends, or where
