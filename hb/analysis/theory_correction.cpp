@@ -56,7 +56,12 @@ RoughSolver solver_of(const LinearRod& rod, double speed, double tolerance) {
 template <class Linear>
 MatrixXd linear_residual(const Linear& rod, const MatrixXd& q, const MatrixXd& q1, const MatrixXd& q2) {
   const Index I = q.rows(), N = q.cols();
-  const MatrixXd along = q.transpose(), along_1 = q1.transpose(), along_2 = q2.transpose();
+  const auto by_angle = [I, N](const MatrixXd& samples) {
+    MatrixXd columns(N, I);
+    fourier::transpose(samples, columns);
+    return columns;
+  };
+  const MatrixXd along = by_angle(q), along_1 = by_angle(q1), along_2 = by_angle(q2);
   MatrixXd r = MatrixXd::Zero(N, I);
   if (rod.h.c.size() > 0) r = -at_angles(rod.h, N);
   const auto C = at_angles(rod.C, N);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <numbers>
 
@@ -86,11 +87,11 @@ double largest_deflection(const MatrixXd& samples) {
   Eigen::ArrayXd s(by_angle.rows()), a(by_angle.rows());
   double largest = 0;
   for (Index k = 1; k <= points; ++k) {
-    const double angle = std::numbers::pi / 2 * static_cast<double>(k) / static_cast<double>(points);
+    const std::complex<double> wave = std::polar(1.0, std::numbers::pi / 2 * double(k) / double(points));
+    std::complex<double> power = wave;
     s.setZero();
     a.setZero();
-    for (Index i = 0; i < I; ++i)
-      (i % 2 == 0 ? s : a) += std::sin(static_cast<double>(i + 1) * angle) * by_angle.col(i).array();
+    for (Index i = 0; i < I; ++i, power *= wave) (i % 2 == 0 ? s : a) += power.imag() * by_angle.col(i).array();
     largest = std::max(largest, (s.abs() + a.abs()).maxCoeff());
   }
   return largest;
