@@ -60,13 +60,13 @@ Index num_samples(const std::vector<FourierSeries>& q, const Accuracy& accuracy)
 
 double ratio(double change, double size) { return change == 0 ? 0 : change / size; }
 
-// Values at four angles a wave, I x N; they are at least so much of the largest.
-MatrixXd sampled(const FourierSeries& q) {
-  return fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4));
+// Values at four angles a wave of so many harmonics, I x N; they are at least so much of the largest.
+MatrixXd over_the_turn(const FourierSeries& q, Index harmonics) {
+  return fourier::synthesise(q, fourier::fast_length(4 * harmonics + 4));
 }
 constexpr double least_sampled = 0.7;
 
-double sampled_size(const FourierSeries& q) { return dense::largest(sampled(q)); }
+double sampled_size(const FourierSeries& q) { return dense::largest(over_the_turn(q, q.num_harmonics())); }
 
 // Largest |q_i| over the turn, of components that can have it.
 double largest_value(const FourierSeries& q, const MatrixXd& samples) {
@@ -77,7 +77,7 @@ double largest_value(const FourierSeries& q, const MatrixXd& samples) {
   return value;
 }
 
-double size(const FourierSeries& q) { return largest_value(q, sampled(q)); }
+double size(const FourierSeries& q) { return largest_value(q, over_the_turn(q, q.num_harmonics())); }
 
 // Largest |sum_i q_i sin(i pi x/l)| at the samples and at points of the rod. With s and a the sums of the odd i and of
 // the even ones, the larger of those at x and l - x is |s| + |a|.
@@ -264,12 +264,13 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     return errors;
   }
   std::vector<FourierSeries>& dq = first.dq;
+  const auto harmonics = [&](std::size_t r) { return std::max(q[r].num_harmonics(), dq[r].num_harmonics()); };
   std::vector<MatrixXd> turn, change_turn;
   std::vector<double> largest, change;
   double first_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    turn.push_back(sampled(q[r]));
-    change_turn.push_back(sampled(dq[r]));
+    turn.push_back(over_the_turn(q[r], harmonics(r)));
+    change_turn.push_back(over_the_turn(dq[r], harmonics(r)));
     largest.push_back(largest_value(q[r], turn[r]));
     change.push_back(largest_value(dq[r], change_turn[r]));
     first_error = std::max(first_error, ratio(change[r], largest[r]));
@@ -277,7 +278,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   if (auto second = second_order(correction, angles, q, dq, first_error)) {
     dq = std::move(*second);
     for (std::size_t r = 0; r < rods.size(); ++r) {
-      change_turn[r] = sampled(dq[r]);
+      change_turn[r] = over_the_turn(dq[r], harmonics(r));
       const double followed = largest_value(dq[r], change_turn[r]);
       if (!(std::abs(followed - change[r]) <= same_size * followed)) change[r] = followed;
     }
