@@ -56,16 +56,20 @@ RoughSolver solver_of(const LinearRod& rod, double speed, double tolerance) {
 template <class Linear>
 MatrixXd linear_residual(const Linear& rod, const MatrixXd& q, const MatrixXd& q1, const MatrixXd& q2) {
   const Index I = q.rows(), N = q.cols();
-  const MatrixXd along = q.transpose();
-  MatrixXd by_angle = MatrixXd::Zero(N, I);
-  if (rod.h.c.size() > 0) by_angle = -at_angles(rod.h, N);
+  const auto by_angle = [I, N](const MatrixXd& samples) {
+    MatrixXd columns(N, I);
+    fourier::transpose(samples, columns);
+    return columns;
+  };
+  const MatrixXd along = by_angle(q), along_1 = by_angle(q1), along_2 = by_angle(q2);
+  MatrixXd r = MatrixXd::Zero(N, I);
+  if (rod.h.c.size() > 0) r = -at_angles(rod.h, N);
   const auto C = at_angles(rod.C, N);
   for (Index j = 0; j < I; ++j)
-    for (Index i = 0; i < I; ++i) by_angle.col(i) += C.col(i + I * j).cwiseProduct(along.col(j));
-  MatrixXd r = by_angle.transpose();
-  r.noalias() += rod.M.lazyProduct(q2);
-  r.noalias() += rod.B.lazyProduct(q1);
-  return r;
+    for (Index i = 0; i < I; ++i)
+      r.col(i) +=
+          rod.M(i, j) * along_2.col(j) + rod.B(i, j) * along_1.col(j) + C.col(i + I * j).cwiseProduct(along.col(j));
+  return r.transpose();
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <numbers>
 
@@ -59,13 +60,13 @@ Index num_samples(const std::vector<FourierSeries>& q, const Accuracy& accuracy)
 
 double ratio(double change, double size) { return change == 0 ? 0 : change / size; }
 
-// Values at four angles a wave, I x N; they are at least so much of the largest.
-MatrixXd sampled(const FourierSeries& q) {
-  return fourier::synthesise(q, fourier::fast_length(4 * q.num_harmonics() + 4));
+// Values at four angles a wave of so many harmonics, I x N; they are at least so much of the largest.
+MatrixXd over_the_turn(const FourierSeries& q, Index harmonics) {
+  return fourier::synthesise(q, fourier::fast_length(4 * harmonics + 4));
 }
 constexpr double least_sampled = 0.7;
 
-double sampled_size(const FourierSeries& q) { return dense::largest(sampled(q)); }
+double sampled_size(const FourierSeries& q) { return dense::largest(over_the_turn(q, q.num_harmonics())); }
 
 // Largest |q_i| over the turn, of components that can have it.
 double largest_value(const FourierSeries& q, const MatrixXd& samples) {
@@ -76,23 +77,24 @@ double largest_value(const FourierSeries& q, const MatrixXd& samples) {
   return value;
 }
 
-double size(const FourierSeries& q) { return largest_value(q, sampled(q)); }
+double size(const FourierSeries& q) { return largest_value(q, over_the_turn(q, q.num_harmonics())); }
 
 // Largest |sum_i q_i sin(i pi x/l)| at the samples and at points of the rod. With s and a the sums of the odd i and of
 // the even ones, the larger of those at x and l - x is |s| + |a|.
 double largest_deflection(const MatrixXd& samples) {
-  const Index I = samples.rows(), N = samples.cols(), points = 2 * I + 2;
-  const Index odd = (I + 1) / 2, even = I / 2;
-  MatrixXd shapes(points, I);  // odd i, then even ones
-  for (Index k = 0; k < points; ++k) {
-    const double angle = std::numbers::pi / 2 * static_cast<double>(k + 1) / static_cast<double>(points);
-    for (Index i = 0; i < I; ++i)
-      shapes(k, i % 2 == 0 ? i / 2 : odd + i / 2) = std::sin(static_cast<double>(i + 1) * angle);
+  const Index I = samples.rows(), points = 2 * I + 2;
+  const MatrixXd by_angle = samples.transpose();
+  Eigen::ArrayXd s(by_angle.rows()), a(by_angle.rows());
+  double largest = 0;
+  for (Index k = 1; k <= points; ++k) {
+    const std::complex<double> wave = std::polar(1.0, std::numbers::pi / 2 * double(k) / double(points));
+    std::complex<double> power = wave;
+    s.setZero();
+    a.setZero();
+    for (Index i = 0; i < I; ++i, power *= wave) (i % 2 == 0 ? s : a) += power.imag() * by_angle.col(i).array();
+    largest = std::max(largest, (s.abs() + a.abs()).maxCoeff());
   }
-  MatrixXd of_odd(odd, N), of_even(even, N);
-  for (Index i = 0; i < I; ++i) (i % 2 == 0 ? of_odd : of_even).row(i / 2) = samples.row(i);
-  const MatrixXd s = shapes.leftCols(odd).lazyProduct(of_odd), a = shapes.rightCols(even).lazyProduct(of_even);
-  return (s.cwiseAbs() + a.cwiseAbs()).maxCoeff();
+  return largest;
 }
 
 // Joint forces and torque of q + dq beside the linear ones.
@@ -262,12 +264,13 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
     return errors;
   }
   std::vector<FourierSeries>& dq = first.dq;
+  const auto harmonics = [&](std::size_t r) { return std::max(q[r].num_harmonics(), dq[r].num_harmonics()); };
   std::vector<MatrixXd> turn, change_turn;
   std::vector<double> largest, change;
   double first_error = 0;
   for (std::size_t r = 0; r < rods.size(); ++r) {
-    turn.push_back(sampled(q[r]));
-    change_turn.push_back(sampled(dq[r]));
+    turn.push_back(over_the_turn(q[r], harmonics(r)));
+    change_turn.push_back(over_the_turn(dq[r], harmonics(r)));
     largest.push_back(largest_value(q[r], turn[r]));
     change.push_back(largest_value(dq[r], change_turn[r]));
     first_error = std::max(first_error, ratio(change[r], largest[r]));
@@ -275,7 +278,7 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   if (auto second = second_order(correction, angles, q, dq, first_error)) {
     dq = std::move(*second);
     for (std::size_t r = 0; r < rods.size(); ++r) {
-      change_turn[r] = sampled(dq[r]);
+      change_turn[r] = over_the_turn(dq[r], harmonics(r));
       const double followed = largest_value(dq[r], change_turn[r]);
       if (!(std::abs(followed - change[r]) <= same_size * followed)) change[r] = followed;
     }

@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 
 constexpr Index most_growth_modes = 2;  // higher ones change the six-link mechanism's value by 1 %
 // Harmonics of q + dq below the first of the largest are left out; those above the second are apart at the angles of
-// the second look.
+// the first look.
 constexpr double negligible = 1e-6, apart = 1e-4;
 constexpr Index fewest_angles = 24;
 // What an answer may be off by.
@@ -33,11 +33,16 @@ constexpr Index fewest_cells = 12, most_cells = 100000;
 // The first modes of a linear system, alone: alpha = M^-1 C/Omega^2, beta = M^-1 B/Omega.
 PeriodicCoefficients first_modes_of(const HillSystem& system, double speed, Index kept) {
   const Index n = system.num_modes();
-  const FourierSeries C = stiffness_at(system, speed);
   const MatrixXd per_mass = dense::inverse(MatrixXd(system.mass.topLeftCorner(kept, kept)));
-  PeriodicCoefficients part{FourierSeries(kept * kept, C.num_harmonics()), FourierSeries(kept * kept, 0), kept};
-  for (Index j = 0; j < kept; ++j)
-    part.alpha.c.middleRows(kept * j, kept) = per_mass.lazyProduct(C.c.middleRows(n * j, kept)) / (speed * speed);
+  Index H = 0;
+  for (const FourierSeries& C : system.stiffness) H = std::max(H, C.num_harmonics());
+  PeriodicCoefficients part{FourierSeries(kept * kept, H), FourierSeries(kept * kept, 0), kept};
+  double power = 1 / (speed * speed);
+  for (const FourierSeries& C : system.stiffness) {
+    for (Index j = 0; j < kept && C.c.size() > 0; ++j)
+      part.alpha.c.block(kept * j, 0, kept, C.c.cols()) += (power * per_mass).lazyProduct(C.c.middleRows(n * j, kept));
+    power *= speed;
+  }
   part.beta.c.col(0).real() = (per_mass * system.damping.topLeftCorner(kept, kept) / speed).reshaped();
   return part;
 }
@@ -125,7 +130,7 @@ class Looks {
         motion_(motion),
         rods_(rods),
         most_angles_(24 * most_harmonics(motion, 0) + 4 * fewest_angles),
-        N_(fourier::fast_length(std::max(fewest_angles, most_harmonics(motion, apart) + 1))),
+        N_(fourier::fast_length(std::max(fewest_angles, 2 * most_harmonics(motion, apart) + 2))),
         exact_(variations(model, speed, motion, N_, 0, 1)) {}
 
   // |change of the growth rate|, at least what the last look changed it by; empty where the model ends, or where

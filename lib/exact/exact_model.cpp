@@ -319,7 +319,7 @@ ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, cons
   for (Index first = 0; first < N; first += Lanes::width) {
     end_if_wished();
     block.solve(motion, first);
-    if (!result.breakdown) result.breakdown = block.breakdown();
+    if (const std::optional<ExactBreakdown> breakdown = block.breakdown()) return {.breakdown = breakdown};
     block.surround();
     block.residual(result.r);
     if (derivatives) block.derivatives(result);

@@ -49,12 +49,12 @@ struct RitzSamples {
 };
 
 struct ExactResidual {
-  // r_i, n x N, scaled as the linear model: r = M q'' + B q' + C q - h to first order in q. Not finite where broken.
+  // r_i, n x N, scaled as the linear model: r = M q'' + B q' + C q - h to first order in q.
   Eigen::MatrixXd r;
   // dr_i/dq_k, dr_i/dq'_k, dr_i/dq''_k, row i + n k; n*n x N. Empty unless asked for.
   Eigen::MatrixXd by_q, by_q1, by_q2;
   Eigen::MatrixXd by_speed;  // dr_i/dOmega at the same angles and q, q', q''; n x N
-  std::optional<ExactBreakdown> breakdown;
+  std::optional<ExactBreakdown> breakdown;  // then all else is empty
 };
 
 class ExactModel {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "lib/constants.hpp"
 #include "lib/scene/scene.hpp"
@@ -46,6 +47,21 @@ TEST(TheoryError, OfTheSliderCrankIsTheReferences) {
     const TheoryErrors errors = theory_errors(answer.model, speed, answer.rods());
     ASSERT_TRUE(errors.rods[0].q);
     EXPECT_NEAR(*errors.rods[0].q, expected, 5e-4 * expected + 4e-5);
+  }
+}
+
+TEST(TheoryError, OfScaledSystemsAtHandIsThatOfTheirOwn) {
+  const double speed = 1000 * pi / 30;
+  const LinearAnswer answer = linear_answer(six_link::linkage(), speed, 3);
+  std::vector<LinearRod> rods = answer.rods();
+  const TheoryErrors alone = theory_errors(answer.model, speed, rods);
+  std::vector<ScaledSystem> scaled;
+  for (const HillSystem& system : answer.systems) scaled.push_back(scale_system(system, speed));
+  for (std::size_t r = 0; r < rods.size(); ++r) rods[r].scaled = &scaled[r];
+  const TheoryErrors handed = theory_errors(answer.model, speed, rods);
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    EXPECT_NEAR(*handed.rods[r].q, *alone.rods[r].q, 1e-9 * *alone.rods[r].q);
+    EXPECT_NEAR(*handed.rods[r].deflection, *alone.rods[r].deflection, 1e-9 * *alone.rods[r].deflection);
   }
 }
 

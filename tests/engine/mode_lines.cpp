@@ -90,6 +90,20 @@ TEST(ModeLines, EverySecondAngleTellsAsMuchAsHalfOfThem) {
   EXPECT_NEAR(all->by_half, some->change, 0.02 * std::abs(some->change));
 }
 
+// Rods of which one is damped more: its lines are left behind, and orders to come are foreseen. At as many angles as
+// the change is known at, or more.
+TEST(ModeLines, TellTheSameAtAnyAngles) {
+  const std::vector<PeriodicCoefficients> parts{rod(7.3, 0.03, 0.2), rod(12.4, 0.01, 0.26)};
+  const NormalForm change = small_change(4, 7.3, 2e-3, 24);
+  const double expected = propagated_change(parts, change);
+  for (const Index M : {24, 32, 64}) {
+    SCOPED_TRACE(M);
+    const auto found = UncoupledSystems(parts, M).growth(change, percents);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->change, expected, 0.003 * std::abs(expected));
+  }
+}
+
 TEST(ModeLines, AreSilentWhereAModeIsLockedToTheTurn) {
   const std::vector<PeriodicCoefficients> parts{rod(3.5, 0, 0.02)};
   NormalForm change = small_change(2, 3.5, 0, 32);

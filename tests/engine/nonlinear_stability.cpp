@@ -103,6 +103,20 @@ TEST(PeriodicExponents, RefuseWhatIsNoSystem) {
   EXPECT_THROW((void)analyse_stability(system), std::invalid_argument);
 }
 
+TEST(NormalForm, NeedsNoLargeEntryOnTheMassesDiagonal) {
+  constexpr Index n = 3, N = 4;
+  PeriodicSystem system{2, MatrixXd(n * n, N), MatrixXd::Random(n * n, N), MatrixXd::Random(n * n, N)};
+  MatrixXd mass(n, n);
+  mass << 0, 2, 1, 1, 0, 3, -2, 1, 0;
+  for (Index j = 0; j < N; ++j) system.mass.col(j) = (mass + 0.1 * double(j) * MatrixXd::Identity(n, n)).reshaped();
+  const NormalForm form = normal_form(system);
+  for (Index j = 0; j < N; ++j) {
+    const auto at = [j](const MatrixXd& samples) -> MatrixXd { return samples.col(j).reshaped(n, n); };
+    EXPECT_LT((4 * at(system.mass) * at(form.alpha) - at(system.stiffness)).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT((2 * at(system.mass) * at(form.beta) - at(system.damping)).cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
 TEST(MotionStability, OfALinearSystemIsThatOfTheSystem) {
   stress::Random random(7);
   for (int k = 0; k < 6; ++k) {

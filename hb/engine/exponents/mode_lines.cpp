@@ -145,8 +145,8 @@ std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, c
   // Lines more mixed than that may be locked to each other, which shows in no real part at first: two that are have 1/2
   // at least.
   constexpr double most_mixed = 0.3;
-  // The orders to come, where each is at most `geometric` of the one before, change the answer by less than this part
-  // of what is allowed.
+  // Orders to come, each at most `geometric` of the one before, change the answer by less than this part of what is
+  // allowed.
   constexpr double settled = 0.05, geometric = 0.5;
   if (!impl_->modes) return std::nullopt;
   const mode_lines::LoneModes& modes = *impl_->modes;
@@ -172,19 +172,23 @@ std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, c
   double last = HUGE_VAL, last_moved = HUGE_VAL;
   for (std::size_t order = 0; order < most_orders; ++order) {
     const Leading leading = lines.next();
-    if (!(lines.mixed() <= most_mixed)) return std::nullopt;
+    const double mixed = lines.mixed();
+    if (!(mixed <= most_mixed)) return std::nullopt;
     const double linear = impl_->linear(order), found = leading.growth - linear;
     if (!std::isfinite(found)) return std::nullopt;
     const double moved = found - std::exchange(last, found), ratio = moved / std::exchange(last_moved, moved);
-    const bool foreseen = order >= 2 && std::abs(ratio) <= geometric;
-    const double to_come = foreseen ? moved * ratio / (1 - ratio) : moved;
+    if (order < 2) continue;
+    const double rate = std::max(std::abs(ratio), mixed);
+    const bool foreseen = rate <= geometric;
+    const double to_come = foreseen ? moved * rate / (1 - rate) : moved;
     if (!(std::abs(to_come) <= settled * accuracy.allowed(found, linear))) continue;
     // The leading line once more, from where it is.
     const auto half = Eigen::seqN(0, change.alpha.cols() / 2, 2);
     const mode_lines::Coupling by_half = coupling_by(change.alpha(Eigen::all, half), change.beta(Eigen::all, half));
     leading.line->feel(by_half);
     leading.line->next();
-    return GrowthChange{linear, foreseen ? found + to_come : found, leading.line->next() - impl_->linear(order + 2)};
+    return GrowthChange{linear, foreseen ? found + moved * ratio / (1 - ratio) : found,
+                        leading.line->next() - impl_->linear(order + 2)};
   }
   return std::nullopt;
 }
