@@ -22,8 +22,7 @@ CutError cut_error(const Body& link, const RodCoefficients& rod, double speed, c
 
 PeakErrors peak_errors(const Body& link, const RodShape& shape, const FourierSeries& q, double error_bound,
                        const CutError& cut) {
-  double largest = 0;
-  for (Eigen::Index i = 0; i < q.num_components(); ++i) largest = std::max(largest, fourier::max_abs(q, i).value);
+  const double largest = fourier::largest_values(q).maxCoeff();
   // w = sum q_i sin(i pi x/l): at most I times the error of a q_i; w'': sum (i pi/l)^2 times.
   const auto I = static_cast<double>(q.num_components());
   const double k = std::numbers::pi / link.length, of_each = error_bound * largest;

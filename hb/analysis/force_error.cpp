@@ -44,8 +44,7 @@ Largest change(const Linkage& linkage, double speed, const std::vector<LinkRespo
 Largest sizes(const JointForces& forces) {
   Largest largest{0, fourier::max_abs(forces.torque, 0).value};
   for (const JointForce& joint : forces.joints)
-    for (Eigen::Index c = 0; c < joint.elastic.num_components(); ++c)
-      largest.force = std::max(largest.force, fourier::max_abs(joint.elastic, c).value);
+    largest.force = std::max(largest.force, fourier::largest_values(joint.elastic).maxCoeff());
   return largest;
 }
 

@@ -46,12 +46,12 @@ double crank_inertia(const Linkage& linkage) {
   return crank.inertia + crank.mass * std::norm(crank.com);
 }
 
-MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces,
-                           const std::vector<LinkResponse>& responses, const ForceErrors& errors, LoadDetail detail) {
+MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces, const ForceErrors& errors,
+                           LoadDetail detail) {
   constexpr int turns = 1;
   MachineLoads loads;
   loads.bearings = bearing_loads(forces, turns, detail);
-  loads.frame = frame_forces(linkage, speed, responses);
+  loads.frame = forces.frame;
   loads.shaking_force = fourier::largest_length(force_of_frame(loads.frame.elastic));
   if (detail == LoadDetail::all) loads.shaking_force_rigid = fourier::largest_length(force_of_frame(loads.frame.rigid));
   loads.inertia = crank_inertia(linkage);
@@ -62,9 +62,7 @@ MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForc
 
 std::optional<MachineLoads> machine_loads(const SceneModel& model, const SpeedResult& result) {
   if (!result.forces) return std::nullopt;
-  std::vector<LinkResponse> responses;
-  for (const RodResult& rod : result.rods) responses.push_back({rod.link, rod.steady->q});
-  MachineLoads loads = machine_loads(*model.linkage(), result.speed, *result.forces, responses,
+  MachineLoads loads = machine_loads(*model.linkage(), result.speed, *result.forces,
                                      result.force_errors.value_or(ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0}));
   if (result.theory) loads.mean_theory_error = result.theory->mean_torque;
   return loads;

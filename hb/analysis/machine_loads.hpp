@@ -8,7 +8,6 @@
 #include "hb/analysis/bearing_load.hpp"
 #include "hb/analysis/drive.hpp"
 #include "hb/analysis/force_error.hpp"
-#include "hb/analysis/frame_forces.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 
 namespace hb {
@@ -41,8 +40,7 @@ void add_drive(MachineLoads& loads, const JointForces& forces, double speed, int
 // Of a linkage and its joint forces at this speed (rad per unit time). `largest` leaves rigid loads and the bearings'
 // mean and rms at zero.
 [[nodiscard]] MachineLoads machine_loads(const Linkage& linkage, double speed, const JointForces& forces,
-                                         const std::vector<LinkResponse>& responses, const ForceErrors& errors,
-                                         LoadDetail detail = LoadDetail::all);
+                                         const ForceErrors& errors, LoadDetail detail = LoadDetail::all);
 // Empty where joint forces were not computed.
 [[nodiscard]] std::optional<MachineLoads> machine_loads(const SceneModel& model, const SpeedResult& result);
 

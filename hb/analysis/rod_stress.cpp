@@ -31,7 +31,8 @@ std::array<Range, 2> at_ends(const FourierSeries& series, double length) {
   FourierSeries ends(2, series.num_harmonics());
   ends.c.row(0) = series.c.row(2);
   ends.c.row(1) = series.c.row(2) + length * series.c.row(1) - length * length / 2 * series.c.row(0);
-  return {fourier::range(ends, 0), fourier::range(ends, 1)};
+  const std::vector<Range> ranges = fourier::ranges(ends);
+  return {ranges[0], ranges[1]};
 }
 
 // The largest value over rod and turn, `at_ends` that of both ends: of samples, those that may be next to a higher one

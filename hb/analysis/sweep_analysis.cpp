@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "hb/analysis/accuracy.hpp"
@@ -306,19 +307,21 @@ class SweepRun {
     point.peak = *peak;
     point.prominence = m.prominence;
     point.speed = scene_.at(peak->x).speed;
-    if (only_.all_exponents()) name_mode(point);
+    if (only_.all_exponents() && !is_refined(point)) {
+      const std::optional<StabilitySample> sample =
+          stability_sample([&](double x) { return rod.system(x); }, point.peak.x, exponent_options(settings_));
+      if (sample) name_mode(point, sample->stability);
+    }
     return point;
   }
 
+  // Everything is computed there: where the response is bounded.
+  static bool is_refined(const CriticalPoint& point) { return std::isfinite(point.peak.value); }
+
   // The mode whose frequency is met at the peak: that of the component, by the exponents there alone, so that no step
   // of the sweep changes it.
-  void name_mode(CriticalPoint& point) const {
-    const double x = point.peak.x;
-    const std::optional<StabilitySample> sample = stability_sample(
-        [&](double at) { return along_[point.rod].system(at); }, x, boundary_options(settings_).stability);
-    if (!sample) return;
-    const ModeState state =
-        modes_by_name(sample->stability, point.component + 1)[static_cast<std::size_t>(point.component)];
+  static void name_mode(CriticalPoint& point, const Stability& there) {
+    const ModeState state = modes_by_name(there, point.component + 1)[static_cast<std::size_t>(point.component)];
     if (const std::optional<int> order = order_met(state, point.speed)) {
       point.mode = point.component;
       point.frequency = state.frequency;
@@ -327,17 +330,13 @@ class SweepRun {
     }
   }
 
-  // Everything at what was found.
+  // Everything at what was found, then on the flanks of resonances.
   void refine() {
     const Stopwatch watch;
-    const std::vector<double> places = work_.ends_early() ? std::vector<double>{} : places_found();
-    result_.refined = work_.results<SweepPoint>(
-        "refined points", places.size(),
-        [&](std::size_t k) {
-          return work_.ends_early() ? left_out(places[k]) : analyse_point(scene_, places[k], only_);
-        },
-        [](auto& visit, SweepPoint& point) { visit_point(visit, point); });
-    std::erase_if(result_.refined, [](const SweepPoint& point) { return point.problem == not_computed; });
+    analyse_at("refined points", places_found());
+    if (only_.all_exponents()) name_peaks();
+    analyse_at("flanks of resonances", flanks());
+    std::ranges::sort(result_.refined, {}, &SweepPoint::x);
     if (work_.ends_early()) {
       const auto without =
           std::ranges::count_if(result_.points, [](const SweepPoint& point) { return point.rods.empty(); });
@@ -345,30 +344,62 @@ class SweepRun {
           "ended before the answer was complete: {}bands and peaks between points may be missing",
           without > 0 ? fmt::format("{} of {} points have no answer, and ", without, values_.size()) : std::string()));
     }
-    result_.stages.push_back({"refined points", watch.seconds(), fmt::format("{} points", places.size())});
+    result_.stages.push_back({"refined points", watch.seconds(), fmt::format("{} points", result_.refined.size())});
   }
 
-  // Boundaries, peaks with their flanks, and the fastest growth between points; ascending.
+  // Where no point is yet, inside the sweep.
+  void analyse_at(const char* what, std::vector<double> places) {
+    std::ranges::sort(places);
+    std::erase_if(places, [&](double x) {
+      return !(x > values_.front() && x < values_.back()) || std::ranges::binary_search(values_, x) ||
+             std::ranges::find(result_.refined, x, &SweepPoint::x) != result_.refined.end();
+    });
+    places.erase(std::unique(places.begin(), places.end()), places.end());
+    if (work_.ends_early()) places.clear();
+    std::vector<SweepPoint> points = work_.results<SweepPoint>(
+        what, places.size(),
+        [&](std::size_t k) {
+          return work_.ends_early() ? left_out(places[k]) : analyse_point(scene_, places[k], only_);
+        },
+        [](auto& visit, SweepPoint& point) { visit_point(visit, point); });
+    std::erase_if(points, [](const SweepPoint& point) { return point.problem == not_computed; });
+    std::ranges::move(points, std::back_inserter(result_.refined));
+  }
+
+  // Boundaries, peaks, and the fastest growth between points.
   std::vector<double> places_found() const {
     std::vector<double> places;
     for (const SweepRod& rod : result_.rods)
       for (const StabilityBoundary& boundary : rod.boundaries) places.push_back(boundary.x);
+    for (const CriticalPoint& point : result_.critical)
+      if (is_refined(point)) places.push_back(point.peak.x);
+    for (const Between& found : between_)
+      for (const StabilitySample& sample : found.bands.samples) places.push_back(sample.x);
+    return places;
+  }
+
+  void name_peaks() {
+    for (CriticalPoint& point : result_.critical) {
+      if (!is_refined(point)) continue;
+      for (const std::vector<SweepPoint>* points : {&result_.refined, &result_.points}) {
+        const auto there = std::ranges::find(*points, point.peak.x, &SweepPoint::x);
+        if (there == points->end() || there->rods.empty() || !there->rods[point.rod].stability) continue;
+        name_mode(point, there->rods[point.rod].stability->stability);
+        break;
+      }
+    }
+  }
+
+  // Of resonances of width damping/n.
+  std::vector<double> flanks() const {
+    std::vector<double> places;
     const double widest = 2 * (values_.back() - values_.front()) / static_cast<double>(intervals());
     for (const CriticalPoint& point : result_.critical) {
-      if (std::isinf(point.peak.value)) continue;
-      places.push_back(point.peak.x);
-      // Flanks of a resonance of width damping/n.
+      if (!is_refined(point)) continue;
       const double width = point.order > 0 ? point.damping / point.speed / point.order * point.peak.x : 0;
       if (width > 0 && width < widest)
         for (const double t : {-2.0, -1.0, -0.5, 0.5, 1.0, 2.0}) places.push_back(point.peak.x + t * width);
     }
-    for (const Between& found : between_)
-      for (const StabilitySample& sample : found.bands.samples) places.push_back(sample.x);
-    std::ranges::sort(places);
-    std::erase_if(places, [&](double x) {
-      return !(x > values_.front() && x < values_.back()) || std::ranges::binary_search(values_, x);
-    });
-    places.erase(std::unique(places.begin(), places.end()), places.end());
     return places;
   }
 

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <complex>
 #include <memory>
+#include <vector>
 
 namespace hb {
 
@@ -66,8 +67,14 @@ namespace fourier {
 // 0.
 [[nodiscard]] Range range(const FourierSeries& series, Eigen::Index component);
 
+// Of every component, which costs less than one after the other.
+[[nodiscard]] std::vector<Range> ranges(const FourierSeries& series);
+
 // max |f| of one component over the turn, with its sign dropped.
 [[nodiscard]] Extremum max_abs(const FourierSeries& series, Eigen::Index component);
+
+// Of every component the value alone.
+[[nodiscard]] Eigen::VectorXd largest_values(const FourierSeries& series);
 
 // Largest length over the turn of the vector of all components; 0 of an empty series.
 [[nodiscard]] Extremum largest_length(const FourierSeries& series);

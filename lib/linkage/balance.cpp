@@ -158,12 +158,13 @@ std::vector<DeflectionSamples> deflection_samples(const Linkage& linkage, const 
   for (const LinkResponse& response : responses) {
     const double l = body_at(linkage, response.link)->length;
     const FourierSeries& q = response.q;
+    Eigen::Matrix2Xd of_modes(2, q.num_components());
+    for (Eigen::Index i = 1; i <= q.num_components(); ++i) of_modes.col(i - 1) = integrals_of_mode(l, i);
+    const Eigen::Matrix2Xcd sums = of_modes * q.c;
     FourierSeries integrals(6, q.num_harmonics());
     for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k) {
-      Eigen::Vector2cd sum = Eigen::Vector2cd::Zero();
-      for (Eigen::Index i = 1; i <= q.num_components(); ++i) sum += integrals_of_mode(l, i) * q.c(i - 1, k);
       const double n = static_cast<double>(k);
-      integrals.c.col(k) << sum, Complex(0, n) * sum, -n * n * sum;
+      integrals.c.col(k) << sums.col(k), Complex(0, n) * sums.col(k), -n * n * sums.col(k);
     }
     samples.push_back({response.link, fourier::synthesise(integrals, num_samples)});
   }

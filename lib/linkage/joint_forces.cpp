@@ -16,7 +16,7 @@ namespace {
 using Complex = std::complex<double>;
 
 // Next to a resonance rigid forces are rounding beside elastic ones, and yet known: they have a group of their own.
-constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2;
+constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2, frame_group = 3, moment_group = 4;
 
 // Sum over both signs of the coefficients of one row beyond its length, twice. Of a row that has not decayed the last
 // eighth stands for what is missing.
@@ -60,9 +60,32 @@ void add_deflections(const Linkage& linkage, const std::vector<BodyMotion>& moti
   }
 }
 
+// Joints cancel in the sum over all bodies: what they ask of pivots, guides and motor is
+//     G = sum of load,   M = sum of load.moment + (z - O) x load.force,
+// a slider's applied force F, taken off its load there, being given back to the frame:  -(G + F),  -(M + (z - O) x F).
+Eigen::Vector3d on_frame(const Linkage& linkage, const std::vector<BodyMotion>& motion,
+                         const std::vector<BodyLoad>& loads, const Eigen::Ref<const Eigen::VectorXd>& slider_forces) {
+  Complex force = 0;
+  double moment = 0;
+  const auto add = [&](std::size_t body, Complex its) {
+    force += its;
+    moment += (std::conj(motion[body].z - linkage.crank.pivot) * its).imag();
+  };
+  for (std::size_t b = 0; b < loads.size(); ++b) {
+    add(b, loads[b].force);
+    moment += loads[b].moment;
+  }
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
+    const std::size_t body = at(closing_index(static_cast<int>(d)));
+    if (std::holds_alternative<Slider>(linkage.dyads[d].closing))
+      add(body, slider_forces(static_cast<Eigen::Index>(d)) * motion[body].e);
+  }
+  return {-force.real(), -force.imag(), -moment};
+}
+
 }  // namespace
 
-// Sampled per crank angle: rigid and elastic (x, y) of every row, then rigid and elastic torque.
+// Sampled per crank angle: rigid and elastic (x, y) of every row, rigid and elastic torque, both of the frame.
 JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                          double tolerance) {
   const std::vector<JointRow> rows = joint_rows(linkage);
@@ -70,7 +93,9 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
   std::vector<TurnComponent> components;
   for (Eigen::Index i = 0; i < num_rows; ++i)
     for (const int group : {rigid_group, rigid_group, elastic_group, elastic_group}) components.push_back({group, 1});
-  components.insert(components.end(), 2, TurnComponent{torque_group, 1});
+  for (const int group :
+       {torque_group, torque_group, frame_group, frame_group, moment_group, frame_group, frame_group, moment_group})
+    components.push_back({group, 1});
 
   std::vector<BodyMotion> motion;
   std::array<std::vector<BodyLoad>, 3> powers;
@@ -86,11 +111,15 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
         rigid[b] = {powers[0][b].force + speed * (powers[1][b].force + speed * powers[2][b].force),
                     powers[0][b].moment + speed * (powers[1][b].moment + speed * powers[2][b].moment)};
       elastic = rigid;
+      auto frame = samples.col(j).tail<6>();
+      frame.head<3>() = on_frame(linkage, motion, rigid, slider_forces.col(j));
       balance(linkage, motion, rigid, forces_rigid);
       if (!deflections.empty()) {
         add_deflections(linkage, motion, speed, deflections, j, elastic);
+        frame.tail<3>() = on_frame(linkage, motion, elastic, slider_forces.col(j));
         balance(linkage, motion, elastic, forces);
       } else {
+        frame.tail<3>() = frame.head<3>();
         forces = forces_rigid;
       }
       for (Eigen::Index i = 0; i < num_rows; ++i) {
@@ -98,7 +127,7 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
         const Complex f_rigid = resolved(row, forces_rigid, motion), f = resolved(row, forces, motion);
         samples.col(j).segment<4>(4 * i) << f_rigid.real(), f_rigid.imag(), f.real(), f.imag();
       }
-      samples.col(j).tail<2>() << forces_rigid.torque, forces.torque;
+      samples.col(j).segment<2>(4 * num_rows) << forces_rigid.torque, forces.torque;
     });
   };
   const TurnSeries turn = sample_turn(components, fill, sampling_options(linkage, responses, tolerance));
@@ -113,6 +142,7 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
   }
   result.torque_rigid = cut_rows(turn, 4 * num_rows, 1);
   result.torque = cut_rows(turn, 4 * num_rows + 1, 1);
+  result.frame = {cut_rows(turn, 4 * num_rows + 2, 3), cut_rows(turn, 4 * num_rows + 5, 3)};
   result.torque_error = std::max(left_out(turn, 4 * num_rows), left_out(turn, 4 * num_rows + 1));
   return result;
 }

@@ -68,9 +68,17 @@ struct JointForce {
   FourierSeries rigid, elastic;  // 2 components (x, y), or 1 (n)
 };
 
+// What the mechanism does to its frame: shaking force x, y (global axes) and shaking moment about the crank's pivot.
+// Motor and applied slider forces act against the frame too, so that the sum is gravity, inertia and external damping
+// of the moving parts alone.
+struct FrameForces {
+  FourierSeries rigid, elastic;  // 3 components
+};
+
 struct JointForces {
   std::vector<JointForce> joints;
   FourierSeries torque_rigid, torque;  // 1 component
+  FrameForces frame;
   // Estimated errors of any force component and of the torque, elastic or rigid, from sampling the turn and from
   // rounding: coefficients left out, twice, as what lies beyond the last one was folded onto those kept.
   double force_error = 0, torque_error = 0;
@@ -83,7 +91,7 @@ struct JointForces {
                                        double tolerance = 1e-13);
 
 // What the deflections alone add, in the same way: `elastic` and `torque` less the rigid ones, which are empty. Linear
-// in the responses. Without errors.
+// in the responses. Without errors and `frame`.
 [[nodiscard]] JointForces deflection_forces(const Linkage& linkage, double speed,
                                             const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
 

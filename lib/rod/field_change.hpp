@@ -6,8 +6,8 @@
 namespace hb {
 
 // max |w - finer w| / max |finer w| and of EJ w'' likewise, over rod and turn, tail included: at four places per
-// half-wave of the finest mode and as many angles at least per period of the highest harmonic. 0 where `finer` is; NaN
-// where one is not finite.
+// half-wave of the finest mode and as many angles at least per period of the highest harmonic that both and what is
+// between them are made of but for 0.003 of the accelerations. 0 where `finer` is; NaN where one is not finite.
 struct FieldChange {
   double deflection = 0, bending_moment = 0;
 };

@@ -1,5 +1,6 @@
 // Deflection and bending moment at places along the rod over the turn: sums of the terms of lib/rod/rod_terms.hpp.
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "lib/constants.hpp"
@@ -17,12 +18,13 @@ using rod_terms::shape_table;
 
 namespace {
 
-// Time functions at N angles.
+// Time functions, without harmonics above the highest, at N angles.
 class FunctionsOverTurn {
  public:
-  FunctionsOverTurn(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
-                    Eigen::Index N) {
+  FunctionsOverTurn(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q, Eigen::Index N,
+                    Eigen::Index highest = std::numeric_limits<Eigen::Index>::max()) {
     FourierSeries T = rod_terms::time_functions(link, rod, speed, q);
+    if (T.num_harmonics() > highest) T = fourier::resized(T, highest);
     beside_deflection_ = over_turn(T, N);
     if (link.elastic->shear)
       beside_curvature_ = over_turn(rod_terms::moment_functions(link, speed, q, std::move(T)), N);
@@ -36,6 +38,21 @@ class FunctionsOverTurn {
  private:
   Eigen::MatrixXd beside_deflection_, beside_curvature_;  // the second where it is another than the first
 };
+
+// The fewest harmonics without which less than 0.003 of the accelerations is missing: what modes left out change
+// is inertia.
+Eigen::Index telling_harmonics(const FourierSeries& q) {
+  constexpr double share = 0.003;
+  const Eigen::Index H = q.num_harmonics();
+  Eigen::VectorXd size(H + 1);
+  for (Eigen::Index n = 0; n <= H; ++n)
+    size(n) = static_cast<double>(n * n) * (q.c.col(n).real().cwiseAbs() + q.c.col(n).imag().cwiseAbs()).sum();
+  const double small = share * size.sum();
+  double left = 0;
+  Eigen::Index n = H;
+  while (n > 0 && (left += size(n)) <= small) --n;
+  return n;
+}
 
 // The largest |A B - C D| relative to the largest |C D|, shapes at places times functions at angles.
 double largest_change(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C,
@@ -67,12 +84,15 @@ FieldChange field_change(const Body& link, const RodCoefficients& rod, double sp
                          const FourierSeries& finer) {
   if (!q.c.allFinite() || !finer.c.allFinite()) return {nan, nan};
   const Eigen::Index I = q.num_components(), J = finer.num_components(), parts = std::max<Eigen::Index>(32, 4 * J);
-  const Eigen::Index N = rod_terms::angles_from(4 * std::max(q.num_harmonics(), finer.num_harmonics()));
+  FourierSeries change = fourier::resized(finer, std::max(q.num_harmonics(), finer.num_harmonics()));
+  change.c.topLeftCorner(I, q.c.cols()) -= q.c;
+  const Eigen::Index H = std::max({telling_harmonics(q), telling_harmonics(finer), telling_harmonics(change)});
+  const Eigen::Index N = rod_terms::angles_from(4 * H);
   const double l = link.length, step = l / static_cast<double>(parts);
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(parts - 1, step, l - step);  // both are zero at the joints
-  const FunctionsOverTurn some(link, rod, speed, q, N);
+  const FunctionsOverTurn some(link, rod, speed, q, N, H);
   end_if_wished();
-  const FunctionsOverTurn all(link, rod, speed, finer, N);
+  const FunctionsOverTurn all(link, rod, speed, finer, N, H);
   end_if_wished();
   const double shear = shear_flexibility(link);
   const auto deflection = [&](Eigen::Index modes) -> Eigen::MatrixXd {

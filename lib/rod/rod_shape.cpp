@@ -208,7 +208,7 @@ RodPeak peak(const rod_terms::ShapeTable& table, const FourierSeries& T, int ord
 
 // Twice as many as `samples_per_wave` asks for.
 Eigen::VectorXd places_along(double l, Eigen::Index I) {
-  return Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(48, samples_per_wave * I) + 1, 0, l);
+  return Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(32, samples_per_wave * I) + 1, 0, l);
 }
 
 }  // namespace

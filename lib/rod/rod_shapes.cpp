@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lib/constants.hpp"
+#include "lib/fourier/waves.hpp"
 
 namespace hb {
 
@@ -65,10 +66,11 @@ RodShapes::RodShapes(double length, Eigen::Index num_modes, double flexibility)
 Eigen::MatrixXd RodShapes::values(double x, int first, int count) const {
   const double s = x / l_;
   std::vector<Complex> wave(static_cast<std::size_t>(I_) + 1, Complex(1));  // e^{i k pi s}
+  fourier::Waves next(pi * s);
   Eigen::MatrixXd rows(count, size());
   for (Eigen::Index k = 1; k <= I_; ++k) {
     const double K = static_cast<double>(k) * pi;
-    const Complex z = wave[static_cast<std::size_t>(k)] = std::polar(1.0, K * s);
+    const Complex z = wave[static_cast<std::size_t>(k)] = next.next();
     const std::array<double, 4> cycle = {z.imag(), z.real(), -z.imag(), -z.real()};
     double power = std::pow(K / l_, first);
     for (int r = 0; r < count; ++r, power *= K / l_)

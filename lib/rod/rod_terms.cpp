@@ -115,6 +115,23 @@ Eigen::MatrixXd shape_matrix(const RodShapes& shapes, const Eigen::Ref<const Eig
   return rows;
 }
 
+ShapeTable::ShapeTable(double l, Eigen::Index I, double shear, const Eigen::Ref<const Eigen::VectorXd>& places)
+    : length(l),
+      num_modes(I),
+      flexibility(shear),
+      x(places),
+      shapes(l, I, shear),
+      deflection(x.size(), shapes.size()),
+      curvature(x.size(), shapes.size()) {
+  for (Eigen::Index j = 0; j < x.size(); ++j) {
+    const Eigen::MatrixXd orders = shapes.values(x(j), 0, 3);
+    deflection.row(j) = orders.row(0);
+    curvature.row(j) = orders.row(2);
+  }
+  largest_deflection = deflection.cwiseAbs().colwise().maxCoeff();
+  largest_curvature = curvature.cwiseAbs().colwise().maxCoeff();
+}
+
 const ShapeTable& shape_table(double length, Eigen::Index num_modes, double flexibility,
                               const Eigen::Ref<const Eigen::VectorXd>& x) {
   constexpr std::size_t most = 16;

@@ -47,16 +47,7 @@ struct ShapeTable {
   Eigen::MatrixXd deflection, curvature;  // orders 0 and 2 at x
   Eigen::RowVectorXd largest_deflection, largest_curvature;  // of each shape over x
 
-  ShapeTable(double l, Eigen::Index I, double shear, const Eigen::Ref<const Eigen::VectorXd>& places)
-      : length(l),
-        num_modes(I),
-        flexibility(shear),
-        x(places),
-        shapes(l, I, shear),
-        deflection(shape_matrix(shapes, x, 0)),
-        curvature(shape_matrix(shapes, x, 2)),
-        largest_deflection(deflection.cwiseAbs().colwise().maxCoeff()),
-        largest_curvature(curvature.cwiseAbs().colwise().maxCoeff()) {}
+  ShapeTable(double l, Eigen::Index I, double shear, const Eigen::Ref<const Eigen::VectorXd>& places);
 };
 
 // Kept by each thread for the rods it met last. Valid until the next call.

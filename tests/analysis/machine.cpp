@@ -5,7 +5,6 @@
 
 #include "hb/analysis/bearing_load.hpp"
 #include "hb/analysis/drive.hpp"
-#include "hb/analysis/frame_forces.hpp"
 #include "hb/analysis/slider_motion.hpp"
 #include "hb/analysis/static_deflection.hpp"
 #include "hb/analysis/steady.hpp"
@@ -26,12 +25,6 @@ SteadyResult steady_of(const char* name, double rpm) {
   return steady(read_scene(machine_scenes + name), request);
 }
 
-FrameForces frame_of(const Linkage& linkage, const SteadyResult& found) {
-  std::vector<LinkResponse> responses;
-  for (const RodResult& rod : found.rods) responses.push_back({rod.link, rod.steady->q});
-  return frame_forces(linkage, found.speed, responses);
-}
-
 const FourierSeries& force_at(const SteadyResult& found, const std::string& name) {
   for (const JointForce& joint : found.forces->joints)
     if (joint.name == name) return joint.elastic;
@@ -43,7 +36,7 @@ TEST(FrameForces, AreTheSumOverPivotsGuidesMotorAndAppliedForces) {
   const Scene scene = read_scene(machine_scenes + "slider_crank.toml");
   const auto& linkage = std::get<Linkage>(scene.model);
   const SteadyResult found = steady_of("slider_crank.toml", 2500);
-  const FrameForces frame = frame_of(linkage, found);
+  const FrameForces& frame = found.forces->frame;
   const auto& slider = std::get<Slider>(linkage.dyads[0].closing);
   double size = 0, moment_size = 0;
   for (int j = 0; j < 40; ++j) {
@@ -69,7 +62,7 @@ TEST(FrameForces, OfTheSixLinkMechanismAreThoseAtItsThreePivots) {
   const Scene scene = read_scene(machine_scenes + "six_link.toml");
   const auto& linkage = std::get<Linkage>(scene.model);
   const SteadyResult found = steady_of("six_link.toml", 900);
-  const FrameForces frame = frame_of(linkage, found);
+  const FrameForces& frame = found.forces->frame;
   for (int j = 0; j < 20; ++j) {
     const double tau = 2 * pi * j / 20;
     const std::vector<BodyMotion> motion = motion_at(linkage, tau);

@@ -181,7 +181,7 @@ TEST(NonlinearFromCpp, CycleAndShakingForceAreThoseOfTheLinearTheoryAtLowSpeed) 
   EXPECT_LT(found.error, 0.01 * found.max_abs);
   const MachineLoads loads = *machine_loads(*straight.model, straight);
   for (double tau = 0; tau < 6; tau += 0.7) {
-    const Eigen::VectorXd a = fourier::evaluate(bent.frame->elastic, tau),
+    const Eigen::VectorXd a = fourier::evaluate(bent.forces->frame.elastic, tau),
                           b = fourier::evaluate(loads.frame.elastic, tau),
                           rigid = fourier::evaluate(loads.frame.rigid, tau);
     EXPECT_NEAR((a - b).head<2>().norm(), 0, 1e-4 * loads.shaking_force.value) << tau;
@@ -199,11 +199,12 @@ TEST(NonlinearFromCpp, TheMeanShakingForceOfAStronglyBentMotionIsTheWeight) {
   const Body& rod = linkage.dyads[0].coupler;
   const double weight =
       9.80665 * (rod.mass + std::get<Slider>(linkage.dyads[0].closing).mass + linkage.crank.body.mass);
-  ASSERT_TRUE(found.frame);
-  const double size = fourier::max_abs(found.frame->elastic, 0).value;
-  EXPECT_GT(fourier::max_abs(found.frame->elastic, 1).value, 1.5 * fourier::max_abs(found.frame->rigid, 1).value);
-  EXPECT_NEAR(found.frame->elastic.c(0, 0).real(), 0, 1e-6 * size);
-  EXPECT_NEAR(found.frame->elastic.c(1, 0).real(), -weight, 1e-6 * size);
+  ASSERT_TRUE(found.forces);
+  const FrameForces& frame = found.forces->frame;
+  const double size = fourier::max_abs(frame.elastic, 0).value;
+  EXPECT_GT(fourier::max_abs(frame.elastic, 1).value, 1.5 * fourier::max_abs(frame.rigid, 1).value);
+  EXPECT_NEAR(frame.elastic.c(0, 0).real(), 0, 1e-6 * size);
+  EXPECT_NEAR(frame.elastic.c(1, 0).real(), -weight, 1e-6 * size);
 }
 
 // Against every place of a fine grid, from the axial force at the exact model's own points.

@@ -124,6 +124,23 @@ TEST(Fourier, ExtremaAreNoLowerThanAnySampleAndLieWhereTheDerivativeVanishes) {
   }
 }
 
+TEST(Fourier, RangesOfAllComponentsAreThoseOfEach) {
+  std::vector<FourierSeries> functions = functions_of_all_kinds(3);
+  functions.front().c.row(1).tail(250).setZero();  // a constant among them
+  for (const FourierSeries& f : functions) {
+    const std::vector<Range> ranges = fourier::ranges(f);
+    const Eigen::VectorXd largest = fourier::largest_values(f);
+    ASSERT_EQ(ranges.size(), 3U);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const Range alone = fourier::range(f, i), &of = ranges[static_cast<std::size_t>(i)];
+      const double rounding = 100 * eps * fourier::wiener_norm(f, i);
+      EXPECT_NEAR(of.min.value, alone.min.value, rounding);
+      EXPECT_NEAR(of.max.value, alone.max.value, rounding);
+      EXPECT_NEAR(largest(i), fourier::max_abs(f, i).value, rounding);
+    }
+  }
+}
+
 TEST(Fourier, LargestLengthIsNoLowerThanThatOfAnySample) {
   for (const FourierSeries& f : functions_of_all_kinds(2)) {
     const double sampled = fourier::synthesise(f, 1 << 15).colwise().norm().maxCoeff();

@@ -344,7 +344,7 @@ MachineFiles machine_files(const SceneModel& model, const SpeedResult& result) {
                                                result.speed, rod.steady->q, points);
   }
   if (!result.forces) return files;
-  files.frame = machine_loads(model, result)->frame;
+  files.frame = result.forces->frame;
   files.sliders = slider_motions(*model.linkage(), result.speed);
   return files;
 }

@@ -259,7 +259,7 @@ SpeedResult as_speed_result(const NonlinearResult& result) {
 MachineFiles machine_files(const NonlinearResult& result) {
   MachineFiles files;
   for (const NonlinearRod& rod : result.rods) files.envelopes.push_back(rod.envelope);
-  files.frame = result.frame;
+  if (result.forces) files.frame = result.forces->frame;
   files.sliders = result.sliders;
   return files;
 }

@@ -3,10 +3,10 @@
 namespace hb {
 
 std::optional<MachineLoads> machine_loads(const Linkage& linkage, const NonlinearResult& result, LoadDetail detail) {
-  if (!result.forces || !result.frame) return std::nullopt;
+  if (!result.forces) return std::nullopt;
   MachineLoads loads;
   loads.bearings = bearing_loads(*result.forces, result.turns, detail);
-  loads.frame = *result.frame;
+  loads.frame = result.forces->frame;
   const auto resultant = [&](const FourierSeries& frame) {
     Extremum peak = fourier::largest_length(FourierSeries(Eigen::MatrixXcd(frame.c.topRows(2))));
     peak.crank_angle *= result.turns;

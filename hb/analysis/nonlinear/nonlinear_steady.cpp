@@ -170,10 +170,9 @@ void add_forces(const ExactModel& exact, NonlinearResult& result) {
   }
   forces.torque = fourier::analyse(samples.values.row(row));
   over_all_turns(forces.torque_rigid);
+  forces.frame.elastic = fourier::analyse(samples.frame);
+  over_all_turns(forces.frame.rigid);
   result.forces = std::move(forces);
-  FrameForces frame{frame_forces(linkage, result.speed, {}).rigid, fourier::analyse(samples.frame)};
-  over_all_turns(frame.rigid);
-  result.frame = std::move(frame);
   if (samples.sliders.rows() > 0)
     result.sliders = sliders_of(linkage, fourier::analyse(samples.sliders), result.speed / turns);
 }

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "hb/analysis/frame_forces.hpp"
 #include "hb/analysis/linkage_analysis.hpp"
 #include "hb/analysis/nonlinear/rod_peaks.hpp"
 #include "hb/analysis/slider_motion.hpp"
@@ -77,7 +76,6 @@ struct NonlinearResult {
   std::optional<Stability> stability;  // of all rods together
   std::optional<JointForces> forces;
   std::optional<ForceErrors> force_errors;
-  std::optional<FrameForces> frame;  // beside the forces
   std::optional<FrameErrors> frame_errors;
   std::vector<SliderMotion> sliders;  // of the bent mechanism; beside the forces
   std::vector<OtherMotion> others;

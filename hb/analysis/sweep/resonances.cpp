@@ -18,9 +18,8 @@ constexpr double least_prominence = 1e-8;
 std::optional<ResponseSample> sample_at(const RodAlong& rod, double x) {
   const std::optional<FourierSeries> q = rod.rough_response(x);
   if (!q) return std::nullopt;
-  ResponseSample sample{x, {}};
-  for (Eigen::Index i = 0; i < q->num_components(); ++i) sample.max_abs.push_back(fourier::max_abs(*q, i).value);
-  return sample;
+  const Eigen::VectorXd largest = fourier::largest_values(*q);
+  return ResponseSample{x, {largest.begin(), largest.end()}};
 }
 
 // Samples of q_j about x, on both flanks, and where it still climbs there a few steps beyond, as far as the ends of the

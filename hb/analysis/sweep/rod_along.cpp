@@ -56,13 +56,13 @@ std::optional<PeakResponses> RodAlong::responses(int component, double about) co
   };
   const PeakAccuracy accuracy = peak_accuracy(settings());
   const SteadyOptions sure{.tolerance = accuracy.fine, .method = settings().steady_method};
-  const std::optional<SteadyState> state = solved(about, sure);
-  if (!state) return std::nullopt;
-  // What is interpolated has one number of harmonics, those needed here and some more.
   SteadyOptions rough = sure, fine = sure;
   rough.tolerance = part_of_residual * accuracy.rough;
   fine.tolerance = part_of_residual * accuracy.fine;
   rough.without_bound = fine.without_bound = true;
+  // What is interpolated has one number of harmonics, those needed here and some more.
+  const std::optional<SteadyState> state = solved(about, fine);
+  if (!state) return std::nullopt;
   fine.num_harmonics = static_cast<int>(more_harmonics * state->num_harmonics);
   return PeakResponses{alone(rough), alone(fine), alone(sure)};
 }

@@ -16,10 +16,11 @@ namespace {
 
 bool wants_steady(const Only& only) { return only.steady || only.shape || only.reactions; }
 
-TurnRange turn_range(const FourierSeries& series, Eigen::Index component) {
-  if (series.num_harmonics() < 0) return {};
-  const Range range = fourier::range(series, component);
-  return {range.min.value, range.max.value};
+std::vector<TurnRange> turn_ranges(const FourierSeries& series) {
+  if (series.num_harmonics() < 0) return std::vector<TurnRange>(static_cast<std::size_t>(series.num_components()));
+  std::vector<TurnRange> ranges;
+  for (const Range& range : fourier::ranges(series)) ranges.push_back({range.min.value, range.max.value});
+  return ranges;
 }
 
 StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
@@ -46,15 +47,17 @@ StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
 }
 
 // The response with more modes, for errors by comparison. Where q is accurate, what more modes add is not seen below
-// `accuracy` of it; else it is so much more accurate that the difference shows the error of q, whose highest harmonics
-// count most in joint forces. Needs no error bound of its own. Empty where there is none.
-FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings) {
+// `accuracy` of it, and begins with q; else it is so much more accurate that the difference shows the error of q, whose
+// highest harmonics count most in joint forces. Needs no error bound of its own. Empty where there is none.
+FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings, const FourierSeries& q) {
   constexpr double accuracy = 1e-6, better = 1e-2;
   SteadyOptions options = response_options(settings);
   const bool accurate = options.tolerance <= better * accuracy;
   options.tolerance = accurate ? accuracy : std::min(accuracy, better * options.tolerance);
   const Eigen::Index num_modes = comparison_modes(rod.num_modes);
-  if (std::optional<FourierSeries> q = rough_rod(rod.finer, num_modes, speed, options.tolerance)) return *std::move(q);
+  const FourierSeries start = accurate ? q : FourierSeries();
+  if (std::optional<FourierSeries> finer = rough_rod(rod.finer, num_modes, speed, options.tolerance, start))
+    return *std::move(finer);
   SteadyState state = solve_rod(rod.finer, num_modes, speed, options);
   return state.status == SteadyStatus::singular ? FourierSeries() : std::move(state.q);
 }
@@ -116,10 +119,10 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     point.error_bound = state.error_bound;
     point.resonance_distance = state.resonance_distance;
     if (state.status != SteadyStatus::singular) {
-      for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
-        point.max_abs.push_back(fourier::max_abs(state.q, i).value);
+      for (const double value : fourier::largest_values(state.q)) point.max_abs.push_back(value);
       responses.q = std::move(state.q);
-      if (rod.finer.num_modes() > 0) compare(responses, model, rod, speed, with_more_modes(rod, speed, settings));
+      if (rod.finer.num_modes() > 0)
+        compare(responses, model, rod, speed, with_more_modes(rod, speed, settings, responses.q));
       if (only.shape && rod.reported) add_shape(point, model, rod, speed, responses);
     }
   }
@@ -156,16 +159,13 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
                                                                  responses, {}, more_modes)
                                                   : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   for (const JointForce& joint : forces.joints) {
-    for (Eigen::Index c = 0; c < joint.rigid.num_components(); ++c) {
-      point.joints.push_back(turn_range(joint.elastic, c));
-      point.joints_rigid.push_back(turn_range(joint.rigid, c));
-    }
+    for (const TurnRange& range : turn_ranges(joint.elastic)) point.joints.push_back(range);
+    for (const TurnRange& range : turn_ranges(joint.rigid)) point.joints_rigid.push_back(range);
   }
-  point.torque = turn_range(forces.torque, 0);
-  point.torque_rigid = turn_range(forces.torque_rigid, 0);
+  point.torque = turn_ranges(forces.torque).front();
+  point.torque_rigid = turn_ranges(forces.torque_rigid).front();
   point.machine = machine_point(
-      machine_loads(*model.linkage(), point.speed, forces, responses, *point.force_errors, LoadDetail::largest),
-      point.speed);
+      machine_loads(*model.linkage(), point.speed, forces, *point.force_errors, LoadDetail::largest), point.speed);
   return forces;
 }
 
@@ -193,7 +193,8 @@ MachinePoint machine_point(const MachineLoads& loads, double speed) {
   MachinePoint point;
   for (const BearingLoad& bearing : loads.bearings) point.bearings.push_back(bearing.elastic.value);
   point.shaking_force = loads.shaking_force.value;
-  point.shaking_moment = turn_range(loads.frame.elastic, 2);
+  const Range moment = fourier::range(loads.frame.elastic, 2);
+  point.shaking_moment = {moment.min.value, moment.max.value};
   point.drive = loads.drive;
   point.speed_fluctuation = loads.speed_fluctuation;
   point.speed_fluctuation_error = loads.speed_fluctuation_error;
