@@ -22,8 +22,6 @@ double bytes_of_stiffness(const HillSystem& system, double n) {
   return static_cast<double>(sizeof(std::complex<double>)) * static_cast<double>(columns) * n * n;
 }
 
-bool wants_response(const Only& only) { return only.steady || only.reactions || only.shape; }
-
 }  // namespace
 
 double bytes_of(const SceneModel& model) {
@@ -45,7 +43,7 @@ double expected_bytes(const SceneModel& model, const Settings& settings) {
     const auto finer = static_cast<double>(comparison_modes(rod.num_modes));
     const double more = rod.link >= 0 ? finer / static_cast<double>(rod.num_modes) : 1;
     double bytes = 0;
-    if (wants_response(only)) bytes = for_response * bytes_of_stiffness(rod.system, unknowns * more);
+    if (only.response()) bytes = for_response * bytes_of_stiffness(rod.system, unknowns * more);
     if (only.stability) bytes = std::max(bytes, for_exponents * bytes_of_stiffness(rod.system, unknowns));
     if (only.shape && rod.reported) bytes += for_shape * static_cast<double>(model.coefficients.num_samples) * finer;
     most = std::max(most, bytes);
@@ -60,7 +58,7 @@ double expected_bytes_of_points(const SceneModel& model, const Settings& setting
   double bytes = of_a_point + (only.reactions || only.shape ? of_forces_and_shapes : 0);
   for (const RodModel& rod : model.rods)
     bytes += static_cast<double>(rod.num_modes) *
-             ((wants_response(only) ? of_a_response : 0) + (only.stability ? of_exponents : 0));
+             ((only.response() ? of_a_response : 0) + (only.stability ? of_exponents : 0));
   return static_cast<double>(points) * bytes * (documents ? 2 : 1);
 }
 

@@ -39,7 +39,7 @@ double expected_seconds(const SceneModel& model, const Settings& settings) {
     }
     return seconds;
   }
-  const bool response = only.steady || only.reactions || only.shape;
+  const bool response = only.response();
   return seconds * ((only.all_exponents() ? for_exponents : 0) + (response ? 1 - for_exponents : 0));
 }
 

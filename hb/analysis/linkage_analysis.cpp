@@ -23,8 +23,6 @@ constexpr double degrees_per_radian = 180 / std::numbers::pi;
 
 bool wants_modes_error(const Only& only) { return only.steady || only.shape; }
 
-bool wants_response(const Only& only) { return only.steady || only.shape || only.reactions; }
-
 const Body& link_of(const SceneModel& model, const RodModel& rod) { return *body_at(*model.linkage(), rod.link); }
 
 const RodCoefficients& coefficients_of(const SceneModel& model, const RodModel& rod) {
@@ -249,7 +247,7 @@ void judge_growth(const SceneModel& model, double speed, std::span<const LinearR
 // What the exact model would change, where q was computed.
 void judge_theory(const SceneModel& model, double speed, SpeedResult& result) {
   if (!model.linkage() || result.rods.empty()) return;
-  if (!wants_response(result.computed)) {
+  if (!result.computed.response()) {
     result.stages.push_back({"theory error", 0, "q was not asked for", true});
     return;
   }
@@ -342,7 +340,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
     };
     // Joint forces carry the vibration of every rod, reported or not, so does what bending does to the mechanism, and
     // the mechanism is stable where every rod is.
-    const bool all_needed = model.linkage() && (wants_response(settings.only) || settings.only.stability);
+    const bool all_needed = model.linkage() && (settings.only.response() || settings.only.stability);
     for (RodModel& rod : model.rods) {
       rod.reported = asked(rod);
       if (!rod.reported && !all_needed) {
@@ -371,7 +369,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
       }
     }
     model.stages.push_back({"Ritz matrices", ritz_watch.seconds(), ""});
-    if (wants_response(settings.only) && !is_auto(settings.modes))
+    if (settings.only.response() && !is_auto(settings.modes))
       model.exact = std::make_shared<const ExactModel>(
           theory_model(*linkage, std::vector<Eigen::Index>(model.rods.size(), start_modes(settings.modes))));
   }
@@ -397,9 +395,9 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
     if (auto_modes && rod.link >= 0 && only.stability) {
       entry.growth_modes = modes_for_growth(model, rod, speed, settings, entry, stages);
       if (only.verdict) entry.growth_modes_error.reset();
-      if (one_number || !wants_response(only)) entry.num_modes = entry.growth_modes;
+      if (one_number || !only.response()) entry.num_modes = entry.growth_modes;
     }
-    if (wants_response(only)) {
+    if (only.response()) {
       solve_steady(model, rod, speed, settings, shows_cut || only.reactions, entry.num_modes, entry, stages);
       if (!shows_cut) entry.cut.reset();
       if (one_number && only.stability) entry.growth_modes = entry.num_modes;

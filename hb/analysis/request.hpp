@@ -44,6 +44,8 @@ struct Only {
   bool verdict = false;  // of stability the verdict alone, from bounds where they prove it
   bool growth = false;  // of stability the growth rate and the verdict: the leading exponents alone
 
+  // The periodic motion, or what follows from it.
+  [[nodiscard]] bool response() const { return steady || reactions || shape; }
   // Frequencies and modes are known.
   [[nodiscard]] bool all_exponents() const { return stability && !verdict && !growth; }
 };

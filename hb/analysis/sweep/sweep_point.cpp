@@ -14,8 +14,6 @@
 namespace hb {
 namespace {
 
-bool wants_steady(const Only& only) { return only.steady || only.shape || only.reactions; }
-
 std::vector<TurnRange> turn_ranges(const FourierSeries& series) {
   if (series.num_harmonics() < 0) return std::vector<TurnRange>(static_cast<std::size_t>(series.num_components()));
   std::vector<TurnRange> ranges;
@@ -112,7 +110,7 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
   RodPoint point;
   responses.scaled = scale_system(rod.system, speed);
   const ScaledSystem& scaled = responses.scaled;
-  if (wants_steady(only)) {
+  if (only.response()) {
     SteadyState state = solve_rod(rod.system, rod.num_modes, scaled, response_options(settings));
     point.steady = state.status;
     point.num_harmonics = state.num_harmonics;
