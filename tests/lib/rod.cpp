@@ -203,7 +203,7 @@ TEST(RodShape, ChangeIsTheLargestDifferenceOfTwoFields) {
     return dense_steady_state(ritz_system(rod, coefficients.rods[0], modes), 100, harmonics);
   };
   const FourierSeries q = response(3, 20), finer = response(9, 24);
-  constexpr Eigen::Index places = 36, angles = 96;
+  constexpr Eigen::Index places = 36, angles = 960;
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(places + 1, 0, rod.length);
   const RodField some = rod_field(rod, coefficients.rods[0], 100, q, x, angles),
                  all = rod_field(rod, coefficients.rods[0], 100, finer, x, angles);
@@ -212,8 +212,9 @@ TEST(RodShape, ChangeIsTheLargestDifferenceOfTwoFields) {
   };
   const FieldChange found = field_change(rod, coefficients.rods[0], 100, q, finer);
   const double w = change(some.w, all.w), moment = change(some.bending_moment, all.bending_moment);
-  EXPECT_NEAR(found.deflection, w, 1e-6 * w);
-  EXPECT_NEAR(found.bending_moment, moment, 1e-6 * moment);
+  constexpr double told = 0.03;  // by the harmonics that tell, at four angles each
+  EXPECT_NEAR(found.deflection, w, told * w);
+  EXPECT_NEAR(found.bending_moment, moment, told * moment);
   EXPECT_EQ(field_change(rod, coefficients.rods[0], 100, q, q).deflection, 0);
   FourierSeries wrong = finer;
   wrong.c(0, 1) = hb::nan;
