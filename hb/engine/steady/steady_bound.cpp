@@ -64,97 +64,6 @@ class RandomNumbers {
   std::optional<std::mt19937> further_;
 };
 
-// A residual, and what of it is answered: window and rows H < k <= R beyond, R the last one that the window reaches or
-// that of the residual.
-class Chain {
- public:
-  Chain(Operator& A, const Spectrum& r, double response, const Eigen::MatrixXd& T)
-      : A_(A),
-        T_(T),
-        H_(A.num_harmonics()),
-        R_(std::max(H_, std::min(A.last_row(), r.rows() - 1))),
-        response_(response),
-        rho_(Spectrum::Zero(R_ + 1, A.num_modes())) {
-    const Index rows = std::min(R_ + 1, r.rows());
-    rho_.topRows(rows) = r.topRows(rows);
-    if (r.rows() > R_ + 1) unanswered_ = 2 * sizes_of_rows(system(), r.bottomRows(r.rows() - R_ - 1), R_ + 1, T).sum();
-    double step_out = 0;
-    for (Index i = 0; i < rho_.cols(); ++i)
-      for (Index k = H_ + 1; k <= R_ + system().P; ++k) {
-        const double size = modulus(system().D(i, k));
-        tail_response_ = std::max(tail_response_, system().magnitude(i, k) / size);
-        if (k <= R_)
-          step_out = std::max(step_out, system().coupling(i) / size);
-        else
-          nearest_ = std::min(nearest_, size);
-      }
-    round_ = response * step_out * step_out;
-  }
-
-  bool has_tail() const { return R_ > H_; }
-  // Contraction of one round, window -> tail -> window, at most.
-  double round() const { return round_; }
-  Spectrum window() const { return rho_.topRows(H_ + 1); }
-  // Size in q of the last answers.
-  double size() const { return size_in_q(e_, T_); }
-
-  void answer_window(const Spectrum& z) { e_.topRows(H_ + 1) = z; }
-  void answer_tail() {
-    if (e_.size() == 0) {
-      e_.setZero(R_ + 1, rho_.cols());
-      tail_.setZero(R_ - H_, rho_.cols());
-    }
-    for (Index i = 0; i < rho_.cols(); ++i)
-      for (Index k = H_ + 1; k <= R_; ++k) e_(k, i) = rho_(k, i) == 0.0 ? 0.0 : rho_(k, i) / system().D(i, k);
-    tail_ += e_.bottomRows(R_ - H_);
-  }
-  // rho -= A e of one part or both.
-  void take(bool window, bool outside) {
-    Spectrum part = e_.topRows((outside ? R_ : H_) + 1);
-    if (!window) part.topRows(H_ + 1).setZero();
-    A_.couple(part, R_, product_);
-    rho_ -= product_;
-    rho_.topRows(H_ + 1) -= A_.D().cwiseProduct(part.topRows(H_ + 1));
-    for (Index k = H_ + 1; k < part.rows(); ++k)
-      for (Index i = 0; i < rho_.cols(); ++i) rho_(k, i) -= system().D(i, k) * part(k, i);
-  }
-
-  // What the response may make of rho: of all rows, the larger of the window's and of the largest |D|/D beyond, as far
-  // as K reaches; and of the window's rows alone.
-  double left() const { return amplified(sizes(R_), std::max(response_, tail_response_), T_); }
-  double left_in_window() const { return amplified(sizes(H_), response_, T_); }
-
-  // Size in q of what is answered beyond the window.
-  double outside() const {
-    if (tail_.size() == 0) return unanswered_;
-    Eigen::VectorXd sizes(tail_.cols());
-    for (Index i = 0; i < sizes.size(); ++i) sizes(i) = 2 * moduli(tail_.col(i)).sum();
-    return weigh(sizes, T_) + unanswered_;
-  }
-  // Rows beyond R feel the tail through K, and answer it.
-  double beyond() const {
-    const double outside = this->outside();
-    const double reaching = system().coupling.maxCoeff();
-    return outside > 0 && reaching > 0 ? outside * reaching / nearest_ * (1 + round_) : 0;
-  }
-
- private:
-  const WeightedSystem& system() const { return A_.system(); }
-  // Of rows up to `last`, sums over harmonics of |rho|/|D|, |D| without cancellation.
-  Eigen::VectorXd sizes(Index last) const {
-    Eigen::VectorXd sizes = wiener(moduli(rho_.topRows(H_ + 1)).cwiseQuotient(A_.magnitude()));
-    for (Index i = 0; i < sizes.size(); ++i)
-      for (Index k = H_ + 1; k <= last; ++k) sizes(i) += 2 * modulus(rho_(k, i)) / system().magnitude(i, k);
-    return sizes;
-  }
-
-  Operator& A_;
-  const Eigen::MatrixXd& T_;
-  Index H_, R_;
-  double response_, tail_response_ = 1, nearest_ = HUGE_VAL, round_ = 0, unanswered_ = 0;
-  Spectrum rho_, e_, tail_, product_;
-};
-
 }  // namespace
 
 double size_in_q(const Spectrum& x, const Eigen::MatrixXd& T) { return weigh(wiener_norms(x), T); }
@@ -200,42 +109,46 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   // sees what it missed.
   const double accuracy = std::max(0.05 / response, 1e-12);
   constexpr int most_steps = 8;
-  Chain chain(A, r, response, T);
-  Correction result{Spectrum::Zero(A.num_harmonics() + 1, A.num_modes()), 0, HUGE_VAL};
-  const auto settled = [&] {
-    const double left = chain.left();
-    if (left <= negligible) result.rest = left;
-    return left <= negligible;
+  const WeightedSystem& s = A.system();
+  const Index H = A.num_harmonics(), I = A.num_modes(), R = std::max(H, std::min(A.last_row(), r.rows() - 1));
+  Correction result{Spectrum::Zero(H + 1, I), 0, HUGE_VAL};
+  Spectrum rho = Spectrum::Zero(R + 1, I), e = rho, tail = rho, product, z;
+  rho.topRows(std::min(R + 1, r.rows())) = r.topRows(std::min(R + 1, r.rows()));
+  const auto take = [&](bool window, bool outside) {  // rho -= A e of one part or both
+    Spectrum part = e.topRows((outside ? R : H) + 1);
+    if (!window) part.topRows(H + 1).setZero();
+    A.couple(part, R, product);
+    rho -= product;
+    rho.topRows(H + 1) -= A.D().cwiseProduct(part.topRows(H + 1));
+    for (Index k = H + 1; k < part.rows(); ++k)
+      for (Index i = 0; i < I; ++i) rho(k, i) -= s.D(i, k) * part(k, i);
   };
-  bool done = settled();
-  if (!done && chain.left_in_window() <= 0.5 * negligible) {
-    chain.answer_tail();
-    chain.take(false, true);
-    done = settled();
-  }
-  Spectrum z;
+  // Contraction of one round, window -> tail -> window, at most.
+  double step_out = 0;
+  for (Index i = 0; i < I; ++i)
+    for (Index k = H + 1; k <= R; ++k) step_out = std::max(step_out, s.coupling(i) / modulus(s.D(i, k)));
+  const double round = response * step_out * step_out;
   double previous = 0, before = 0;
-  for (int step = 0; step < most_steps && !done; ++step) {
-    chain.answer_tail();
+  for (int step = 0; step < most_steps; ++step) {
+    for (Index i = 0; i < I; ++i)
+      for (Index k = H + 1; k <= R; ++k) e(k, i) = rho(k, i) == 0.0 ? 0.0 : rho(k, i) / s.D(i, k);
+    tail.bottomRows(R - H) += e.bottomRows(R - H);
     // The first time window and tail at once, then one after the other: the tail's answer may be at resonance.
-    if (step > 0 && chain.has_tail()) {
-      chain.take(false, true);
-      if (settled()) break;
-    }
-    if (!inverse.solve(chain.window(), accuracy, z)) break;
-    chain.answer_window(z);
+    if (step > 0 && R > H) take(false, true);
+    if (!inverse.solve(rho.topRows(H + 1), accuracy, z)) break;
+    e.topRows(H + 1) = z;
     result.window += z;
-    const double size = chain.size();
+    const double size = size_in_q(e, T);
     if (!std::isfinite(size)) {
       result.rest = HUGE_VAL;
       break;
     }
     // Nothing to shrink against at first.
     const double ratio = step > 0 ? size / previous : HUGE_VAL, last_ratio = step > 1 ? previous / before : HUGE_VAL;
-    const bool shrinking = ratio <= 0.3 && (chain.round() <= 0.3 || last_ratio <= 0.3);
-    const double rate = std::max(ratio, chain.round() <= 0.3 ? 0 : last_ratio);
-    if (size == 0) {
-      result.rest = 0;
+    const bool shrinking = ratio <= 0.3 && (round <= 0.3 || last_ratio <= 0.3);
+    const double rate = std::max(ratio, round <= 0.3 ? 0 : last_ratio);
+    if (size == 0 || (step == 0 && size <= negligible)) {
+      result.rest = size;
       break;
     }
     if (shrinking || (step + 1 == most_steps && rate <= 0.9)) {
@@ -247,11 +160,19 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
     }
     before = previous;
     previous = size;
-    chain.take(true, step == 0);
-    done = settled();
+    take(true, step == 0);
   }
-  result.outside = chain.outside();
-  result.rest += chain.beyond();
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(I);
+  for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
+  result.outside = weigh(sizes, T);
+  if (r.rows() > R + 1) result.outside += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
+  // Rows beyond R feel the tail through K, and answer it.
+  double reaching = 0, nearest = HUGE_VAL;
+  for (Index i = 0; i < I; ++i) {
+    for (Index k = R + 1; k <= R + s.P; ++k) nearest = std::min(nearest, modulus(s.D(i, k)));
+    reaching = std::max(reaching, s.coupling(i));
+  }
+  if (result.outside > 0 && reaching > 0) result.rest += result.outside * reaching / nearest * (1 + round);
   return result;
 }
 

@@ -145,7 +145,7 @@ class Solver {
   bool solve(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, Spectrum& r) {
     const Index H = A.num_harmonics();
     const double relative = std::clamp(0.03 * options_.tolerance, 1e-14, 1e-3),
-                 aim = options_.without_bound ? 0.5 * relative : std::clamp(1e-5 * options_.tolerance, 3e-15, 1e-3);
+                 aim = options_.without_bound ? 0.5 * relative : std::clamp(1e-5 * options_.tolerance, 5e-15, 1e-3);
     double last = HUGE_VAL;
     Spectrum change;
     r = A.residual(x);
