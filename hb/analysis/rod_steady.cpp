@@ -8,7 +8,11 @@
 namespace hb {
 namespace {
 
-double largest(const FourierSeries& series) { return fourier::largest_values(series).maxCoeff(); }
+double largest(const FourierSeries& series) {
+  double value = 0;
+  for (Eigen::Index i = 0; i < series.num_components(); ++i) value = std::max(value, fourier::max_abs(series, i).value);
+  return value;
+}
 
 }  // namespace
 
@@ -29,12 +33,12 @@ SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const Sc
   return state;
 }
 
-std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed, double accuracy,
-                                       const FourierSeries& start) {
+std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
+                                       double accuracy) {
   constexpr double of_residual = 0.1;
-  const double tolerance = of_residual * accuracy / nearest_amplification(system, speed);
-  const FourierSeries& from = system.num_modes() == num_modes ? start : FourierSeries();
-  const std::optional<FourierSeries> q = RoughSolver(system, speed).solve(load_at(system, speed), tolerance, from);
+  const std::optional<FourierSeries> q =
+      RoughSolver(system, speed)
+          .solve(load_at(system, speed), of_residual * accuracy / nearest_amplification(system, speed));
   if (!q) return std::nullopt;
   return ritz_coordinates(*q, num_modes);
 }

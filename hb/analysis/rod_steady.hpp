@@ -15,9 +15,8 @@ namespace hb {
 [[nodiscard]] SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const ScaledSystem& scaled,
                                     SteadyOptions options);
 // q to nearly `accuracy` of its largest value, without an error bound: what is left of the load grows by the resonance.
-// Empty where that is not reached at once, as near a response without bound: solve_rod tells why. `start`: q of the
-// first modes, from which it may begin.
+// Empty where that is not reached at once, as near a response without bound: solve_rod tells why.
 [[nodiscard]] std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
-                                                     double accuracy, const FourierSeries& start = {});
+                                                     double accuracy);
 
 }  // namespace hb

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "hb/engine/steady/rough_state.hpp"
 #include "lib/rod/rod.hpp"
 #include "tests/support/dense_harmonic_balance.hpp"
 #include "tests/support/six_link.hpp"
@@ -338,24 +337,6 @@ TEST(SteadyState, BeginsWhereItIsToldAndClaimsNothingWhereNoBoundIsAskedFor) {
     const SteadyState again = solve_steady_state(s, speed, options);
     EXPECT_EQ(again.status, SteadyStatus::converged);
     EXPECT_LE(largest_difference(again.q, from_rest.q), 1e-7 * size);
-  }
-}
-
-TEST(RoughSolver, ComesToTheSameFromAnAnswerOfTheFirstModes) {
-  Random random(77);
-  const double speed = 0.7, tolerance = 1e-8;
-  for (int repeat = 0; repeat < 8; ++repeat) {
-    const HillSystem s = random_system({.modes = 4, .stiffness_harmonics = 12, .load_harmonics = 8}, random);
-    const FourierSeries load = load_at(s, speed), truth = solve_steady_state(s, speed).q;
-    const double size = fourier::largest_values(truth).maxCoeff();
-    const double enough = 10 * tolerance * nearest_amplification(s, speed) * size;
-    for (const Index modes : {0, 1, 2, 4}) {
-      FourierSeries start(modes, modes > 0 ? 5 : -1);
-      if (modes > 0) start.c = truth.c.topLeftCorner(modes, 6);
-      const std::optional<FourierSeries> q = RoughSolver(s, speed).solve(load, tolerance, start);
-      ASSERT_TRUE(q);
-      EXPECT_LE(largest_difference(*q, truth), enough) << modes;
-    }
   }
 }
 

@@ -9,10 +9,10 @@
 
 namespace hb {
 
-// L M T = 1, y = weight T^-1 q:  A y = y'' + G y' + K y = weight L load/Omega^2.
+// L M T = 1, y = weight T^-1 q:  y'' + G y' + K y = weight L load/Omega^2.
 struct RoughSolver::Impl {
   steady::WeightedSystem weighted;
-  Eigen::MatrixXd L, T, T_inverse;  // with the weights
+  Eigen::MatrixXd L, T;  // with the weights
   std::optional<steady::Operator> A;
   std::optional<steady::IterativeInverse> inverse;
   double tolerance = 0;  // that the window of A was made for
@@ -20,15 +20,6 @@ struct RoughSolver::Impl {
   explicit Impl(const ScaledSystem& scaled, const Eigen::MatrixXd& mass) : weighted(steady::weighted(scaled)) {
     L = weighted.weight.asDiagonal() * dense::inverse(Eigen::MatrixXd(mass * scaled.T)) / (scaled.speed * scaled.speed);
     T = scaled.T * weighted.weight.cwiseInverse().asDiagonal();
-    T_inverse = weighted.weight.asDiagonal() * scaled.T_inverse;
-  }
-
-  // y of q, which has no components beyond the first, on the window of A.
-  steady::Spectrum window_of(const FourierSeries& q) const {
-    steady::Spectrum y = steady::Spectrum::Zero(A->num_harmonics() + 1, weighted.I);
-    const Eigen::Index rows = std::min(y.rows(), q.c.cols());
-    y.topRows(rows) = (T_inverse.leftCols(q.num_components()) * q.c.leftCols(rows)).transpose();
-    return y;
   }
 };
 
@@ -42,8 +33,7 @@ RoughSolver::~RoughSolver() = default;
 RoughSolver::RoughSolver(RoughSolver&&) noexcept = default;
 RoughSolver& RoughSolver::operator=(RoughSolver&&) noexcept = default;
 
-std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, double tolerance,
-                                                const FourierSeries& start) {
+std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, double tolerance) {
   constexpr Eigen::Index most_harmonics = 256;
   constexpr double negligible = 1e-3;  // of the load; a sharper resonance at so high a harmonic is not looked for
   steady::WeightedSystem& system = impl_->weighted;
@@ -69,17 +59,7 @@ std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, doubl
   steady::Spectrum f = steady::Spectrum::Zero(window + 1, system.I), x;
   const Eigen::Index rows = std::min(window + 1, system.f.rows());
   f.topRows(rows) = system.f.topRows(rows);
-  if (start.num_components() > 0) {
-    const steady::Spectrum y = impl_->window_of(start) / scale;
-    const double size = impl_->A->scaled_norm(f);
-    impl_->A->couple(y, window, x);
-    const steady::Spectrum r = f - impl_->A->D().cwiseProduct(y) - x;
-    if (!impl_->inverse->solve(r, tolerance * size / impl_->A->scaled_norm(r), x)) return std::nullopt;
-    x += y;
-  } else if (!impl_->inverse->solve(f, tolerance, x)) {
-    return std::nullopt;
-  }
-  if (!x.allFinite()) return std::nullopt;
+  if (!impl_->inverse->solve(f, tolerance, x) || !x.allFinite()) return std::nullopt;
   FourierSeries q(Eigen::MatrixXcd(scale * impl_->T * x.transpose()));
   q.c.col(0) = q.c.col(0).real().cast<std::complex<double>>().eval();
   return q;

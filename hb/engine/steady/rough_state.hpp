@@ -21,10 +21,8 @@ class RoughSolver {
 
   // Over the crank angle, the residual of the window's rows below `tolerance` of the load; near resonance the error is
   // as many times larger as the response. The window of the first load serves all of no smaller tolerance. Empty where
-  // the iteration does not get there: solve_steady_state finds out why. It begins with `start`, an answer without some
-  // of the last components and harmonics; an empty one is zero.
-  [[nodiscard]] std::optional<FourierSeries> solve(const FourierSeries& load, double tolerance,
-                                                   const FourierSeries& start = {});
+  // the iteration does not get there: solve_steady_state finds out why.
+  [[nodiscard]] std::optional<FourierSeries> solve(const FourierSeries& load, double tolerance);
 
  private:
   struct Impl;
