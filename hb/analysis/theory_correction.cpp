@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 
 // N x components, at N angles, an even number, of a series with any number of harmonics: at those angles harmonic k is
 // k - N, too. Until the thread's next transform.
-Eigen::Map<MatrixXd> at_angles(const FourierSeries& series, Index N) {
+Eigen::Map<MatrixXd> folded_at(const FourierSeries& series, Index N) {
   fourier::RealTransform& transform = fourier::thread_transform(N, series.num_components());
   auto spectrum = transform.spectrum();
   const Index apart = std::min(1 + series.num_harmonics(), N / 2);
@@ -63,8 +63,8 @@ MatrixXd linear_residual(const Linear& rod, const MatrixXd& q, const MatrixXd& q
   };
   const MatrixXd along = by_angle(q), along_1 = by_angle(q1), along_2 = by_angle(q2);
   MatrixXd r = MatrixXd::Zero(N, I);
-  if (rod.h.c.size() > 0) r = -at_angles(rod.h, N);
-  const auto C = at_angles(rod.C, N);
+  if (rod.h.c.size() > 0) r = -folded_at(rod.h, N);
+  const auto C = folded_at(rod.C, N);
   for (Index j = 0; j < I; ++j)
     for (Index i = 0; i < I; ++i)
       r.col(i) +=

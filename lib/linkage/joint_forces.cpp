@@ -16,7 +16,7 @@ namespace {
 using Complex = std::complex<double>;
 
 // Next to a resonance rigid forces are rounding beside elastic ones, and yet known: they have a group of their own.
-constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2, frame_group = 3, moment_group = 4;
+constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2;
 
 // Sum over both signs of the coefficients of one row beyond its length, twice. Of a row that has not decayed the last
 // eighth stands for what is missing.
@@ -83,6 +83,13 @@ Eigen::Vector3d on_frame(const Linkage& linkage, const std::vector<BodyMotion>& 
   return {-force.real(), -force.imag(), -moment};
 }
 
+double longest_body(const Linkage& linkage) {
+  double longest = 0;
+  for (int i = 0; i < linkage.num_bodies(); ++i)
+    if (const Body* body = body_at(linkage, i)) longest = std::max(longest, body->length);
+  return longest;
+}
+
 }  // namespace
 
 // Sampled per crank angle: rigid and elastic (x, y) of every row, rigid and elastic torque, both of the frame.
@@ -93,9 +100,10 @@ JointForces joint_forces(const Linkage& linkage, double speed, const std::vector
   std::vector<TurnComponent> components;
   for (Eigen::Index i = 0; i < num_rows; ++i)
     for (const int group : {rigid_group, rigid_group, elastic_group, elastic_group}) components.push_back({group, 1});
-  for (const int group :
-       {torque_group, torque_group, frame_group, frame_group, moment_group, frame_group, frame_group, moment_group})
-    components.push_back({group, 1});
+  components.insert(components.end(), 2, {torque_group, 1});
+  // Forces on the frame of a balanced linkage are what joint forces leave of each other.
+  for (const int group : {rigid_group, elastic_group})
+    for (const double unit : {1.0, 1.0, 1 / longest_body(linkage)}) components.push_back({group, unit});
 
   std::vector<BodyMotion> motion;
   std::array<std::vector<BodyLoad>, 3> powers;

@@ -35,12 +35,11 @@ TEST(FrozenFrequencies, NameEveryExponentOfStrongSlowModulation) {
   for (const double speed : {1.0, 1.07, 1.13, 1.21}) {
     const std::optional<StabilitySample> sample = stability_sample(along_speed(system), speed, {.tolerance = 1e-10});
     ASSERT_EQ(sample->stability.exponents.size(), 6U) << speed;
-    const std::vector<MeanExponent> mean = mean_exponents(scale_system(system, speed));
-    const Strands strands = strands_of(*sample, mean);
+    const Strands strands = strands_of(*sample, sample->mean);
     std::vector<bool> taken(6, false);
     for (const Strand& strand : strands.all) {
       ASSERT_FALSE(strand.mean.empty());
-      const MeanExponent& name = mean[strand.mean.front()];
+      const MeanExponent& name = sample->mean[strand.mean.front()];
       EXPECT_LT(std::abs(folded({0, strand.s.imag() - name.frozen}).imag()), 1e-3) << speed;
       EXPECT_FALSE(taken[strand.mean.front()]) << speed;
       taken[strand.mean.front()] = true;

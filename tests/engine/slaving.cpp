@@ -42,6 +42,24 @@ void expect_covered(const HillSystem& system, StabilityMethod method, double mos
   }
 }
 
+// K ends at its 14th harmonic: the 28th of alpha, -|K_FS|^2/w_F^2 of the coupling's, locks a mode of 14 turns. On few
+// samples it would be folded back to another harmonic.
+TEST(Slaving, AlphaHasAllHarmonicsOfTheCouplingAndWhatFollowsIt) {
+  HillSystem system = two_modes(0, (Eigen::Matrix2d() << 196, 0, 0, 1000.3 * 1000.3).finished(),
+                                (Eigen::Matrix2d() << 0.001, 0, 0, 0).finished());
+  system.stiffness[0] = fourier::resized(system.stiffness[0], 14);
+  system.stiffness[0].c(1, 14) = system.stiffness[0].c(2, 14) = 5;
+  const std::array<Eigen::Index, 1> slow{0};
+  const ReducedSystem reduced = slave_to(scale_system(system, 1), slow, 1e-12);
+  ASSERT_TRUE(reduced.converged);
+  ASSERT_GE(reduced.alpha.num_harmonics(), 28);
+  EXPECT_NEAR(std::abs(reduced.alpha.c(0, 28)), 25 / (1000.3 * 1000.3), 1e-3 * 25e-6);
+  EXPECT_LT(std::abs(reduced.alpha.c(0, 20)), 1e-12);
+  system.stiffness[0].c(0, 0) += 2 * 25 / (1000.3 * 1000.3);
+  const Stability stability = analyse_stability(system, 1, {});
+  EXPECT_GT(stability.growth_rate, 5e-7);
+}
+
 // With 32 samples A has harmonics up to 15: strong modulation takes more of them, a neighbour's solution all it has.
 TEST(Slaving, GetsAsManyHarmonicsAsItTakes) {
   int with_more = 0;

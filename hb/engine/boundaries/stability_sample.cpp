@@ -5,11 +5,8 @@
 
 namespace hb {
 
-// Beside a place that the bound proves stable the mean exponents are seldom asked for.
 StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options) {
-  StabilitySample sample{x, system.speed, with_finite_growth(system, options), {}, growth_bound(system)};
-  if (!(sample.growth_bound < 0)) sample.mean = mean_exponents(system);
-  return sample;
+  return {x, system.speed, with_finite_growth(system, options), mean_exponents(system), growth_bound(system)};
 }
 
 std::optional<StabilitySample> stability_sample(const SystemAt& at, double x, const StabilityOptions& options) {

@@ -14,29 +14,31 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
+namespace mode_lines {
 
 // The largest of all, and its line.
 struct Leading {
   double growth = -HUGE_VAL;
-  mode_lines::Line* line = nullptr;
+  Line* line = nullptr;
 };
 
 // Lines of which the one that grows fastest is asked for, order by order. One that is behind it by far more than the
 // last order moved both is left out.
 class Race {
  public:
-  void add(const mode_lines::LoneModes& modes, const mode_lines::Coupling& coupling, Index l) {
-    runners_.push_back({std::make_unique<mode_lines::Line>(modes, coupling, l)});
+  void add(const LoneModes& modes, const Coupling& coupling, Index l) {
+    runners_.push_back({std::make_unique<Line>(modes, coupling, l)});
   }
 
   // With one order more; not a number where a line has none.
   Leading next() {
     Leading leading;
     double leading_moved = 0;
+    mixed_ = 0;
     for (Runner& runner : runners_) {
       const double growth = runner.line->next();
       if (!std::isfinite(growth)) return {nan, runner.line.get()};
+      mixed_ = std::max(mixed_, runner.line->mixed());
       runner.moved = std::abs(growth - runner.growth);
       runner.growth = growth;
       if (growth > leading.growth) {
@@ -51,22 +53,19 @@ class Race {
     return leading;
   }
 
-  // Largest |z_j| of those that are left.
-  double mixed() const {
-    double largest = 0;
-    for (const Runner& runner : runners_) largest = std::max(largest, runner.line->mixed());
-    return largest;
-  }
+  // Largest |z_j| of all that were in the race for the last order.
+  double mixed() const { return mixed_; }
 
  private:
   struct Runner {
-    std::unique_ptr<mode_lines::Line> line;
+    std::unique_ptr<Line> line;
     double growth = HUGE_VAL, moved = HUGE_VAL;
   };
   std::vector<Runner> runners_;
+  double mixed_ = 0;
 };
 
-}  // namespace
+}  // namespace mode_lines
 
 double GrowthAccuracy::allowed(double change, double rate) const {
   return std::max(of_change * std::abs(change), of_rate * std::max(std::abs(rate), 0.01));
@@ -84,7 +83,7 @@ struct UncoupledSystems::Impl {
   std::optional<mode_lines::LoneModes> modes;
   std::vector<Part> parts;
   std::vector<Index> leading;  // modes that may lead
-  Race lines;  // theirs
+  mode_lines::Race lines;  // theirs
   std::vector<double> orders;  // the largest growth rate, so far
 
   Impl(std::span<const PeriodicCoefficients> systems, Index num_angles) : M(num_angles) {
@@ -138,8 +137,6 @@ UncoupledSystems::UncoupledSystems(std::span<const PeriodicCoefficients> parts, 
 
 UncoupledSystems::~UncoupledSystems() = default;
 
-Index UncoupledSystems::num_angles() const { return impl_->M; }
-
 std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, const GrowthAccuracy& accuracy) {
   constexpr std::size_t most_orders = 12;
   // Lines more mixed than that may be locked to each other, which shows in no real part at first: two that are have 1/2
@@ -166,12 +163,12 @@ std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, c
     return mode_lines::Coupling(modes, alpha, beta);
   };
   const mode_lines::Coupling coupling = coupling_by(change.alpha, change.beta);
-  Race lines;
+  mode_lines::Race lines;
   for (const Index l : impl_->leading) lines.add(modes, coupling, l);
 
   double last = HUGE_VAL, last_moved = HUGE_VAL;
   for (std::size_t order = 0; order < most_orders; ++order) {
-    const Leading leading = lines.next();
+    const mode_lines::Leading leading = lines.next();
     const double mixed = lines.mixed();
     if (!(mixed <= most_mixed)) return std::nullopt;
     const double linear = impl_->linear(order), found = leading.growth - linear;

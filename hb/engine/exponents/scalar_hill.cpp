@@ -61,10 +61,10 @@ struct Mean {
 
 // What |d| <= dQ does to the frequency mean(psi) - mean d/(2 psi) of psi^2 = Q - psi''/(2 psi) + 3/4 (psi'/psi)^2 + d.
 // With e = int |d|/(2 psi) over the turn the half trace of its map is within cosh e - 1 of cos 2 pi frequency; infinite
-// where the multipliers may be real.
-double second_order(double dQ, double smallest_psi, double frequency) {
+// where the multipliers may be real. `rest`: what else the frequency is not known to.
+double second_order(double dQ, double smallest_psi, double frequency, double rest) {
   const double half = std::sinh(0.5 * pi * dQ / smallest_psi), off = 2 * half * half;
-  const double sine = std::abs(std::sin(two_pi * frequency));
+  const double sine = std::max(0.0, std::abs(std::sin(two_pi * frequency)) - two_pi * rest);
   return off < 0.5 * sine * sine ? off / (pi * sine) : HUGE_VAL;
 }
 
@@ -109,13 +109,14 @@ struct PhaseFunction {
 ExponentPair PhaseFunction::oscillating(double alpha_error, double beta_error) const {
   const double largest_b = b.abs().maxCoeff();
   const Mean corrected(psi - d / (2 * psi));
-  const double second = second_order(dQ(), psi.minCoeff(), corrected.value), first = dQ() / floor();
+  const auto rest = [&](const Mean& mean) {
+    return (alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor() +
+           beta_error + 4 * eps * (psi.maxCoeff() + largest_b) + mean.change;
+  };
+  const double second = second_order(dQ(), psi.minCoeff(), corrected.value, rest(corrected)), first = dQ() / floor();
   const Mean& mean = second < first ? corrected : frequency;
   ExponentPair pair;
-  const double error =
-      std::min(second, first) +
-      (alpha_error + beta_error * (largest_b + psi.maxCoeff()) + 8 * eps * a.abs().maxCoeff()) / floor() + beta_error +
-      4 * eps * (psi.maxCoeff() + largest_b) + mean.change;
+  const double error = std::min(second, first) + rest(mean);
   pair.s = {cplx(-b.mean() / 2, mean.value), cplx(-b.mean() / 2, -mean.value)};
   pair.error = {error, error};
   return pair;
@@ -191,7 +192,8 @@ std::optional<ExponentPair> phase_exponents(const FourierSeries& given_alpha, co
       if (!next.allFinite() || !(next.minCoeff() > 0)) break;
       const ArrayXd psi = next.sqrt();
       const double allowed = unseen * tolerance, smallest = psi.minCoeff();
-      if (left <= allowed * smallest || (sigma > 0 && second_order(2 * left, smallest, psi.mean()) <= allowed)) break;
+      if (left <= allowed * smallest || (sigma > 0 && second_order(2 * left, smallest, psi.mean(), 0) <= allowed))
+        break;
     }
     if (!std::isfinite(left)) return std::nullopt;
     // From here on psi = exp(L), L a trigonometric polynomial, is what it is; its defect at twice the nodes says how

@@ -40,6 +40,41 @@ MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
   return transform.samples()(Eigen::all, from);
 }
 
+// Largest sum of harmonics of K_SF A and weight K_SF C that N angles do not tell apart, by what A and C are:
+// Iteration's `solution`.
+double folded_back(const ScaledSystem& system, const Partition& p, const VectorXd& solution, Index N) {
+  const Index n = Index(p.F.size()), nm = n * Index(p.S.size()), H = solution.size() / (4 * nm) - 1;
+  const Index P = system.K.num_harmonics(), apart = (N - 1) / 2;
+  if (P + H <= apart) return 0;
+  // Of A and weight C, from each harmonic on.
+  MatrixXd from = MatrixXd::Zero(2 * nm, H + 2);
+  for (Index k = H; k >= 0; --k) {
+    const auto re = solution.segment(4 * nm * k, 2 * nm).array(),
+               im = solution.segment(4 * nm * k + 2 * nm, 2 * nm).array();
+    from.col(k) = from.col(k + 1).array() + (re.square() + im.square()).sqrt();
+  }
+  double largest = 0;
+  for (const Index s : p.S) {
+    VectorXd sum = VectorXd::Zero(2 * nm);
+    for (Index k = std::max<Index>(apart + 1 - H, 0); k <= P; ++k)
+      for (Index q = 0; q < 2 * nm; ++q)
+        sum(q) += modulus(system.K.c(s + system.num_modes() * p.F[std::size_t(q % n)], k)) *
+                  from(q, std::max<Index>(apart + 1 - k, 0));
+    largest = std::max(largest, sum.sum());
+  }
+  return 4 * largest;
+}
+
+// At so many angles is judged what N gave: more, and so many that alpha and beta are not folded back. Where damping
+// couples they depend on P and R, which have more harmonics.
+Index judging_samples(const ScaledSystem& system, const Partition& p, const VectorXd& solution, Index N) {
+  double scale = 1;
+  for (const Index s : p.S) scale = std::max(scale, std::abs(system.K.c(s + system.num_modes() * s, 0)));
+  N = system.diagonal_damping ? fourier::fast_length(N + 1) : 2 * N;
+  while (solution.size() > 0 && folded_back(system, p, solution, N) > eps * scale) N = fourier::fast_length(N + 1);
+  return N;
+}
+
 // All modes kept, in their own order.
 ReducedSystem unreduced(const ScaledSystem& system) {
   const Index I = system.num_modes();
@@ -80,10 +115,9 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   const Partition p = slaving::partition(I, slow);
   if (p.F.empty()) return unreduced(system);
   ReducedSystem reduced;
-  // Few samples for the iteration; more, at other angles for the most part, judge what it gave.
+  // Few samples for the iteration; more judge what it gave.
   constexpr Index fewest_samples = 32, most_samples = 8192;
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
-  const auto more_than = [](Index N) { return fourier::fast_length(N + 1); };
   const auto finish = [&](Iteration& iteration) {
     const int iterations = reduced.iterations;
     reduced = iteration.result(bounds_others);
@@ -92,13 +126,14 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   // As many samples as the neighbour's harmonics were found with.
   const auto numbers = [&](Index N) { return 4 * Index(p.F.size() * p.S.size()) * ((N - 1) / 2 + 1); };
   Index own = start;
-  while (numbers(own) < begun.solution.size()) own = more_than(own);
+  while (numbers(own) < begun.solution.size()) own = fourier::fast_length(own + 1);
   // A neighbour's solution is judged by more samples from the beginning; what needs more corrections gets them
   // with few samples.
   SlavingStart nearer;
-  if (begun.solution.size() > 0 && own <= 4 * start && more_than(own) <= most_samples) {
+  const Index begun_judge = judging_samples(system, p, begun.solution, own);
+  if (begun.solution.size() > 0 && own <= 4 * start && begun_judge <= most_samples) {
     constexpr int few_iterations = 2;
-    Iteration judged(stiffness, p, more_than(own));
+    Iteration judged(stiffness, p, begun_judge);
     judged.start_from(begun);
     if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {
       finish(judged);
@@ -110,9 +145,10 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
     const Index first = from.solution.size() > 0 ? own : start;
     auto iteration = std::make_unique<Iteration>(stiffness, p, first);
     iteration->start_from(from);
-    for (Index N = first; N <= 4 * start && iteration->run(tolerance, reduced.iterations); N = more_than(N)) {
-      if (more_than(N) > most_samples) break;
-      auto finer = std::make_unique<Iteration>(stiffness, p, more_than(N));
+    for (Index N = first; N <= 4 * start && iteration->run(tolerance, reduced.iterations);) {
+      N = judging_samples(system, p, iteration->solved().solution, N);
+      if (N > most_samples) break;
+      auto finer = std::make_unique<Iteration>(stiffness, p, N);
       finer->start_from(*iteration);
       iteration = std::move(finer);
       if (!iteration->solved_by_start(tolerance)) continue;

@@ -147,9 +147,20 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
     const double ratio = step > 0 ? size / previous : HUGE_VAL, last_ratio = step > 1 ? previous / before : HUGE_VAL;
     const bool shrinking = ratio <= 0.3 && (round <= 0.3 || last_ratio <= 0.3);
     const double rate = std::max(ratio, round <= 0.3 ? 0 : last_ratio);
-    if (size == 0 || (step == 0 && size <= negligible)) {
-      result.rest = size;
+    if (size == 0) {
+      result.rest = 0;
       break;
+    }
+    if (step == 0 && size <= negligible) {
+      take(true, true);
+      const double left = amplified(A, moduli(rho.topRows(H + 1)), response, T) +
+                          (R > H ? sizes_of_rows(s, rho.bottomRows(R - H), H + 1, T).sum() : 0);
+      if (left <= negligible) {
+        result.rest = size + left;
+        break;
+      }
+      previous = size;
+      continue;
     }
     if (shrinking || (step + 1 == most_steps && rate <= 0.9)) {
       result.rest = size * std::max(1.0, 2 * rate / (1 - rate));
