@@ -34,7 +34,6 @@ class UncoupledSystems {
   UncoupledSystems(std::span<const PeriodicCoefficients> parts, Eigen::Index num_angles);
   ~UncoupledSystems();
 
-
   // What `change` of alpha and beta, at N <= M angles, makes of the largest growth rate. Modes whose damping is at
   // least twice that of the least damped one are not taken to lead. Empty where the orders do not settle: next to a
   // resonance of modes with each other or with themselves, or where a mode does not oscillate all over the turn.
