@@ -252,7 +252,11 @@ ChainProduct product_of(const CellChain& chain) {
     behind.swap(next);
     behind_exponent += normalised(behind);
   }
-  return {chain.closing * (before.rightCols(p) / total.value), total.log(), change.total(false), trace.total(false),
+  return {chain.closing * (before.rightCols(p) / total.value),
+          total.log(),
+          change.total(false),
+          trace.total(false),
+          trace.total(true),
           bound.log()};
 }
 

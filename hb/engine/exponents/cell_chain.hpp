@@ -41,7 +41,8 @@ struct ChainProduct {
   Eigen::MatrixXd M;
   double log_size = 0;
   double change = 0;  // of M, sum_i |D_N .. D_(i+1)| |dD_i| |D_(i-1) .. D_1|
-  double trace_change = 0;  // of tr M, sum_i |tr D_N .. D_(i+1) dD_i D_(i-1) .. D_1|
+  // Of tr M, sum_i |tr D_N .. D_(i+1) dD_i D_(i-1) .. D_1|, where the eigenvalues are complex and where they are real.
+  double trace_change = 0, real_trace_change = 0;
   double log_bound = 0;  // log of the product of |D_i| + |dD_i|
 };
 [[nodiscard]] ChainProduct product_of(const CellChain& chain);

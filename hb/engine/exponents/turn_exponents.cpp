@@ -24,9 +24,10 @@ using cplx = std::complex<double>;
 
 // One mode, two exponents: with the determinant known (Liouville), s = -b/2 +- acosh(disc)/(2 pi),
 // disc = tr Phi/(2 sqrt(det Phi)) and det Phi = exp(-2 pi b), whatever the size of the multipliers.
-TurnExponents discriminant(double trace, double log_size, double trace_change, double damping) {
-  const double mean = -damping / 2;
+TurnExponents discriminant(const ChainProduct& product, double damping) {
+  const double mean = -damping / 2, trace = product.M.trace(), log_size = product.log_size;
   const double log_disc = std::log(std::max(std::abs(trace / 2), 1e-300)) + log_size - two_pi * mean;
+  const double trace_change = log_disc > 0 ? product.real_trace_change : product.trace_change;
   const double mean_error = 2 * eps * std::abs(mean);
   // Rounding of the logarithms and of what is taken from them.
   const double relative = eps * (2 + std::abs(log_size) + std::abs(two_pi * mean));
@@ -284,10 +285,7 @@ void add_several(const CellChain& chain, bool leading_only, Collector& collector
 
 TurnExponents turn_exponents(const TurnMaps& maps, const MatrixXd& given, bool leading_only,
                              const MatrixXd& subspaces) {
-  if (maps.num_states() == 2) {
-    const ChainProduct product = product_of(whole_chain(maps, given));
-    return discriminant(product.M.trace(), product.log_size, product.trace_change, maps.damping_trace);
-  }
+  if (maps.num_states() == 2) return discriminant(product_of(whole_chain(maps, given)), maps.damping_trace);
   Collector collector;
   if (leading_only) {
     add_several(whole_chain(maps, given), true, collector);
