@@ -68,7 +68,7 @@ double folded_back(const ScaledSystem& system, const Partition& p, const VectorX
 // At so many angles is judged what N gave: more, and so many that alpha and beta are not folded back. Where damping
 // couples they depend on P and R, which have more harmonics.
 Index judging_samples(const ScaledSystem& system, const Partition& p, const VectorXd& solution, Index N) {
-  double scale = 1;
+  double scale = 0;
   for (const Index s : p.S) scale = std::max(scale, std::abs(system.K.c(s + system.num_modes() * s, 0)));
   N = system.diagonal_damping ? fourier::fast_length(N + 1) : 2 * N;
   while (solution.size() > 0 && folded_back(system, p, solution, N) > eps * scale) N = fourier::fast_length(N + 1);

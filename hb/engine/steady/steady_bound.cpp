@@ -151,10 +151,10 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
       result.rest = 0;
       break;
     }
-    if (step == 0 && size <= negligible) {
+    if (step == 0 && size <= negligible && round <= 0.3) {
       take(true, true);
       const double left = amplified(A, moduli(rho.topRows(H + 1)), response, T) +
-                          (R > H ? sizes_of_rows(s, rho.bottomRows(R - H), H + 1, T).sum() : 0);
+                          (R > H ? 2 * sizes_of_rows(s, rho.bottomRows(R - H), H + 1, T).sum() : 0);
       if (left <= negligible) {
         result.rest = size + left;
         break;

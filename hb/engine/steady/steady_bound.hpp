@@ -28,8 +28,8 @@ struct Correction {
   double outside = 0;  // size in q of the rows beyond the window, which no solution on the window has
   double rest = 0;  // size in q of what may be missing; infinite if the corrections do not shrink
 };
-// Steps go on until the last is below `enough`, in q. Where the first one is `negligible` already there is no other to
-// measure how they shrink: `rest` is as large as it.
+// Steps go on until the last is below `enough`, in q. Where the first one and what it leaves are `negligible` already
+// there is no other to measure how they shrink: `rest` is both.
 [[nodiscard]] Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response,
                                     const Eigen::MatrixXd& T, double enough = HUGE_VAL, double negligible = 0);
 
