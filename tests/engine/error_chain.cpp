@@ -57,7 +57,8 @@ struct Window {
         steady::correction(A, *inverse, image(e), response, T, HUGE_VAL, negligible * steady::size_in_q(e, T));
     Spectrum left = e;
     left.topRows(A.num_harmonics() + 1) -= found.window;
-    return steady::size_in_q(left, T) / (found.outside + found.rest + 1e-12 * response * steady::size_in_q(e, T));
+    return steady::size_in_q(left, T) /
+           (found.outside + found.beyond + found.rest + 1e-12 * response * steady::size_in_q(e, T));
   }
 };
 
@@ -147,7 +148,7 @@ TEST(ErrorChain, ClaimsCoverWhatAnswersBesideAResonance) {
         Spectrum left = e;
         left.topRows(H + 1) -= found.window;
         ++told;
-        EXPECT_LE(steady::size_in_q(left, window.T), found.outside + found.rest)
+        EXPECT_LE(steady::size_in_q(left, window.T), found.outside + found.beyond + found.rest)
             << "trial " << trial << " H " << H << " response " << window.response << " times " << times << " rows from "
             << first;
       }

@@ -116,6 +116,49 @@ void run(stress::Family family, int trials, bool resonant) {
       tally.uncovered, tally.unsettled, tally.closest);
 }
 
+// One or two modes of which the last is within 0.3 of harmonic n = 2..8 with damping down to 1e-7; loads of the first
+// harmonics.
+HillSystem resonant_at(Index n, stress::Random& random) {
+  const Index I = random.integer(1, 2), P = random.integer(1, 3), F = random.integer(0, 3);
+  HillSystem system;
+  system.mass = Eigen::MatrixXd::Identity(I, I);
+  system.damping = Eigen::MatrixXd::Zero(I, I);
+  system.stiffness[0] = FourierSeries(I * I, P);
+  system.load[0] = FourierSeries(I, F);
+  const double coupling = random.power(-3, 0.3);
+  for (Index i = 0; i < I; ++i) {
+    const double off = random.power(-6, -0.5) * (random.chance(0.5) ? 1 : -1);
+    const double w = i == I - 1 ? double(n) + off : random(0.3, double(n) + 2);
+    system.stiffness[0].c(i + I * i, 0) = w * w;
+    system.damping(i, i) = random.power(-7, -2);
+    for (Index k = 1; k <= P; ++k)
+      for (Index j = 0; j <= i; ++j)
+        if (random.chance(0.7))
+          system.stiffness[0].c(i + I * j, k) = system.stiffness[0].c(j + I * i, k) = coupling * random(-1, 1);
+    for (Index k = 0; k <= F; ++k) system.load[0].c(i, k) = random(-1, 1) * random.power(-3, 0);
+  }
+  return system;
+}
+
+// Tolerances that fewer harmonics than n serve, and windows of fewer or few more that were asked for.
+TEST(SteadyWindow, BoundsCoverResonancesBeyond) {
+  SteadyTally tally;
+  for (int trial = 0; trial < stress::multiplied(300); ++trial) {
+    stress::Random random(stress::seed() * 1000003 + std::uint64_t(trial) * 101 + 77);
+    const Index n = random.integer(2, 8);
+    const HillSystem system = resonant_at(n, random);
+    SteadyOptions options;
+    options.tolerance = random.power(-7, -2);
+    const std::string what = "trial " + std::to_string(trial) + " n " + std::to_string(n);
+    compare(solve_steady_state(system, 1, options), system, 1, options, what, false, tally);
+    options.num_harmonics = int(n + random.integer(-1, 2));
+    compare(solve_steady_state(system, 1, options), system, 1, options, what + " asked for harmonics", false, tally);
+  }
+  EXPECT_GT(tally.reached, stress::multiplied(300));
+  std::printf("%d solved, %d reached the tolerance, %d beyond the reference, largest error/bound %.2g\n", tally.solved,
+              tally.reached, tally.unsettled, tally.closest);
+}
+
 class SteadyStress : public testing::TestWithParam<int> {};
 
 TEST_P(SteadyStress, EveryBoundCovers) { run(static_cast<stress::Family>(GetParam()), 4, false); }

@@ -64,6 +64,46 @@ class RandomNumbers {
   std::optional<std::mt19937> further_;
 };
 
+// Largest answer of rows k = first..last, c_i/|D_i(k)|, c_i the coupling of row i. |D_i|^2 = (w^2 - k^2)^2 + (k G)^2 is
+// least at k^2 = w^2 - G^2/2; there coupling moves w^2 by some c_i^2/k, down to the damping or rounding at worst.
+double largest_answer(const WeightedSystem& s, Index first, Index last) {
+  double largest = 0;
+  for (Index i = 0; i < s.I; ++i) {
+    const double least = std::sqrt(std::max(s.mean(i) - 0.5 * s.G(i, i) * s.G(i, i), 0.0));
+    const double below = std::clamp(std::floor(least), static_cast<double>(first), static_cast<double>(last));
+    const double across = s.G_off.row(i).cwiseAbs().sum();
+    for (const Index k : {static_cast<Index>(below), std::min(static_cast<Index>(below) + 1, last)}) {
+      const double n = static_cast<double>(k), c = s.coupling(i) + across * n, d = modulus(s.D(i, k));
+      const double moved = std::abs(least - n) <= 1 ? c * c / n : 0;
+      largest = std::max(largest, c / std::max({d - moved, n * std::abs(s.G(i, i)), 32 * eps * s.magnitude(i, k)}));
+    }
+  }
+  return largest;
+}
+
+// Sum of what rows beyond R answer to harmonics of `size` before them (hb/engine/README.md (S12)): K carries it on
+// by P harmonics at a time, through the resonances of faster modes too. 1.5 stands for what the answers do among
+// themselves.
+double carried_beyond(const WeightedSystem& s, Index R, double size) {
+  constexpr Index most_blocks = 20000, most_harmonics = Index(1) << 40;
+  constexpr double shrinking = 0.3, among = 1.5;
+  if (!(size > 0) || s.P == 0) return 0;
+  const double negligible = 1e-3 * size;
+  double sum = 0;
+  for (Index block = 0; block < most_blocks; ++block) {
+    const Index first = R + 1 + block * s.P;
+    const double ahead = largest_answer(s, first, most_harmonics);
+    const double here = size * largest_answer(s, first, first + s.P - 1);
+    if (ahead <= shrinking) return among * (sum + here / (1 - ahead));
+    if (size * std::pow(std::max(ahead, 1.0), static_cast<double>(s.I)) <= negligible)
+      return among * (sum + negligible);
+    size = here;
+    sum += size;
+    if (!std::isfinite(sum)) break;
+  }
+  return HUGE_VAL;
+}
+
 }  // namespace
 
 double size_in_q(const Spectrum& x, const Eigen::MatrixXd& T) { return weigh(wiener_norms(x), T); }
@@ -111,7 +151,7 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   constexpr int most_steps = 8;
   const WeightedSystem& s = A.system();
   const Index H = A.num_harmonics(), I = A.num_modes(), R = std::max(H, std::min(A.last_row(), r.rows() - 1));
-  Correction result{Spectrum::Zero(H + 1, I), 0, HUGE_VAL};
+  Correction result{.window = Spectrum::Zero(H + 1, I), .rest = HUGE_VAL};
   Spectrum rho = Spectrum::Zero(R + 1, I), e = rho, tail = rho, product, z;
   rho.topRows(std::min(R + 1, r.rows())) = r.topRows(std::min(R + 1, r.rows()));
   const auto take = [&](bool window, bool outside) {  // rho -= A e of one part or both
@@ -128,7 +168,7 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   for (Index i = 0; i < I; ++i)
     for (Index k = H + 1; k <= R; ++k) step_out = std::max(step_out, s.coupling(i) / modulus(s.D(i, k)));
   const double round = response * step_out * step_out;
-  double previous = 0, before = 0;
+  double previous = 0, before = 0, first_ratio = 0;
   for (int step = 0; step < most_steps; ++step) {
     for (Index i = 0; i < I; ++i)
       for (Index k = H + 1; k <= R; ++k) e(k, i) = rho(k, i) == 0.0 ? 0.0 : rho(k, i) / s.D(i, k);
@@ -145,6 +185,7 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
     }
     // Nothing to shrink against at first.
     const double ratio = step > 0 ? size / previous : HUGE_VAL, last_ratio = step > 1 ? previous / before : HUGE_VAL;
+    if (step == 1) first_ratio = ratio;
     const bool shrinking = ratio <= 0.3 && (round <= 0.3 || last_ratio <= 0.3);
     const double rate = std::max(ratio, round <= 0.3 ? 0 : last_ratio);
     if (size == 0) {
@@ -177,13 +218,8 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
   result.outside = weigh(sizes, T);
   if (r.rows() > R + 1) result.outside += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
-  // Rows beyond R feel the tail through K, and answer it.
-  double reaching = 0, nearest = HUGE_VAL;
-  for (Index i = 0; i < I; ++i) {
-    for (Index k = R + 1; k <= R + s.P; ++k) nearest = std::min(nearest, modulus(s.D(i, k)));
-    reaching = std::max(reaching, s.coupling(i));
-  }
-  if (result.outside > 0 && reaching > 0) result.rest += result.outside * reaching / nearest * (1 + round);
+  // What comes back to the window from there grows there as the first step's answer from the tail did.
+  result.beyond = std::max(1.0, first_ratio) * carried_beyond(s, R, (result.outside + result.rest) * (1 + round));
   return result;
 }
 

@@ -26,7 +26,8 @@ namespace hb::steady {
 struct Correction {
   Spectrum window;
   double outside = 0;  // size in q of the rows beyond the window, which no solution on the window has
-  double rest = 0;  // size in q of what may be missing; infinite if the corrections do not shrink
+  double beyond = 0;  // size in q of what rows beyond last_row() answer, not counted in either
+  double rest = 0;  // size in q of what may be missing else; infinite if the corrections do not shrink
 };
 // Steps go on until the last is below `enough`, in q. Where the first one and what it leaves are `negligible` already
 // there is no other to measure how they shrink: `rest` is both.

@@ -191,6 +191,12 @@ class Solver {
     return k > H ? std::max(k + 1, H + 2) : H;
   }
 
+  // More harmonics where those left out are what is missing, else H.
+  Index with_those_left_out(Index H, const steady::Correction& correction, double largest) const {
+    const bool missing = correction.outside + correction.beyond > 0.1 * options_.tolerance * largest;
+    return missing ? H + std::max<Index>({2, system_.P / 2, H / 4}) : H;
+  }
+
   // The claim is hb/engine/README.md (S7).
   void assess(steady::Operator& A, steady::Inverse& inverse, Spectrum& x, const Spectrum& r, double largest,
               double response, SteadyState& state, Index& wanted) {
@@ -218,17 +224,19 @@ class Solver {
     const double enough = 0.1 * options_.tolerance * largest,
                  negligible = std::min(enough, std::max(1e-3 * options_.tolerance * largest, 0.25 * rounding));
     const steady::Correction correction = steady::correction(A, inverse, r, response, T_, enough, negligible);
-    if (correction.window.allFinite() && std::isfinite(correction.rest)) x += correction.window;
-    const double error = correction.outside + correction.rest + rounding;
+    if (correction.window.allFinite() && std::isfinite(correction.rest)) {
+      x += correction.window;
+      if (steady::size_in_q(correction.window, T_) > 1e-6 * largest)
+        largest = steady::largest_over_turn(x * T_.transpose());
+    }
+    const double error = correction.outside + correction.beyond + correction.rest + rounding;
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
     state.residual = steady::wiener_norms(r).sum() / load;
     state.error_bound = (error + conversion) / largest;
     state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
     Eigen::MatrixXcd u = in_given_units();
-    // More harmonics where those left out are what is missing.
-    if (state.status != SteadyStatus::converged && correction.outside > 0.1 * options_.tolerance * largest)
-      wanted = H + std::max<Index>({2, system_.P / 2, H / 4});
-    else if (state.status != SteadyStatus::converged && std::isfinite(state.error_bound))
+    if (state.status != SteadyStatus::converged) wanted = with_those_left_out(H, correction, largest);
+    if (state.status != SteadyStatus::converged && wanted == H && std::isfinite(state.error_bound))
       refine(A, inverse, response, options_.tolerance, u, state, wanted);
     state.q = result(u);
     if (options_.bound == SteadyBound::proved) prove(A, u, state);
@@ -289,7 +297,7 @@ class Solver {
       if (!std::isfinite(correction.rest)) break;
       const double inner = steady::size_in_q(correction.window, T_) + correction.rest +
                            steady::amplified(A, residual.rounding.topRows(H + 1), response, T_);
-      const double bound = (correction.outside + inner + residual.conversion) / residual.largest;
+      const double bound = (correction.outside + correction.beyond + inner + residual.conversion) / residual.largest;
       if (bound < state.error_bound) {
         state.error_bound = bound;
         state.residual = steady::wiener_norms(residual.r).sum() / load;
