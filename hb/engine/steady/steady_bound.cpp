@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 
+#include "hb/engine/steady/rows_beyond.hpp"
 #include "lib/constants.hpp"
 #include "lib/modulus.hpp"
 
@@ -18,18 +19,6 @@ using Index = Eigen::Index;
 constexpr double safety = 3;
 // Cap on the amplification granted to omitted rows that are coupled more strongly than their diagonal: a choice.
 constexpr double most_tail_slack = 30;
-
-// max_i sum_j |T_ij| sizes_j
-double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) {
-  double largest = 0;
-  for (Index i = 0; i < T.rows(); ++i) {
-    double sum = 0;
-    for (Index j = 0; j < T.cols(); ++j) sum += std::abs(T(i, j)) * sizes(j);
-    if (!std::isfinite(sum)) return sum;
-    largest = std::max(largest, sum);
-  }
-  return largest;
-}
 
 // Of moduli, an expression.
 template <class Moduli>
@@ -63,46 +52,6 @@ class RandomNumbers {
   std::size_t next_ = 0;
   std::optional<std::mt19937> further_;
 };
-
-// Largest answer of rows k = first..last, c_i/|D_i(k)|, c_i the coupling of row i. |D_i|^2 = (w^2 - k^2)^2 + (k G)^2 is
-// least at k^2 = w^2 - G^2/2; there coupling moves w^2 by some c_i^2/k, down to the damping or rounding at worst.
-double largest_answer(const WeightedSystem& s, Index first, Index last) {
-  double largest = 0;
-  for (Index i = 0; i < s.I; ++i) {
-    const double least = std::sqrt(std::max(s.mean(i) - 0.5 * s.G(i, i) * s.G(i, i), 0.0));
-    const double below = std::clamp(std::floor(least), static_cast<double>(first), static_cast<double>(last));
-    const double across = s.G_off.row(i).cwiseAbs().sum();
-    for (const Index k : {static_cast<Index>(below), std::min(static_cast<Index>(below) + 1, last)}) {
-      const double n = static_cast<double>(k), c = s.coupling(i) + across * n, d = modulus(s.D(i, k));
-      const double moved = std::abs(least - n) <= 1 ? c * c / n : 0;
-      largest = std::max(largest, c / std::max({d - moved, n * std::abs(s.G(i, i)), 32 * eps * s.magnitude(i, k)}));
-    }
-  }
-  return largest;
-}
-
-// Sum of what rows beyond R answer to harmonics of `size` before them (hb/engine/README.md (S12)): K carries it on
-// by P harmonics at a time, through the resonances of faster modes too. 1.5 stands for what the answers do among
-// themselves.
-double carried_beyond(const WeightedSystem& s, Index R, double size) {
-  constexpr Index most_blocks = 20000, most_harmonics = Index(1) << 40;
-  constexpr double shrinking = 0.3, among = 1.5;
-  if (!(size > 0) || s.P == 0) return 0;
-  const double negligible = 1e-3 * size;
-  double sum = 0;
-  for (Index block = 0; block < most_blocks; ++block) {
-    const Index first = R + 1 + block * s.P;
-    const double ahead = largest_answer(s, first, most_harmonics);
-    const double here = size * largest_answer(s, first, first + s.P - 1);
-    if (ahead <= shrinking) return among * (sum + here / (1 - ahead));
-    if (size * std::pow(std::max(ahead, 1.0), static_cast<double>(s.I)) <= negligible)
-      return among * (sum + negligible);
-    size = here;
-    sum += size;
-    if (!std::isfinite(sum)) break;
-  }
-  return HUGE_VAL;
-}
 
 }  // namespace
 
@@ -218,8 +167,16 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
   result.outside = weigh(sizes, T);
   if (r.rows() > R + 1) result.outside += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
-  // What comes back to the window from there grows there as the first step's answer from the tail did.
-  result.beyond = std::max(1.0, first_ratio) * carried_beyond(s, R, (result.outside + result.rest) * (1 + round));
+  // Of `rest` the rows are not known: taken to be as those that are. What comes back to the window from beyond grows
+  // there as the first step's answer from the tail did.
+  Eigen::MatrixXd standing = moduli(tail);
+  for (Index k = H + 1; k <= R; ++k)
+    for (Index i = 0; i < I; ++i)
+      if (rho(k, i) != 0.0) standing(k, i) += modulus(rho(k, i)) / modulus(s.D(i, k));
+  const double known = 2 * weigh(standing.colwise().sum(), T);
+  if (known > 0)
+    result.beyond =
+        std::max(1.0, first_ratio) * (1 + round) * (1 + result.rest / known) * answered_beyond(s, standing, T);
   return result;
 }
 
