@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <vector>
 
 #include "lib/constants.hpp"
 #include "lib/modulus.hpp"
@@ -15,62 +14,87 @@ namespace {
 
 using Index = Eigen::Index;
 
-// c_i, all that couples row k of mode i to others.
-double coupling(const WeightedSystem& s, Index i, Index k) {
-  return s.coupling(i) + static_cast<double>(k) * s.G_off.row(i).cwiseAbs().sum();
+// Last harmonic at or below k of mode i where |D_i|^2 = (w^2 - k^2)^2 + (k G)^2 is least.
+Index below_resonance(const WeightedSystem& s, Index i) {
+  constexpr double most = 1e12;
+  return static_cast<Index>(std::min(std::sqrt(std::max(s.mean(i) - 0.5 * s.G(i, i) * s.G(i, i), 0.0)), most));
 }
 
-// |D_i(k)| of rows beyond, where |D_i|^2 = (w^2 - k^2)^2 + (k G)^2 is least less what coupling may move w^2 by there,
-//     2 sum_m (|K_m,ii|^2 |1/D_i(k+m) + 1/D_i(k-m)| + sum_{j != i} |K_m,ij|^2 (1/|D_j(k+m)| + 1/|D_j(k-m)|)),
-// down to the damping or rounding at worst.
-class Stiffness {
- public:
-  // K: moduli, I*I x (P+1).
-  Stiffness(const WeightedSystem& system, const Eigen::MatrixXd& K)
-      : s_(&system), below_(system.I), nearest_(2, system.I) {
-    constexpr double most = 1e12;
-    for (Index i = 0; i < s_->I; ++i) {
-      const double least = std::sqrt(std::max(s_->mean(i) - 0.5 * s_->G(i, i) * s_->G(i, i), 0.0));
-      below_[static_cast<std::size_t>(i)] = static_cast<Index>(std::min(std::floor(least), most));
-      for (Index n = 0; n < 2; ++n) {
-        const Index k = below(i) + n;
-        nearest_(n, i) = std::max({modulus(s_->D(i, k)) - 2 * moved(K, i, k),
-                                   static_cast<double>(k) * std::abs(s_->G(i, i)), 32 * eps * s_->magnitude(i, k)});
-      }
+// What coupling moves w_i^2 by at harmonic k, at most and to second order,
+//     sum_m (|K_m,ii|^2 |1/D_i(k+m) + 1/D_i(k-m)| + sum_{j != i} |K_m,ij|^2 (1/|D_j(k+m)| + 1/|D_j(k-m)|)).
+double moved(const WeightedSystem& s, Index i, Index k) {
+  const double trifling = 1e-8 * s.coupling(i) * s.coupling(i);
+  double sum = 0;
+  for (Index m = 1; m <= s.P; ++m)
+    for (Index j = 0; j < s.I; ++j) {
+      const double strength = std::norm(s.K(i + s.I * j, m));
+      if (strength <= trifling) continue;
+      const std::complex<double> up = s.D(j, k + m), down = s.D(j, std::abs(k - m));
+      const double sizes = modulus(up) * modulus(down);
+      sum += strength / sizes * (j == i ? modulus(up + down) : modulus(up) + modulus(down));
     }
+  return sum;
+}
+
+// |D_i(k)|, about its least less twice what coupling moves it by, down to the damping or rounding.
+double stiffness(const WeightedSystem& s, Index i, Index k) {
+  const Index above = k - below_resonance(s, i);
+  const double d = modulus(s.D(i, k));
+  if (above < 0 || above > 1) return d;
+  return std::max({d - 2 * moved(s, i, k), static_cast<double>(k) * std::abs(s.G(i, i)), 32 * eps * s.magnitude(i, k)});
+}
+
+// Largest c_i/|D_i(k)| over k >= first, c_i all that couples row k of mode i to others.
+double largest_answer(const WeightedSystem& s, Index i, Index first) {
+  const double across = s.G_off.row(i).cwiseAbs().sum();
+  const Index k = std::max(below_resonance(s, i), first);
+  const auto answer = [&](Index n) { return (s.coupling(i) + static_cast<double>(n) * across) / stiffness(s, i, n); };
+  return std::max(answer(k), answer(k + 1));
+}
+
+// The rows before, the next ones after them, and what all of them add up to.
+class Rows {
+ public:
+  Rows(const WeightedSystem& s, const Spectrum& x, const Spectrum& r, Index first, const Eigen::MatrixXd& T)
+      : s_(s), T_(T), sums_(s.I, s.I * s.P), within_(s.I, s.I), total_(Eigen::VectorXd::Zero(s.I)), answer_(s.I) {
+    const Index I = s.I, P = s.P, R = x.rows() - 1;
+    // Coefficients of a_k-1, a_k-2, ..., a_k-P one below the other, as `last` has them.
+    for (Index m = 1; m <= P; ++m) sums_.middleCols(I * (m - 1), I) = moduli(s.K.col(m)).reshaped(I, I);
+    within_ = moduli(s.K.col(0)).reshaped(I, I);
+    within_.diagonal().setZero();
+    last_ = Eigen::VectorXd::Zero(I * P);
+    Eigen::VectorXd before = Eigen::VectorXd::Zero(I);
+    for (Index k = first; k <= R; ++k)
+      for (Index i = 0; i < I; ++i) {
+        const double here = modulus(x(k, i)) + (r(k, i) == 0.0 ? 0 : modulus(r(k, i)) / modulus(s.D(i, k)));
+        if (R - k < P) last_(I * (R - k) + i) = here;
+        before(i) += here;
+      }
+    before_ = weigh(before, T);
   }
 
-  double operator()(Index i, Index k) const {
-    const Index n = k - below(i);
-    return n == 0 || n == 1 ? nearest_(n, i) : modulus(s_->D(i, k));
+  void next(Index k) {
+    const Index I = s_.I;
+    answer_.noalias() = sums_ * last_;
+    for (Index i = 0; i < I; ++i) answer_(i) /= stiffness(s_, i, k);
+    std::shift_right(last_.begin(), last_.end(), I);
+    last_.head(I) = answer_;
+    total_ += answer_;
+    for (Index i = 0; i < I; ++i)
+      total_(i) +=
+          (within_.row(i) + static_cast<double>(k) * s_.G_off.row(i).cwiseAbs()).dot(answer_) / stiffness(s_, i, k);
   }
 
-  // Largest c_i/|D_i(k)| over k >= first.
-  double largest_answer(Index i, Index first) const {
-    const Index k = std::max(below(i), first);
-    return std::max(coupling(*s_, i, k) / (*this)(i, k), coupling(*s_, i, k + 1) / (*this)(i, k + 1));
-  }
+  double before() const { return before_; }
+  double last() const { return weigh(last_.reshaped(s_.I, s_.P).rowwise().sum(), T_); }
+  double total() const { return weigh(total_, T_); }
 
  private:
-  Index below(Index i) const { return below_[static_cast<std::size_t>(i)]; }
-
-  double moved(const Eigen::MatrixXd& K, Index i, Index k) const {
-    const double least = 1e-8 * s_->coupling(i) * s_->coupling(i);
-    double sum = 0;
-    for (Index m = 1; m <= s_->P; ++m)
-      for (Index j = 0; j < s_->I; ++j) {
-        const double strength = K(i + s_->I * j, m) * K(i + s_->I * j, m);
-        if (strength <= least) continue;
-        const std::complex<double> up = s_->D(j, k + m), down = s_->D(j, std::abs(k - m));
-        const double sizes = modulus(up) * modulus(down);
-        sum += strength / sizes * (j == i ? modulus(up + down) : modulus(up) + modulus(down));
-      }
-    return sum;
-  }
-
-  const WeightedSystem* s_;
-  std::vector<Index> below_;
-  Eigen::MatrixXd nearest_;  // |D| at `below` and above it, 2 x I
+  const WeightedSystem& s_;
+  const Eigen::MatrixXd& T_;
+  Eigen::MatrixXd sums_, within_;
+  Eigen::VectorXd last_, total_, answer_;
+  double before_ = 0;
 };
 
 }  // namespace
@@ -86,44 +110,35 @@ double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) {
   return largest;
 }
 
-// a_k,i = sum_m sum_j |K_m,ij| a_k-m,j / |D_i(k)|, row after row until no resonance is ahead and rows shrink, or all
-// that are ahead could not make them count. The factor stands for what the answers do among themselves.
-double answered_beyond(const WeightedSystem& s, const Eigen::MatrixXd& before, const Eigen::MatrixXd& T) {
+// Row after row until no resonance is ahead and rows shrink, or all that are ahead could not make them count.
+double answered_beyond(const WeightedSystem& s, const Spectrum& x, const Spectrum& r, Index first,
+                       const Eigen::MatrixXd& T) {
   constexpr double among = 1.5, shrinking = 0.3, negligible = 1e-3;
   constexpr Index most_rows = 1000000;
-  const Index I = s.I, P = s.P, R = before.rows() - 1;
-  if (P == 0 || before.isZero(0)) return 0;
-  const double known = 2 * weigh(before.colwise().sum(), T);
-  // |K_m| of all m side by side for a_k-1, a_k-2, ..., a_k-P in one column, its last written row first.
-  const Eigen::MatrixXd K = moduli(s.K);
-  const Stiffness stiffness(s, K);
-  Eigen::MatrixXd sums(I, I * P);
-  for (Index m = 1; m <= P; ++m) sums.middleCols(I * (m - 1), I) = K.col(m).reshaped(I, I);
-  const Eigen::MatrixXd within = K.col(0).reshaped(I, I) - Eigen::MatrixXd(s.mean.cwiseAbs().asDiagonal());
-  Eigen::VectorXd last = Eigen::VectorXd::Zero(I * P), answer(I), total = Eigen::VectorXd::Zero(I);
-  for (Index m = 0; m < std::min(P, R + 1); ++m) last.segment(I * m, I) = before.row(R - m);
+  const Index R = x.rows() - 1;
+  if (s.P == 0) return 0;
+  double ahead = 0, all = 1;
+  const auto look = [&](Index k) {
+    ahead = 0, all = 1;
+    for (Index i = 0; i < s.I; ++i) {
+      const double one = largest_answer(s, i, k);
+      ahead = std::max(ahead, one);
+      all *= std::max(one, 1.0);
+    }
+  };
+  look(R + 1);
+  if (ahead <= shrinking) return among * ahead / (1 - ahead);
+  Rows rows(s, x, r, first, T);
+  if (!(rows.before() > 0)) return 0;
   for (Index k = R + 1; k <= R + most_rows; ++k) {
-    if ((k - R - 1) % P == 0) {
-      end_if_wished();
-      double ahead = 0, all = 1;
-      for (Index i = 0; i < I; ++i) {
-        const double one = stiffness.largest_answer(i, k);
-        ahead = std::max(ahead, one);
-        all *= std::max(one, 1.0);
-      }
-      const double size = 2 * weigh(last.reshaped(I, P).rowwise().sum(), T), so_far = 2 * weigh(total, T);
-      if (ahead <= shrinking) return among * (so_far + size * ahead / (1 - ahead));
-      if (size * all <= negligible * known) return among * (so_far + negligible * known);
-      if (!std::isfinite(size)) break;
-    }
-    answer.noalias() = sums * last;
-    for (Index i = 0; i < I; ++i) answer(i) /= stiffness(i, k);
-    for (Index i = 0; i < I; ++i) {
-      const double across = within.row(i).dot(answer) + static_cast<double>(k) * s.G_off.row(i).cwiseAbs().dot(answer);
-      total(i) += answer(i) + across / stiffness(i, k);
-    }
-    std::shift_right(last.begin(), last.end(), I);
-    last.head(I) = answer;
+    rows.next(k);
+    if ((k - R) % s.P != 0) continue;
+    end_if_wished();
+    look(k + 1);
+    const double size = rows.last() / rows.before(), so_far = rows.total() / rows.before();
+    if (ahead <= shrinking) return among * (so_far + size * ahead / (1 - ahead));
+    if (size * all <= negligible) return among * (so_far + negligible);
+    if (!std::isfinite(size)) break;
   }
   return HUGE_VAL;
 }

@@ -167,16 +167,10 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
   result.outside = weigh(sizes, T);
   if (r.rows() > R + 1) result.outside += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
-  // Of `rest` the rows are not known: taken to be as those that are. What comes back to the window from beyond grows
-  // there as the first step's answer from the tail did.
-  Eigen::MatrixXd standing = moduli(tail);
-  for (Index k = H + 1; k <= R; ++k)
-    for (Index i = 0; i < I; ++i)
-      if (rho(k, i) != 0.0) standing(k, i) += modulus(rho(k, i)) / modulus(s.D(i, k));
-  const double known = 2 * weigh(standing.colwise().sum(), T);
+  // What comes back to the window from rows beyond R grows there as the first step's answer from the tail did.
+  const double known = result.outside + result.rest;
   if (known > 0)
-    result.beyond =
-        std::max(1.0, first_ratio) * (1 + round) * (1 + result.rest / known) * answered_beyond(s, standing, T);
+    result.beyond = std::max(1.0, first_ratio) * (1 + round) * known * answered_beyond(s, tail, rho, H + 1, T);
   return result;
 }
 
