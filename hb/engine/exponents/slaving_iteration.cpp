@@ -40,7 +40,11 @@ Eigen::Map<Numbers<width>> at(double* numbers) {
 template <class Some>
 void in_groups(Index count, const Some& some) {
   Index q = 0;
-  for (; q + 4 <= count; q += 4) some(std::integral_constant<int, 4>(), q);
+  for (; q + 8 <= count; q += 8) some(std::integral_constant<int, 8>(), q);
+  if (q + 4 <= count) {
+    some(std::integral_constant<int, 4>(), q);
+    q += 4;
+  }
   if (q + 2 <= count) {
     some(std::integral_constant<int, 2>(), q);
     q += 2;
@@ -110,6 +114,8 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
     for (Index j = 0; j < n_; ++j) sum += largest_K(S_[s], F_[j]) + std::abs(G_(S_[s], F_[j])) * H_;
     kappa_ = std::max(kappa_, sum);
   }
+  for (const Index j : F_)
+    for (const Index i : F_) K_FF_.push_back(K(j, i).data());
   residual_ = MatrixXd::Zero(n_ * m_, 2);
   scale_ = Eigen::ArrayXd::Ones(2 * n_ * m_);
   for (Index q = 0; q < n_ * m_; ++q) scale_(n_ * m_ + q) = 1 / weight_[std::size_t(q / n_)];
@@ -430,28 +436,36 @@ void Iteration::correction(const VectorXd& x, VectorXd& f) {
 }
 
 void Iteration::sample_residual() {
-  const auto A = [&](Index j, Index l) { return A_.col(j + n_ * l).array(); };
-  const auto C = [&](Index j, Index l) { return C_.col(j + n_ * l).array(); };
-  const Index nm = n_ * m_;
-  auto out = forward_.samples();
+  double *out1 = forward_.samples().col(2 * n_ * m_).data(), *out2 = forward_.samples().col(3 * n_ * m_).data();
   for (Index l = 0; l < m_; ++l)
-    for (Index j = 0; j < n_; ++j) {
-      auto r1 = out.col(2 * nm + j + n_ * l).array();
-      auto r2 = out.col(3 * nm + j + n_ * l).array();
-      r1 = K(F_[j], S_[l]) + G_(F_[j], F_[j]) * P_.col(j + n_ * l).array();
-      r2 = P_.col(j + n_ * l).array() + G_(F_[j], S_[l]) + G_(F_[j], F_[j]) * R_.col(j + n_ * l).array();
-      for (Index s = 0; s < m_; ++s) {
-        r1 -= R_.col(j + n_ * s).array() * alpha_.col(s + m_ * l).array();
-        r2 -= R_.col(j + n_ * s).array() * beta_.col(s + m_ * l).array();
-      }
-      for (Index i = 0; i < n_; ++i) {
-        r1 += K(F_[j], F_[i]) * A(i, l);
-        r2 += K(F_[j], F_[i]) * C(i, l);
-        if (!diagonal_damping_ && i != j) {
-          r1 += G_(F_[j], F_[i]) * P_.col(i + n_ * l).array();
-          r2 += G_(F_[j], F_[i]) * R_.col(i + n_ * l).array();
+    for (Index j = 0; j < n_; ++j, out1 += N_, out2 += N_) {
+      const double own = G_(F_[j], F_[j]), across = G_(F_[j], S_[l]);
+      const double *alone = K(F_[j], S_[l]).data(), *A = A_.col(n_ * l).data(), *C = C_.col(n_ * l).data(),
+                   *P = P_.col(n_ * l).data(), *R = R_.col(n_ * l).data(), *R_j = R_.col(j).data(),
+                   *alpha = alpha_.col(m_ * l).data(), *beta = beta_.col(m_ * l).data();
+      const double* const* K_j = K_FF_.data() + n_ * j;
+      in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
+        using V = Numbers<width>;
+        const V P_jl = at<width>(P + N_ * j + t), R_jl = at<width>(R + N_ * j + t);
+        V r1 = at<width>(alone + t) + own * P_jl, r2 = P_jl + across + own * R_jl;
+        for (Index s = 0; s < m_; ++s) {
+          const V R_js = at<width>(R_j + N_ * n_ * s + t);
+          r1 -= R_js * at<width>(alpha + N_ * s + t);
+          r2 -= R_js * at<width>(beta + N_ * s + t);
         }
-      }
+        for (Index i = 0, at_i = t; i < n_; ++i, at_i += N_) {
+          const V k = at<width>(K_j[i] + t);
+          r1 += k * at<width>(A + at_i);
+          r2 += k * at<width>(C + at_i);
+        }
+        for (Index i = 0, at_i = t; i < n_ && !diagonal_damping_; ++i, at_i += N_) {
+          const double damping = i == j ? 0 : G_(F_[j], F_[i]);
+          r1 += damping * at<width>(P + at_i);
+          r2 += damping * at<width>(R + at_i);
+        }
+        at<width>(out1 + t) = r1;
+        at<width>(out2 + t) = r2;
+      });
     }
 }
 

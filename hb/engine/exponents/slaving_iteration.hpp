@@ -94,6 +94,7 @@ class Iteration {
   bool diagonal_damping_;
   Eigen::Index I_;
   const SampledStiffness::Samples& samples_;
+  std::vector<const double*> K_FF_;  // samples of K between fast modes j and i at i + n j
   Eigen::MatrixXd alpha_, beta_;  // N x m*m
   // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
   fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2
