@@ -40,16 +40,18 @@ Eigen::Map<Numbers<width>> at(double* numbers) {
 template <class Some>
 void in_groups(Index count, const Some& some) {
   Index q = 0;
-  for (; q + 8 <= count; q += 8) some(std::integral_constant<int, 8>(), q);
-  if (q + 4 <= count) {
-    some(std::integral_constant<int, 4>(), q);
-    q += 4;
+  const auto next = [&]<int width>(std::integral_constant<int, width> together) {
+    if (q + width > count) return false;
+    some(together, q);
+    q += width;
+    return true;
+  };
+  while (next(std::integral_constant<int, 16>())) {
   }
-  if (q + 2 <= count) {
-    some(std::integral_constant<int, 2>(), q);
-    q += 2;
-  }
-  if (q < count) some(std::integral_constant<int, 1>(), q);
+  next(std::integral_constant<int, 8>());
+  next(std::integral_constant<int, 4>());
+  next(std::integral_constant<int, 2>());
+  next(std::integral_constant<int, 1>());
 }
 
 }  // namespace
@@ -116,6 +118,8 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
   }
   for (const Index j : F_)
     for (const Index i : F_) K_FF_.push_back(K(j, i).data());
+  for (const Index s : S_)
+    for (const Index j : F_) K_SF_.push_back(K(s, j).data());
   residual_ = MatrixXd::Zero(n_ * m_, 2);
   scale_ = Eigen::ArrayXd::Ones(2 * n_ * m_);
   for (Index q = 0; q < n_ * m_; ++q) scale_(n_ * m_ + q) = 1 / weight_[std::size_t(q / n_)];
@@ -239,7 +243,7 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     ++iterations;
     correction(x, f);
-    if (!f.allFinite()) return false;
+    if (!std::isfinite(f.sum())) return false;
     f.tail(f.size() - changed_).setZero();
     const double change = alpha_change();
     const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
@@ -380,41 +384,14 @@ void Iteration::sample(const VectorXd& x) {
   back_.backward();
 }
 
+// Where damping couples, alpha and beta depend on P and R, which depend on them.
 bool Iteration::reduce() {
-  const auto A = [&](Index j, Index l) { return A_.col(j + n_ * l).array(); };
-  const auto C = [&](Index j, Index l) {
-    return C_.col(j + n_ * l).array();
-  };  // Where damping couples, alpha and beta depend on P and R, which depend on them.
   constexpr int most_passes = 40;
   for (int pass = 0; pass < most_passes; ++pass) {
     const MatrixXd last_alpha = diagonal_damping_ ? MatrixXd() : alpha_;
     const MatrixXd last_beta = diagonal_damping_ ? MatrixXd() : beta_;
-    for (Index l = 0; l < m_; ++l)
-      for (Index s = 0; s < m_; ++s) {
-        auto alpha = alpha_.col(s + m_ * l).array();
-        auto beta = beta_.col(s + m_ * l).array();
-        alpha = K(S_[s], S_[l]);
-        beta.setConstant(G_(S_[s], S_[l]));
-        for (Index j = 0; j < n_; ++j) {
-          alpha += K(S_[s], F_[j]) * A(j, l);
-          beta += K(S_[s], F_[j]) * C(j, l);
-          if (!diagonal_damping_) {
-            alpha += G_(S_[s], F_[j]) * P_.col(j + n_ * l).array();
-            beta += G_(S_[s], F_[j]) * R_.col(j + n_ * l).array();
-          }
-        }
-      }
-    for (Index l = 0; l < m_; ++l)
-      for (Index j = 0; j < n_; ++j) {
-        auto P = P_.col(j + n_ * l).array();
-        auto R = R_.col(j + n_ * l).array();
-        P = A1_.col(j + n_ * l).array();
-        R = A(j, l) + C1_.col(j + n_ * l).array();
-        for (Index s = 0; s < m_; ++s) {
-          P -= C(j, s) * alpha_.col(s + m_ * l).array();
-          R -= C(j, s) * beta_.col(s + m_ * l).array();
-        }
-      }
+    sample_slow();
+    sample_rates();
     if (diagonal_damping_) return true;
     const auto settled = [](const MatrixXd& now, const MatrixXd& last) {
       return (now - last).cwiseAbs().maxCoeff() <= 4 * eps * now.cwiseAbs().maxCoeff();
@@ -424,14 +401,82 @@ bool Iteration::reduce() {
   return false;
 }
 
+void Iteration::sample_slow() {
+  for (Index l = 0; l < m_; ++l)
+    for (Index s = 0; s < m_; ++s) {
+      const double *alone = K(S_[s], S_[l]).data(), *A = A_.col(n_ * l).data(), *C = C_.col(n_ * l).data(),
+                   *P = P_.col(n_ * l).data(), *R = R_.col(n_ * l).data();
+      double *to_alpha = alpha_.col(s + m_ * l).data(), *to_beta = beta_.col(s + m_ * l).data();
+      const double* const* K_s = K_SF_.data() + n_ * s;
+      in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
+        using V = Numbers<width>;
+        V alpha = at<width>(alone + t), beta = V::Constant(G_(S_[s], S_[l]));
+        for (Index j = 0, at_j = t; j < n_; ++j, at_j += N_) {
+          const V k = at<width>(K_s[j] + t);
+          alpha += k * at<width>(A + at_j);
+          beta += k * at<width>(C + at_j);
+        }
+        for (Index j = 0, at_j = t; j < n_ && !diagonal_damping_; ++j, at_j += N_) {
+          alpha += G_(S_[s], F_[j]) * at<width>(P + at_j);
+          beta += G_(S_[s], F_[j]) * at<width>(R + at_j);
+        }
+        at<width>(to_alpha + t) = alpha;
+        at<width>(to_beta + t) = beta;
+      });
+    }
+}
+
+void Iteration::sample_rates() {
+  for (Index l = 0; l < m_; ++l)
+    for (Index j = 0; j < n_; ++j) {
+      const Index own = j + n_ * l;
+      const double *A = A_.col(own).data(), *A1 = A1_.col(own).data(), *C1 = C1_.col(own).data(), *C = C_.col(j).data(),
+                   *alpha = alpha_.col(m_ * l).data(), *beta = beta_.col(m_ * l).data();
+      double *to_P = P_.col(own).data(), *to_R = R_.col(own).data();
+      in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
+        Numbers<width> P = at<width>(A1 + t), R = at<width>(A + t) + at<width>(C1 + t);
+        for (Index s = 0; s < m_; ++s) {
+          const Numbers<width> C_js = at<width>(C + N_ * n_ * s + t);
+          P -= C_js * at<width>(alpha + N_ * s + t);
+          R -= C_js * at<width>(beta + N_ * s + t);
+        }
+        at<width>(to_P + t) = P;
+        at<width>(to_R + t) = R;
+      });
+    }
+}
+
+// With A = C = 0, the residuals are what couples to the slow modes: K_FS and G_FS.
+void Iteration::sample_nothing() {
+  back_.samples().setZero();
+  auto re = forward_.re(), im = forward_.im();
+  re.setZero();
+  im.setZero();
+  const Index nm = n_ * m_, harmonics = std::min(H_ + 1, given_.c.cols());
+  for (Index l = 0; l < m_; ++l)
+    for (Index j = 0; j < n_; ++j) {
+      const auto K_jl = given_.c.row(F_[j] + I_ * S_[l]).head(harmonics);
+      re.row(2 * nm + j + n_ * l).head(harmonics) = K_jl.real();
+      im.row(2 * nm + j + n_ * l).head(harmonics) = K_jl.imag();
+      re(3 * nm + j + n_ * l, 0) = G_(F_[j], S_[l]);
+    }
+}
+
 void Iteration::correction(const VectorXd& x, VectorXd& f) {
   end_if_wished();
-  sample(x);
+  const bool from_nothing = x.isZero(0);
+  if (from_nothing)
+    sample_nothing();
+  else
+    sample(x);
   if (!reduce()) {
     f.setConstant(HUGE_VAL);
     return;
   }
-  sample_residual();
+  if (!from_nothing) {
+    sample_residual();
+    forward_.forward();
+  }
   push_through(f);
 }
 
@@ -471,7 +516,6 @@ void Iteration::sample_residual() {
 
 void Iteration::push_through(VectorXd& f) {
   const Index nm = n_ * m_;
-  forward_.forward();
   const auto re = forward_.re(), im = forward_.im();
   in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
     using V = Numbers<width>;

@@ -79,8 +79,12 @@ class Iteration {
   void correction(const Eigen::VectorXd& x, Eigen::VectorXd& f);
   // A, C, A', C' over the turn.
   void sample(const Eigen::VectorXd& x);
+  // The same where they are zero, and the residuals' harmonics.
+  void sample_nothing();
   // alpha, beta, P and R over the turn; false if they are not found.
   bool reduce();
+  void sample_slow();  // alpha, beta
+  void sample_rates();  // P, R
   // The residuals over the turn.
   void sample_residual();
   void push_through(Eigen::VectorXd& f);
@@ -94,7 +98,7 @@ class Iteration {
   bool diagonal_damping_;
   Eigen::Index I_;
   const SampledStiffness::Samples& samples_;
-  std::vector<const double*> K_FF_;  // samples of K between fast modes j and i at i + n j
+  std::vector<const double*> K_FF_, K_SF_;  // samples of K_ji at i + n j, of K_sj at j + n s
   Eigen::MatrixXd alpha_, beta_;  // N x m*m
   // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
   fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2
