@@ -56,7 +56,7 @@ void Iteration::sample_slow() {
       const double *alone = K(S_[s], S_[l]).data(), *A = A_.col(n_ * l).data(), *C = C_.col(n_ * l).data(),
                    *P = P_.col(n_ * l).data(), *R = R_.col(n_ * l).data();
       double *to_alpha = alpha_.col(s + m_ * l).data(), *to_beta = beta_.col(s + m_ * l).data();
-      const double* const* K_s = K_SF_.data() + n_ * s;
+      const double* const* K_s = K_F_.data() + n_ * s;
       in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
         using V = Numbers<width>;
         V alpha = at<width>(alone + t), beta = V::Constant(G_(S_[s], S_[l]));
@@ -137,7 +137,7 @@ void Iteration::sample_residual() {
       const double *alone = K(F_[j], S_[l]).data(), *A = A_.col(n_ * l).data(), *C = C_.col(n_ * l).data(),
                    *P = P_.col(n_ * l).data(), *R = R_.col(n_ * l).data(), *R_j = R_.col(j).data(),
                    *alpha = alpha_.col(m_ * l).data(), *beta = beta_.col(m_ * l).data();
-      const double* const* K_j = K_FF_.data() + n_ * j;
+      const double* const* K_j = K_F_.data() + n_ * (m_ + j);
       in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
         using V = Numbers<width>;
         const V P_jl = at<width>(P + N_ * j + t), R_jl = at<width>(R + N_ * j + t);

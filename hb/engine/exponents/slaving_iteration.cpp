@@ -81,10 +81,10 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
     for (Index j = 0; j < n_; ++j) sum += largest_K(S_[s], F_[j]) + std::abs(G_(S_[s], F_[j])) * H_;
     kappa_ = std::max(kappa_, sum);
   }
-  for (const Index j : F_)
-    for (const Index i : F_) K_FF_.push_back(K(j, i).data());
-  for (const Index s : S_)
-    for (const Index j : F_) K_SF_.push_back(K(s, j).data());
+  K_F_.reserve(std::size_t(n_ * I_));
+  for (const std::vector<Index>* rows : {&S_, &F_})
+    for (const Index i : *rows)
+      for (const Index j : F_) K_F_.push_back(K(i, j).data());
   residual_ = MatrixXd::Zero(n_ * m_, 2);
   scale_ = Eigen::ArrayXd::Ones(2 * n_ * m_);
   for (Index q = 0; q < n_ * m_; ++q) scale_(n_ * m_ + q) = 1 / weight_[std::size_t(q / n_)];

@@ -27,7 +27,7 @@ Partition partition(Eigen::Index I, std::span<const Eigen::Index> slow);
 // Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
 void drop_tail(FourierSeries& series, Eigen::MatrixXd& error);
 
-// One attempt with N samples of the turn.
+// One attempt with N samples of the turn; stiffness and partition have to stay.
 class Iteration {
  public:
   Iteration(SampledStiffness& stiffness, const Partition& p, Eigen::Index num_samples)
@@ -91,14 +91,16 @@ class Iteration {
   // From the means of K and G on the diagonal.
   void invert_constant_part(const Eigen::VectorXd& w2, const Eigen::VectorXd& b);
 
-  std::vector<Eigen::Index> S_, F_;
+  const std::vector<Eigen::Index>& S_;
+  const std::vector<Eigen::Index>& F_;
   Eigen::Index m_, n_, N_, H_;
   const Eigen::MatrixXd &G_, &rounding_, &G_error_;
   const FourierSeries& given_;  // K as it is given
   bool diagonal_damping_;
   Eigen::Index I_;
   const SampledStiffness::Samples& samples_;
-  std::vector<const double*> K_FF_, K_SF_;  // samples of K_ji at i + n j, of K_sj at j + n s
+  // Samples of K_ij at j + n i: i of all modes, the slow ones first, j of the fast ones.
+  std::vector<const double*> K_F_;
   Eigen::MatrixXd alpha_, beta_;  // N x m*m
   // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
   fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2
