@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
+#include "hb/engine/exponents/neighbouring_numbers.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
-#include "lib/stop_wish.hpp"
 
 namespace hb::slaving {
 
@@ -21,34 +20,6 @@ cplx root(double b, double w2) {
   const cplx r = std::sqrt(cplx(b * b / 4 - w2, 0));
   return b >= 0 && r.imag() == 0 ? cplx(-w2 / (b / 2 + r.real()), 0) : -b / 2 + r;
 }
-
-namespace {
-
-// So many neighbouring numbers.
-template <int width>
-using Numbers = Eigen::Array<double, width, 1>;
-template <int width>
-Eigen::Map<const Numbers<width>> at(const double* numbers) {
-  return Eigen::Map<const Numbers<width>>(numbers);
-}
-template <int width>
-Eigen::Map<Numbers<width>> at(double* numbers) {
-  return Eigen::Map<Numbers<width>>(numbers);
-}
-
-// Calls some(width, first) for all of 0..count - 1, several at once: the width is known when it is compiled.
-template <class Some>
-void in_groups(Index count, const Some& some) {
-  Index q = 0;
-  for (; q + 4 <= count; q += 4) some(std::integral_constant<int, 4>(), q);
-  if (q + 2 <= count) {
-    some(std::integral_constant<int, 2>(), q);
-    q += 2;
-  }
-  if (q < count) some(std::integral_constant<int, 1>(), q);
-}
-
-}  // namespace
 
 Partition partition(Index I, std::span<const Index> slow) {
   Partition p{{slow.begin(), slow.end()}, {}};
@@ -110,6 +81,10 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
     for (Index j = 0; j < n_; ++j) sum += largest_K(S_[s], F_[j]) + std::abs(G_(S_[s], F_[j])) * H_;
     kappa_ = std::max(kappa_, sum);
   }
+  K_F_.reserve(std::size_t(n_ * I_));
+  for (const std::vector<Index>* rows : {&S_, &F_})
+    for (const Index i : *rows)
+      for (const Index j : F_) K_F_.push_back(K(i, j).data());
   residual_ = MatrixXd::Zero(n_ * m_, 2);
   scale_ = Eigen::ArrayXd::Ones(2 * n_ * m_);
   for (Index q = 0; q < n_ * m_; ++q) scale_(n_ * m_ + q) = 1 / weight_[std::size_t(q / n_)];
@@ -233,7 +208,7 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     ++iterations;
     correction(x, f);
-    if (!f.allFinite()) return false;
+    if (!std::isfinite(f.sum())) return false;
     f.tail(f.size() - changed_).setZero();
     const double change = alpha_change();
     const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
@@ -352,133 +327,6 @@ double Iteration::distance(const VectorXd& x, const VectorXd& y) const {
     largest = std::max(largest, 2 * sum.maxCoeff());
   });
   return largest;
-}
-
-void Iteration::sample(const VectorXd& x) {
-  const Index both = 2 * n_ * m_;
-  auto re = back_.re(), im = back_.im();
-  in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
-    const Numbers<width> scale = at<width>(scale_.data() + q);
-    for (Index k = 0; k <= H_; ++k) {
-      const double* from = x.data() + 2 * both * k + q;
-      double *real = &re(q, k), *imaginary = &im(q, k);
-      const Numbers<width> a = scale * at<width>(from), b = scale * at<width>(from + both);
-      at<width>(real) = a;
-      at<width>(imaginary) = b;
-      at<width>(real + both) = -double(k) * b;
-      at<width>(imaginary + both) = double(k) * a;
-    }
-  });
-  re.rightCols(N_ / 2 - H_).setZero();
-  im.rightCols(N_ / 2 - H_).setZero();
-  back_.backward();
-}
-
-bool Iteration::reduce() {
-  const auto A = [&](Index j, Index l) { return A_.col(j + n_ * l).array(); };
-  const auto C = [&](Index j, Index l) {
-    return C_.col(j + n_ * l).array();
-  };  // Where damping couples, alpha and beta depend on P and R, which depend on them.
-  constexpr int most_passes = 40;
-  for (int pass = 0; pass < most_passes; ++pass) {
-    const MatrixXd last_alpha = diagonal_damping_ ? MatrixXd() : alpha_;
-    const MatrixXd last_beta = diagonal_damping_ ? MatrixXd() : beta_;
-    for (Index l = 0; l < m_; ++l)
-      for (Index s = 0; s < m_; ++s) {
-        auto alpha = alpha_.col(s + m_ * l).array();
-        auto beta = beta_.col(s + m_ * l).array();
-        alpha = K(S_[s], S_[l]);
-        beta.setConstant(G_(S_[s], S_[l]));
-        for (Index j = 0; j < n_; ++j) {
-          alpha += K(S_[s], F_[j]) * A(j, l);
-          beta += K(S_[s], F_[j]) * C(j, l);
-          if (!diagonal_damping_) {
-            alpha += G_(S_[s], F_[j]) * P_.col(j + n_ * l).array();
-            beta += G_(S_[s], F_[j]) * R_.col(j + n_ * l).array();
-          }
-        }
-      }
-    for (Index l = 0; l < m_; ++l)
-      for (Index j = 0; j < n_; ++j) {
-        auto P = P_.col(j + n_ * l).array();
-        auto R = R_.col(j + n_ * l).array();
-        P = A1_.col(j + n_ * l).array();
-        R = A(j, l) + C1_.col(j + n_ * l).array();
-        for (Index s = 0; s < m_; ++s) {
-          P -= C(j, s) * alpha_.col(s + m_ * l).array();
-          R -= C(j, s) * beta_.col(s + m_ * l).array();
-        }
-      }
-    if (diagonal_damping_) return true;
-    const auto settled = [](const MatrixXd& now, const MatrixXd& last) {
-      return (now - last).cwiseAbs().maxCoeff() <= 4 * eps * now.cwiseAbs().maxCoeff();
-    };
-    if (settled(alpha_, last_alpha) && settled(beta_, last_beta)) return true;
-  }
-  return false;
-}
-
-void Iteration::correction(const VectorXd& x, VectorXd& f) {
-  end_if_wished();
-  sample(x);
-  if (!reduce()) {
-    f.setConstant(HUGE_VAL);
-    return;
-  }
-  sample_residual();
-  push_through(f);
-}
-
-void Iteration::sample_residual() {
-  const auto A = [&](Index j, Index l) { return A_.col(j + n_ * l).array(); };
-  const auto C = [&](Index j, Index l) { return C_.col(j + n_ * l).array(); };
-  const Index nm = n_ * m_;
-  auto out = forward_.samples();
-  for (Index l = 0; l < m_; ++l)
-    for (Index j = 0; j < n_; ++j) {
-      auto r1 = out.col(2 * nm + j + n_ * l).array();
-      auto r2 = out.col(3 * nm + j + n_ * l).array();
-      r1 = K(F_[j], S_[l]) + G_(F_[j], F_[j]) * P_.col(j + n_ * l).array();
-      r2 = P_.col(j + n_ * l).array() + G_(F_[j], S_[l]) + G_(F_[j], F_[j]) * R_.col(j + n_ * l).array();
-      for (Index s = 0; s < m_; ++s) {
-        r1 -= R_.col(j + n_ * s).array() * alpha_.col(s + m_ * l).array();
-        r2 -= R_.col(j + n_ * s).array() * beta_.col(s + m_ * l).array();
-      }
-      for (Index i = 0; i < n_; ++i) {
-        r1 += K(F_[j], F_[i]) * A(i, l);
-        r2 += K(F_[j], F_[i]) * C(i, l);
-        if (!diagonal_damping_ && i != j) {
-          r1 += G_(F_[j], F_[i]) * P_.col(i + n_ * l).array();
-          r2 += G_(F_[j], F_[i]) * R_.col(i + n_ * l).array();
-        }
-      }
-    }
-}
-
-void Iteration::push_through(VectorXd& f) {
-  const Index nm = n_ * m_;
-  forward_.forward();
-  const auto re = forward_.re(), im = forward_.im();
-  in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
-    using V = Numbers<width>;
-    V sum1 = V::Zero(), sum2 = V::Zero();
-    for (Index k = 0; k <= H_; ++k) {
-      const double n = double(k), signs = k > 0 ? 2 : 1;
-      const auto x = [&](Index column) { return at<width>(&re(nm * column + q, k)); };
-      const auto y = [&](Index column) { return at<width>(&im(nm * column + q, k)); };
-      const auto M = [&](Index entry) { return at<width>(&inverse_(nm * entry + q, k)); };
-      const auto to = [&](Index part) { return at<width>(&f(nm * (4 * k + part) + q)); };
-      const V x1 = x(2) - n * y(0), y1 = y(2) + n * x(0), x2 = x(3) - n * y(1), y2 = y(3) + n * x(1);
-      sum1 += signs * (x1.square() + y1.square()).sqrt();
-      sum2 += signs * (x2.square() + y2.square()).sqrt();
-      to(0) = M(0) * x1 - M(1) * y1 + M(2) * x2 - M(3) * y2;
-      to(1) = M(4) * x1 - M(5) * y1 + M(6) * x2 - M(7) * y2;
-      to(2) = M(0) * y1 + M(1) * x1 + M(2) * y2 + M(3) * x2;
-      to(3) = M(4) * y1 + M(5) * x1 + M(6) * y2 + M(7) * x2;
-    }
-    at<width>(&residual_(q, 0)) = sum1;
-    at<width>(&residual_(q, 1)) = sum2;
-  });
 }
 
 }  // namespace hb::slaving

@@ -27,7 +27,7 @@ Partition partition(Eigen::Index I, std::span<const Eigen::Index> slow);
 // Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
 void drop_tail(FourierSeries& series, Eigen::MatrixXd& error);
 
-// One attempt with N samples of the turn.
+// One attempt with N samples of the turn; stiffness and partition have to stay.
 class Iteration {
  public:
   Iteration(SampledStiffness& stiffness, const Partition& p, Eigen::Index num_samples)
@@ -79,21 +79,28 @@ class Iteration {
   void correction(const Eigen::VectorXd& x, Eigen::VectorXd& f);
   // A, C, A', C' over the turn.
   void sample(const Eigen::VectorXd& x);
+  // The same where they are zero, and the residuals' harmonics.
+  void sample_nothing();
   // alpha, beta, P and R over the turn; false if they are not found.
   bool reduce();
+  void sample_slow();  // alpha, beta
+  void sample_rates();  // P, R
   // The residuals over the turn.
   void sample_residual();
   void push_through(Eigen::VectorXd& f);
   // From the means of K and G on the diagonal.
   void invert_constant_part(const Eigen::VectorXd& w2, const Eigen::VectorXd& b);
 
-  std::vector<Eigen::Index> S_, F_;
+  const std::vector<Eigen::Index>& S_;
+  const std::vector<Eigen::Index>& F_;
   Eigen::Index m_, n_, N_, H_;
   const Eigen::MatrixXd &G_, &rounding_, &G_error_;
   const FourierSeries& given_;  // K as it is given
   bool diagonal_damping_;
   Eigen::Index I_;
   const SampledStiffness::Samples& samples_;
+  // Samples of K_ij at j + n i: i of all modes, the slow ones first, j of the fast ones.
+  std::vector<const double*> K_F_;
   Eigen::MatrixXd alpha_, beta_;  // N x m*m
   // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
   fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2

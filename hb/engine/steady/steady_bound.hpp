@@ -30,9 +30,12 @@ struct Correction {
   double rest = 0;  // size in q of what may be missing else; infinite if the corrections do not shrink
 };
 // Steps go on until the last is below `enough`, in q. Where the first one and what it leaves are `negligible` already
-// there is no other to measure how they shrink: `rest` is both.
+// there is no other to measure how they shrink: `rest` is both. `hidden`: rounding hides as much. Where r says
+// less than that on the window it is as good as rounding: no step is taken, `window` is zero and `rest` what r amounts
+// to.
 [[nodiscard]] Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response,
-                                    const Eigen::MatrixXd& T, double enough = HUGE_VAL, double negligible = 0);
+                                    const Eigen::MatrixXd& T, double enough = HUGE_VAL, double negligible = 0,
+                                    double hidden = 0);
 
 // Sizes in q of rows of a residual divided by |D(k)|, those of harmonics k = first, first + 1, ...
 [[nodiscard]] Eigen::VectorXd sizes_of_rows(const WeightedSystem& system, const Spectrum& rows, Eigen::Index first,

@@ -221,9 +221,9 @@ class Solver {
         return;
       }
     }
-    const double enough = 0.1 * options_.tolerance * largest,
-                 negligible = std::min(enough, std::max(1e-3 * options_.tolerance * largest, 0.25 * rounding));
-    const steady::Correction correction = steady::correction(A, inverse, r, response, T_, enough, negligible);
+    const double enough = 0.1 * options_.tolerance * largest, hidden = std::min(enough, 0.25 * rounding),
+                 negligible = std::max(std::min(enough, 1e-3 * options_.tolerance * largest), hidden);
+    const steady::Correction correction = steady::correction(A, inverse, r, response, T_, enough, negligible, hidden);
     if (correction.window.allFinite() && std::isfinite(correction.rest)) {
       x += correction.window;
       if (steady::size_in_q(correction.window, T_) > 1e-6 * largest)
