@@ -52,6 +52,12 @@ Spectrum padded(const Spectrum& x, Index H) {
   return result;
 }
 
+// An error of q over max |q|, which may be less than that of the q computed by the error; above 1 of no use, and
+// finite.
+double relative(double error, double largest) {
+  return error < 0.5 * largest ? error / (largest - error) : 2 * error / largest;
+}
+
 class Solver {
  public:
   Solver(const ScaledSystem& scaled, const Given& given, const SteadyOptions& options)
@@ -232,7 +238,7 @@ class Solver {
     const double error = correction.outside + correction.beyond + correction.rest + rounding;
     const double conversion = 4 * eps * static_cast<double>(system_.I) * steady::size_in_q(x, T_.cwiseAbs());
     state.residual = steady::wiener_norms(r).sum() / load;
-    state.error_bound = (error + conversion) / largest;
+    state.error_bound = relative(error + conversion, largest);
     state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
     Eigen::MatrixXcd u = in_given_units();
     if (state.status != SteadyStatus::converged) wanted = with_those_left_out(H, correction, largest);
@@ -271,7 +277,7 @@ class Solver {
     for (Index N = A.num_harmonics(); steady::proof_size(system_, N) <= most_unknowns; N *= 2) {
       const steady::Proof proof = steady::prove_error(system_, T_, N, residual.r, residual.rounding);
       if (!std::isfinite(proof.error)) continue;
-      state.error_bound = (proof.error + residual.conversion) / (residual.largest * (1 - 1e-10));
+      state.error_bound = relative(proof.error + residual.conversion, residual.largest * (1 - 1e-10));
       state.bound = SteadyBound::proved;
       state.status = state.error_bound <= options_.tolerance ? SteadyStatus::converged : SteadyStatus::not_reached;
       return;
@@ -297,7 +303,8 @@ class Solver {
       if (!std::isfinite(correction.rest)) break;
       const double inner = steady::size_in_q(correction.window, T_) + correction.rest +
                            steady::amplified(A, residual.rounding.topRows(H + 1), response, T_);
-      const double bound = (correction.outside + correction.beyond + inner + residual.conversion) / residual.largest;
+      const double bound =
+          relative(correction.outside + correction.beyond + inner + residual.conversion, residual.largest);
       if (bound < state.error_bound) {
         state.error_bound = bound;
         state.residual = steady::wiener_norms(residual.r).sum() / load;
