@@ -32,10 +32,10 @@ std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, co
 }
 
 // Forces are linear in the deflections.
-Largest change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
+Largest change(const ForceTable& table, double speed, const std::vector<LinkResponse>& responses,
                const std::vector<LinkResponse>& better) {
   constexpr double digits = 1e-5;  // enough of an estimate
-  const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
+  const JointForces added = deflection_forces(table, speed, changes(responses, better), digits);
   Largest largest{0, bound(added.torque)};
   for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));
   return largest;
@@ -60,7 +60,7 @@ double relative(double error, double size) { return error == 0 ? 0 : error / siz
 
 }  // namespace
 
-ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces, double response_error,
+ForceErrors force_errors(const ForceTable& table, double speed, const JointForces& forces, double response_error,
                          const std::vector<LinkResponse>& responses, const std::vector<LinkResponse>& more_harmonics,
                          const std::vector<LinkResponse>& more_modes) {
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
@@ -70,12 +70,12 @@ ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces
   ForceErrors errors{forces.force_error + response_error * elastic.force,
                      forces.torque_error + response_error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
-    const Largest more = change(linkage, speed, responses, more_harmonics);
+    const Largest more = change(table, speed, responses, more_harmonics);
     errors.force += safety * more.force;
     errors.torque += safety * more.torque;
   }
   if (!more_modes.empty()) {
-    const Largest more = change(linkage, speed, responses, more_modes);
+    const Largest more = change(table, speed, responses, more_modes);
     errors.force_cut = safety * more.force;
     errors.torque_cut = safety * more.torque;
   }

@@ -16,7 +16,7 @@ struct ForceErrors {
 
 // `forces` belong to `responses`, whose relative error is `response_error`; `more_harmonics` and `more_modes` are
 // better ones of the same rods; an empty list leaves its part out.
-[[nodiscard]] ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces,
+[[nodiscard]] ForceErrors force_errors(const ForceTable& table, double speed, const JointForces& forces,
                                        double response_error, const std::vector<LinkResponse>& responses,
                                        const std::vector<LinkResponse>& more_harmonics,
                                        const std::vector<LinkResponse>& more_modes);

@@ -150,10 +150,10 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
     compared = compared && solved[r].cut.has_value();
     response_error = std::max(response_error, point.rods[r].error_bound);
   }
-  JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
-  point.force_errors = compared || solved.empty() ? force_errors(*model.linkage(), point.speed, forces, response_error,
-                                                                 responses, {}, more_modes)
-                                                  : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
+  JointForces forces = joint_forces(*model.forces, point.speed, responses);
+  point.force_errors = compared || solved.empty()
+                           ? force_errors(*model.forces, point.speed, forces, response_error, responses, {}, more_modes)
+                           : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   for (const JointForce& joint : forces.joints) {
     for (const TurnRange& range : turn_ranges(joint.elastic)) point.joints.push_back(range);
     for (const TurnRange& range : turn_ranges(joint.rigid)) point.joints_rigid.push_back(range);
