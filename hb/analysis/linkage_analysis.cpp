@@ -232,8 +232,8 @@ void add_forces(const SceneModel& model, double speed, const Settings& settings,
   for (std::size_t r = 0; r < model.rods.size(); ++r)
     more_harmonics.push_back(
         {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
-  result.force_errors =
-      force_errors(*model.forces, speed, *result.forces, response_error, responses, more_harmonics, more_modes);
+  result.force_errors = force_errors(*model.forces, speed, *result.forces, largest_of(*result.forces), response_error,
+                                     responses, more_harmonics, more_modes);
   stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
 }
 

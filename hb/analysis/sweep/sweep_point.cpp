@@ -21,6 +21,8 @@ std::vector<TurnRange> turn_ranges(const FourierSeries& series) {
   return ranges;
 }
 
+double size_of(const TurnRange& range) { return std::max(std::abs(range.min), std::abs(range.max)); }
+
 StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
   StressPoint point;
   point.axial = stress.axial;
@@ -151,15 +153,20 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
     response_error = std::max(response_error, point.rods[r].error_bound);
   }
   JointForces forces = joint_forces(*model.forces, point.speed, responses);
-  point.force_errors = compared || solved.empty()
-                           ? force_errors(*model.forces, point.speed, forces, response_error, responses, {}, more_modes)
-                           : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
+  LargestForces largest;
   for (const JointForce& joint : forces.joints) {
-    for (const TurnRange& range : turn_ranges(joint.elastic)) point.joints.push_back(range);
+    for (const TurnRange& range : turn_ranges(joint.elastic)) {
+      point.joints.push_back(range);
+      largest.force = std::max(largest.force, size_of(range));
+    }
     for (const TurnRange& range : turn_ranges(joint.rigid)) point.joints_rigid.push_back(range);
   }
   point.torque = turn_ranges(forces.torque).front();
   point.torque_rigid = turn_ranges(forces.torque_rigid).front();
+  largest.torque = size_of(*point.torque);
+  point.force_errors = compared || solved.empty() ? force_errors(*model.forces, point.speed, forces, largest,
+                                                                 response_error, responses, {}, more_modes)
+                                                  : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   point.machine = machine_point(
       machine_loads(*model.linkage(), point.speed, forces, *point.force_errors, LoadDetail::largest), point.speed);
   return forces;
