@@ -415,8 +415,9 @@ SpeedResult analyse(const SceneModel& model, double speed, const Settings& setti
       entry.shape = rod_shape(link_of(model, rod), coefficients_of(model, rod), speed, entry.steady->q);
       std::optional<double> moment_error;
       if (entry.cut) {
-        entry.peak_errors =
-            peak_errors(link_of(model, rod), *entry.shape, entry.steady->q, entry.steady->error_bound, *entry.cut);
+        entry.peak_errors = peak_errors(link_of(model, rod), *entry.shape, entry.num_modes,
+                                        std::ranges::max(entry.max_abs, {}, &Extremum::value).value,
+                                        entry.steady->error_bound, *entry.cut);
         moment_error = entry.peak_errors->bending_moment;
       }
       entry.stress = rod_stress(link_of(model, rod), coefficients_of(model, rod), model.coefficients.tail, speed,

@@ -89,7 +89,8 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
   point.deflection = shape.deflection.max_abs;
   point.bending_moment = shape.bending_moment.max_abs;
   if (cut) {
-    const PeakErrors errors = peak_errors(link, shape, q, point.error_bound, *cut);
+    const PeakErrors errors =
+        peak_errors(link, shape, q.num_components(), std::ranges::max(point.max_abs), point.error_bound, *cut);
     point.deflection_error = errors.deflection;
     point.bending_moment_error = errors.bending_moment;
   }
@@ -117,8 +118,8 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     point.error_bound = state.error_bound;
     point.resonance_distance = state.resonance_distance;
     if (state.status != SteadyStatus::singular) {
-      for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
-        point.max_abs.push_back(fourier::max_abs(state.q, i).value);
+      const Eigen::VectorXd largest = fourier::largest_values(state.q);
+      point.max_abs.assign(largest.begin(), largest.end());
       responses.q = std::move(state.q);
       if (rod.finer.num_modes() > 0) compare(responses, model, rod, speed, with_more_modes(rod, speed, settings));
       if (only.shape && rod.reported) add_shape(point, model, rod, speed, responses);
