@@ -20,12 +20,11 @@ CutError cut_error(const Body& link, const RodCoefficients& rod, double speed, c
   return {cut_safety * change.deflection, cut_safety * change.bending_moment};
 }
 
-PeakErrors peak_errors(const Body& link, const RodShape& shape, const FourierSeries& q, double error_bound,
-                       const CutError& cut) {
-  const double largest = fourier::largest_values(q).maxCoeff();
+PeakErrors peak_errors(const Body& link, const RodShape& shape, Eigen::Index num_modes, double largest_q,
+                       double error_bound, const CutError& cut) {
   // w = sum q_i sin(i pi x/l): at most I times the error of a q_i; w'': sum (i pi/l)^2 times.
-  const auto I = static_cast<double>(q.num_components());
-  const double k = std::numbers::pi / link.length, of_each = error_bound * largest;
+  const auto I = static_cast<double>(num_modes);
+  const double k = std::numbers::pi / link.length, of_each = error_bound * largest_q;
   const double EJ = link.elastic->youngs_modulus * link.elastic->second_moment;
   return {I * of_each + cut.deflection * shape.deflection.max_abs,
           EJ * k * k * I * (I + 1) * (2 * I + 1) / 6 * of_each + cut.bending_moment * shape.bending_moment.max_abs};

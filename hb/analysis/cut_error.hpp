@@ -15,11 +15,12 @@ struct CutError {
 [[nodiscard]] CutError cut_error(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
                                  const FourierSeries& finer);
 
-// Of the largest w and EJ w'', in their units: modes left out, and |error of q_i| <= error_bound max |q|.
+// Of the largest w and EJ w'', in their units: modes left out, and |error of q_i| <= error_bound largest_q, the largest
+// |q_i| over the turn.
 struct PeakErrors {
   double deflection = 0, bending_moment = 0;
 };
-[[nodiscard]] PeakErrors peak_errors(const Body& link, const RodShape& shape, const FourierSeries& q,
+[[nodiscard]] PeakErrors peak_errors(const Body& link, const RodShape& shape, Eigen::Index num_modes, double largest_q,
                                      double error_bound, const CutError& cut);
 
 }  // namespace hb

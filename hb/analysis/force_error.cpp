@@ -5,11 +5,6 @@
 namespace hb {
 namespace {
 
-// Largest value over the turn of any component of any joint force, and of the torque.
-struct Largest {
-  double force = 0, torque = 0;
-};
-
 // Bound on the largest value over the turn of any component.
 double bound(const FourierSeries& series) {
   double largest = 0;
@@ -32,25 +27,18 @@ std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, co
 }
 
 // Forces are linear in the deflections.
-Largest change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
-               const std::vector<LinkResponse>& better) {
+LargestForces change(const ForceTable& table, double speed, const std::vector<LinkResponse>& responses,
+                     const std::vector<LinkResponse>& better) {
   constexpr double digits = 1e-5;  // enough of an estimate
-  const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
-  Largest largest{0, bound(added.torque)};
+  const JointForces added = deflection_forces(table, speed, changes(responses, better), digits);
+  LargestForces largest{0, bound(added.torque)};
   for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));
   return largest;
 }
 
-Largest sizes(const JointForces& forces) {
-  Largest largest{0, fourier::max_abs(forces.torque, 0).value};
-  for (const JointForce& joint : forces.joints)
-    largest.force = std::max(largest.force, fourier::largest_values(joint.elastic).maxCoeff());
-  return largest;
-}
-
 // What the rods' deflection adds to the forces.
-Largest elastic_part(const JointForces& forces) {
-  Largest largest{0, bound(fourier::difference(forces.torque, forces.torque_rigid))};
+LargestForces elastic_part(const JointForces& forces) {
+  LargestForces largest{0, bound(fourier::difference(forces.torque, forces.torque_rigid))};
   for (const JointForce& joint : forces.joints)
     largest.force = std::max(largest.force, bound(fourier::difference(joint.elastic, joint.rigid)));
   return largest;
@@ -60,27 +48,33 @@ double relative(double error, double size) { return error == 0 ? 0 : error / siz
 
 }  // namespace
 
-ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces, double response_error,
-                         const std::vector<LinkResponse>& responses, const std::vector<LinkResponse>& more_harmonics,
-                         const std::vector<LinkResponse>& more_modes) {
+LargestForces largest_of(const JointForces& forces) {
+  LargestForces largest{0, fourier::max_abs(forces.torque, 0).value};
+  for (const JointForce& joint : forces.joints)
+    largest.force = std::max(largest.force, fourier::largest_values(joint.elastic).maxCoeff());
+  return largest;
+}
+
+ForceErrors force_errors(const ForceTable& table, double speed, const JointForces& forces, const LargestForces& largest,
+                         double response_error, const std::vector<LinkResponse>& responses,
+                         const std::vector<LinkResponse>& more_harmonics, const std::vector<LinkResponse>& more_modes) {
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
-  const Largest size = sizes(forces);
-  const Largest elastic = elastic_part(forces);
+  const LargestForces elastic = elastic_part(forces);
   ForceErrors errors{forces.force_error + response_error * elastic.force,
                      forces.torque_error + response_error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
-    const Largest more = change(linkage, speed, responses, more_harmonics);
+    const LargestForces more = change(table, speed, responses, more_harmonics);
     errors.force += safety * more.force;
     errors.torque += safety * more.torque;
   }
   if (!more_modes.empty()) {
-    const Largest more = change(linkage, speed, responses, more_modes);
+    const LargestForces more = change(table, speed, responses, more_modes);
     errors.force_cut = safety * more.force;
     errors.torque_cut = safety * more.torque;
   }
-  return {relative(errors.force, size.force), relative(errors.torque, size.torque),
-          relative(errors.force_cut, size.force), relative(errors.torque_cut, size.torque)};
+  return {relative(errors.force, largest.force), relative(errors.torque, largest.torque),
+          relative(errors.force_cut, largest.force), relative(errors.torque_cut, largest.torque)};
 }
 
 }  // namespace hb

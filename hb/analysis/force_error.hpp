@@ -14,10 +14,17 @@ struct ForceErrors {
   double force_cut = 0, torque_cut = 0;  // from cutting the Ritz series
 };
 
-// `forces` belong to `responses`, whose relative error is `response_error`; `more_harmonics` and `more_modes` are
-// better ones of the same rods; an empty list leaves its part out.
-[[nodiscard]] ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces,
-                                       double response_error, const std::vector<LinkResponse>& responses,
+// Largest value over the turn of any component of any joint force, and of the torque.
+struct LargestForces {
+  double force = 0, torque = 0;
+};
+[[nodiscard]] LargestForces largest_of(const JointForces& forces);
+
+// `largest` of `forces`, which belong to `responses`, whose relative error is `response_error`; `more_harmonics` and
+// `more_modes` are better ones of the same rods; an empty list leaves its part out.
+[[nodiscard]] ForceErrors force_errors(const ForceTable& table, double speed, const JointForces& forces,
+                                       const LargestForces& largest, double response_error,
+                                       const std::vector<LinkResponse>& responses,
                                        const std::vector<LinkResponse>& more_harmonics,
                                        const std::vector<LinkResponse>& more_modes);
 

@@ -23,8 +23,7 @@ class FunctionsOverTurn {
  public:
   FunctionsOverTurn(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q, Eigen::Index N,
                     Eigen::Index highest = std::numeric_limits<Eigen::Index>::max()) {
-    FourierSeries T = rod_terms::time_functions(link, rod, speed, q);
-    if (T.num_harmonics() > highest) T = fourier::resized(T, highest);
+    FourierSeries T = rod_terms::time_functions(link, rod, speed, q, highest);
     beside_deflection_ = over_turn(T, N);
     if (link.elastic->shear)
       beside_curvature_ = over_turn(rod_terms::moment_functions(link, speed, q, std::move(T)), N);

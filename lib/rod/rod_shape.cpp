@@ -171,6 +171,14 @@ Eigen::ArrayXd harmonic_sizes(const Eigen::RowVectorXd& largest, const FourierSe
   return 2 * (largest * (c.real().cwiseAbs() + c.imag().cwiseAbs())).transpose().array();
 }
 
+// The fewest harmonics without which bounds of at most `small` are missing.
+Eigen::Index harmonics_above(const Eigen::ArrayXd& size, double small) {
+  Eigen::Index H = size.size();
+  for (double missing = 0; H > 0; --H)
+    if (!((missing += size(H - 1)) <= small)) break;
+  return H;
+}
+
 // Largest |F| over rod and turn: local maxima of a grid with at least 8 points per wave that come within a tenth of the
 // best (a wave's top lies at most 8 % above its samples), each climbed. The grid leaves out harmonics that make up a
 // small share of F'' over the turn: the more, the flatter the highest one turns out.
@@ -191,10 +199,11 @@ RodPeak peak(const rod_terms::ShapeTable& table, const FourierSeries& T, int ord
     end_if_wished();
     const double top = grid.highest.maxCoeff();
     if (!(top > 0)) return {};
+    const FourierSeries telling = fourier::resized(T, harmonics_above(size, eps / 2 * top));
     RodPeak best;
     double curvature = 0;
     for (const Candidate& c : candidates_of(grid, 0.9 * top - size.tail(size.size() - H).sum())) {
-      const Surface surface{table.shapes, T, l, order, c.sign};
+      const Surface surface{table.shapes, telling, l, order, c.sign};
       const auto [candidate, its_curvature] =
           climbed(surface, c.i / static_cast<double>(x.size() - 1), two_pi * c.j / static_cast<double>(time.rows()));
       if (candidate.max_abs > best.max_abs) {

@@ -14,9 +14,10 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// f_3 q_k, then f_2 q_k, with all of their H harmonics.
+// f_3 q_k, then f_2 q_k, of which the first H harmonics are true: at N angles the highest is folded back to N less it.
 Eigen::Map<const Eigen::MatrixXcd> products_with(const FourierSeries& f, const FourierSeries& q, Eigen::Index H) {
-  const Eigen::Index I = q.num_components(), N = angles_from(2 * H + 2);
+  const Eigen::Index I = q.num_components(), F = f.num_harmonics(), Q = q.num_harmonics();
+  const Eigen::Index N = angles_from(std::max({F + Q + H, 2 * F, 2 * Q}) + 2);
   fourier::RealTransform& factors = fourier::thread_transform(N, I + 2);
   auto spectrum = factors.spectrum();
   spectrum.setZero();
@@ -67,16 +68,18 @@ FourierSeries coefficients_at(const RodCoefficients& rod, double speed) {
   return sum;
 }
 
-FourierSeries time_functions(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q) {
+FourierSeries time_functions(const Body& link, const RodCoefficients& rod, double speed, const FourierSeries& q,
+                             Eigen::Index highest) {
   const Eigen::Index I = q.num_components();
   const FourierSeries f = coefficients_at(rod, speed);
-  const Eigen::Index H = q.num_harmonics() + f.num_harmonics();
+  const Eigen::Index H = std::min(q.num_harmonics() + f.num_harmonics(), highest);
+  const auto columns = [H](const FourierSeries& series) { return std::min(series.c.cols(), H + 1); };
   FourierSeries T;
   T.c.resize(3 * I + 2, H + 1);
   T.c.topRows(I + 2).setZero();
-  T.c.topLeftCorner(I, q.c.cols()) = q.c;
-  T.c.block(I, 0, 2, f.c.cols()) = f.c.topRows(2);
-  T.c.bottomRows(2 * I) = products_with(f, q, H).topRows(H + 1).transpose();
+  T.c.topLeftCorner(I, columns(q)) = q.c.leftCols(columns(q));
+  T.c.block(I, 0, 2, columns(f)) = f.c.topLeftCorner(2, columns(f));
+  fourier::transpose_singly(products_with(f, q, H).topRows(H + 1), T.c.bottomRows(2 * I));
   for (Eigen::Index n = 1; n <= H; ++n)
     T.c.col(n).tail(2 * I + 2) *= 1.0 / Complex(1, static_cast<double>(n) * speed * link.elastic->internal_damping);
   drop_rounding(T);

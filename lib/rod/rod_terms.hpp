@@ -11,6 +11,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_shapes.hpp"
@@ -23,9 +24,10 @@ namespace hb::rod_terms {
 // f_0..f_4 at one speed.
 [[nodiscard]] FourierSeries coefficients_at(const RodCoefficients& rod, double speed);
 
-// Beside the shapes of the deflection, in their order.
+// Beside the shapes of the deflection, in their order; without harmonics above the highest.
 [[nodiscard]] FourierSeries time_functions(const Body& link, const RodCoefficients& rod, double speed,
-                                           const FourierSeries& q);
+                                           const FourierSeries& q,
+                                           Eigen::Index highest = std::numeric_limits<Eigen::Index>::max());
 // Those beside the shapes of the bending moment: the sections' rotations for q.
 [[nodiscard]] FourierSeries moment_functions(const Body& link, double speed, const FourierSeries& q, FourierSeries T);
 

@@ -113,7 +113,9 @@ void add_rods(const SceneModel& model, const ExactModel& exact, const std::optio
     if (result.computed.shape) {
       rod.shape = rod_shape(body, coefficients, base, rod.q);
       bend(rod.shape->bending_moment, rod.q, body.length);
-      if (rod.cut) rod.peak_errors = peak_errors(body, *rod.shape, rod.q, rod.error_bound, *rod.cut);
+      if (rod.cut)
+        rod.peak_errors = peak_errors(body, *rod.shape, rod.q.num_components(),
+                                      fourier::largest_values(rod.q).maxCoeff(), rod.error_bound, *rod.cut);
       std::optional<double> moment_error;
       if (rod.peak_errors) moment_error = rod.peak_errors->bending_moment;
       rod.stress =

@@ -21,6 +21,8 @@ std::vector<TurnRange> turn_ranges(const FourierSeries& series) {
   return ranges;
 }
 
+double size_of(const TurnRange& range) { return std::max(std::abs(range.min), std::abs(range.max)); }
+
 StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
   StressPoint point;
   point.axial = stress.axial;
@@ -87,7 +89,8 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
   point.deflection = shape.deflection.max_abs;
   point.bending_moment = shape.bending_moment.max_abs;
   if (cut) {
-    const PeakErrors errors = peak_errors(link, shape, q, point.error_bound, *cut);
+    const PeakErrors errors =
+        peak_errors(link, shape, q.num_components(), std::ranges::max(point.max_abs), point.error_bound, *cut);
     point.deflection_error = errors.deflection;
     point.bending_moment_error = errors.bending_moment;
   }
@@ -150,16 +153,21 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
     compared = compared && solved[r].cut.has_value();
     response_error = std::max(response_error, point.rods[r].error_bound);
   }
-  JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
-  point.force_errors = compared || solved.empty() ? force_errors(*model.linkage(), point.speed, forces, response_error,
-                                                                 responses, {}, more_modes)
-                                                  : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
+  JointForces forces = joint_forces(*model.forces, point.speed, responses);
+  LargestForces largest;
   for (const JointForce& joint : forces.joints) {
-    for (const TurnRange& range : turn_ranges(joint.elastic)) point.joints.push_back(range);
+    for (const TurnRange& range : turn_ranges(joint.elastic)) {
+      point.joints.push_back(range);
+      largest.force = std::max(largest.force, size_of(range));
+    }
     for (const TurnRange& range : turn_ranges(joint.rigid)) point.joints_rigid.push_back(range);
   }
   point.torque = turn_ranges(forces.torque).front();
   point.torque_rigid = turn_ranges(forces.torque_rigid).front();
+  largest.torque = size_of(*point.torque);
+  point.force_errors = compared || solved.empty() ? force_errors(*model.forces, point.speed, forces, largest,
+                                                                 response_error, responses, {}, more_modes)
+                                                  : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   point.machine = machine_point(
       machine_loads(*model.linkage(), point.speed, forces, *point.force_errors, LoadDetail::largest), point.speed);
   return forces;
