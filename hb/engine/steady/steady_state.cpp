@@ -71,6 +71,7 @@ class Solver {
     Index H = chosen ? options_.num_harmonics
                      : steady::predicted_harmonics(system_, 0.1 * std::max(options_.tolerance, eps), most);
     Spectrum x = start();
+    Index more = 0;  // harmonics than the window before
     for (;;) {
       steady::Operator A(system_, H);
       const bool last = chosen || H >= most;
@@ -81,7 +82,9 @@ class Solver {
         state.iterations = state.method == SteadyMethod::direct ? factorisations_ : products_;
         return state;
       }
-      H = std::min(wanted, most);
+      // Beside a resonance each window shows few of those missing.
+      more = std::max(wanted - H, 2 * more);
+      H = std::min(H + more, most);
     }
   }
 
