@@ -237,8 +237,11 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   result.outside = size_outside(s, H, r, tail, T);
   // What comes back to the window from rows beyond R grows there as the first step's answer from the tail did.
   const double known = result.outside + result.rest;
-  if (known > 0)
-    result.beyond = std::max(1.0, first_ratio) * (1 + round) * known * answered_beyond(s, tail, rho, H + 1, T);
+  if (known > 0 && std::isfinite(known)) {
+    const double share = answered_beyond(s, tail, rho, H + 1, T);
+    result.beyond = std::max(1.0, first_ratio) * (1 + round) * known * share;
+    result.resonance_ahead = share > 0.3;
+  }
   return result;
 }
 

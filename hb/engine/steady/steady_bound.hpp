@@ -27,6 +27,7 @@ struct Correction {
   Spectrum window;
   double outside = 0;  // size in q of the rows beyond the window, which no solution on the window has
   double beyond = 0;  // size in q of what rows beyond last_row() answer, not counted in either
+  bool resonance_ahead = false;  // they answer more than 0.3 of what stands before them
   double rest = 0;  // size in q of what may be missing else; infinite if the corrections do not shrink
 };
 // Steps go on until the last is below `enough`, in q. Where the first one and what it leaves are `negligible` already

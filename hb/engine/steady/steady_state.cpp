@@ -202,8 +202,8 @@ class Solver {
 
   // More harmonics where those left out are what is missing, else H.
   Index with_those_left_out(Index H, const steady::Correction& correction, double largest) const {
-    const bool missing = correction.outside + correction.beyond > 0.1 * options_.tolerance * largest;
-    return missing ? H + std::max<Index>({2, system_.P / 2, H / 4}) : H;
+    const double missing = correction.outside + (correction.resonance_ahead ? correction.beyond : 0);
+    return missing > 0.1 * options_.tolerance * largest ? H + std::max<Index>({2, system_.P / 2, H / 4}) : H;
   }
 
   // The claim is hb/engine/README.md (S7).
