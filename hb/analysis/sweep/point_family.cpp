@@ -73,7 +73,6 @@ SlavingStart interpolated(std::span<const KnownStart> known, double x) {
   SlavingStart start;
   start.modes = above->start->modes;
   start.diverges = std::prev(above)->start->diverges && above->start->diverges;
-  start.change = HUGE_VAL;
   const std::span<const KnownStart> nodes = alike_beside(known, x);
   if (nodes.size() < fewest_places) return start;
   std::vector<double> places;
@@ -85,10 +84,17 @@ SlavingStart interpolated(std::span<const KnownStart> known, double x) {
     sum += by.w[j] * node.solution;
     doubt += by.d[j] * node.solution;
     start.amplification = std::max(start.amplification, node.amplification);
-    start.change = std::min(start.change, node.change);
+    start.change = std::max(start.change, node.change);
   }
   if (doubt.cwiseAbs().maxCoeff() <= foretold * sum.cwiseAbs().maxCoeff()) start.solution = std::move(sum);
   return start;
+}
+
+// Changes that the next ones may have: no larger ones from level to level.
+void keep_changes(PointSolution& solution, const PointSolution& start) {
+  for (std::size_t r = 0; r < std::min(solution.size(), start.size()); ++r)
+    for (std::size_t g = 0; g < std::min(solution[r].size(), start[r].size()); ++g)
+      if (start[r][g].solution.size() > 0) solution[r][g].change = std::min(solution[r][g].change, start[r][g].change);
 }
 
 }  // namespace
@@ -163,6 +169,7 @@ void PointFamily::solve(Block& block, std::size_t level, std::size_t first, std:
     try {
       const PointSolution start = level > 0 ? foretold(block, level, x) : PointSolution();
       node->point = analyse_point(scene_, x, only_, &start, &solution);
+      keep_changes(solution, start);
     } catch (...) {
       lock.lock();
       node->state = Node::State::untouched;

@@ -135,7 +135,7 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
     constexpr int few_iterations = 2;
     Iteration judged(stiffness, p, begun_judge);
     judged.start_from(begun);
-    if (judged.run(std::max(1e-14, tolerance), reduced.iterations, few_iterations)) {
+    if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {
       finish(judged);
       return reduced;
     }

@@ -59,7 +59,7 @@ class SampledStiffness {
 // Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
 // the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
 // changes by less than `tolerance` relative to its largest value, or to rounding. `bounds_others`: others_below is
-// looked for. `start` decides how many corrections that takes; then a change of 1e-14, or four times what the
+// looked for. `start` decides how many corrections that takes; then a change of 1e-13, or four times what the
 // neighbours came to, is enough.
 [[nodiscard]] ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Eigen::Index> slow, double tolerance,
                                      bool bounds_others, const SlavingStart& start = {});
