@@ -1,9 +1,8 @@
-// Neighbouring points of a sweep share work: a few of each block of points are solved from nothing, those half way
-// between them begin with what polynomials through these foretell, the others with polynomials through both. Each point
-// depends on the sweep's values alone, so that neither threads nor the order in which points are asked for matter.
+// Neighbouring points of a sweep share work: a few of each block of points are solved from nothing, the others begin
+// with what polynomials through these foretell. Each point depends on the sweep's values alone, so that neither threads
+// nor the order in which points are asked for matter.
 #pragma once
 
-#include <array>
 #include <condition_variable>
 #include <cstddef>
 #include <memory>
@@ -29,21 +28,19 @@ class PointFamily {
   struct Node {
     enum class State { untouched, under_way, there };
     State state = State::untouched;
-    std::size_t place;  // among all values
     SweepPoint point;
     PointSolution solution;
   };
   struct Block {
-    std::array<std::vector<Node>, 2> levels;  // ascending; solved from nothing, and half way between
+    std::vector<std::size_t> places;  // of the nodes among all values, ascending
+    std::vector<Node> nodes;
     std::size_t left = 0;  // points that were not asked for yet
   };
 
   [[nodiscard]] std::shared_ptr<Block> block_of(std::size_t k);
-  // Has these nodes of a level solved, by this thread or by others; the level before is.
-  void solve(Block& block, std::size_t level, std::size_t first, std::size_t count);
-  void solve(Block& block, std::size_t level) { solve(block, level, 0, block.levels[level].size()); }
-  // By the first levels.
-  [[nodiscard]] PointSolution foretold(const Block& block, std::size_t levels, double x) const;
+  // Has these nodes of the block solved, by this thread or by others.
+  void solve(Block& block, std::size_t first, std::size_t count);
+  [[nodiscard]] PointSolution foretold(const Block& block, double x) const;
 
   const SweepScene& scene_;
   const Only only_;
