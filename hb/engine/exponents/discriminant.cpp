@@ -60,7 +60,7 @@ std::optional<Discriminant> of_shortest_period(const ScaledSystem& system, doubl
       if (found.error <= tolerance * std::max(1.0, std::abs(found.value))) return found;
     }
   }
-  const Exponents exponents = reduced_exponents(reduced, tolerance, Sought::leading_alone);
+  const Exponents exponents = reduced_exponents(reduced, tolerance, true);
   if (exponents.s.empty()) return std::nullopt;
   return finite(from_exponent(exponents.s[0], exponents.error[0], system));
 }

@@ -189,10 +189,10 @@ void name_modes(Exponents& exponents, const VectorXd& w2, const VectorXd& b, con
   }
 }
 
-ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance, Sought sought) {
+ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance, bool leading_only) {
   const std::vector<Index> all = all_modes(system);
   ExponentSearch search;
-  search.exponents = propagated_exponents(slave_to(system, all), tolerance, sought);
+  search.exponents = propagated_exponents(slave_to(system, all), tolerance, leading_only);
   name_modes(search.exponents, system, all);
   search.method = StabilityMethod::propagation;
   search.evidence = "all modes propagated over a turn by Radau IIA";
@@ -295,23 +295,6 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   return search;
 }
 
-bool sharpen_leading(ExponentSearch& search, const ScaledSystem& system, double tolerance) {
-  Exponents& list = search.exponents;
-  if (may_be_twice(list)) return false;
-  const auto high = [&](std::size_t i) { return list.s[i].real() + list.error[i]; };
-  const auto leading = [&] {
-    const auto less = [](cplx a, cplx b) { return a.real() < b.real(); };
-    return std::size_t(std::ranges::max_element(list.s, less) - list.s.begin());
-  };
-  const double before = list.error[leading()];
-  sharpen(list, search_by_propagation(system, tolerance, Sought::leading).exponents);
-  const std::size_t first = leading();
-  if (!(list.error[first] < before && list.others_below <= high(first))) return false;
-  for (std::size_t i = 0; i < list.s.size(); ++i)
-    if (high(i) > high(first)) return false;
-  return true;
-}
-
 ExponentSearch search_by_hill(const ScaledSystem& system) {
   const HillExponents hill = hill_exponents(system);
   ExponentSearch search;
@@ -385,7 +368,7 @@ std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double 
   SampledStiffness stiffness(system);
   if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, true, false)) {
     ExponentSearch search;
-    search.exponents = reduced_exponents(*reduced, tolerance, Sought::leading_alone);
+    search.exponents = reduced_exponents(*reduced, tolerance, true);
     name_modes(search.exponents, system, together);
     double growth = -HUGE_VAL;
     for (std::size_t i = 0; i < search.exponents.s.size(); ++i)
@@ -402,7 +385,7 @@ std::optional<ExponentSearch> search_leading(const ScaledSystem& system, double 
     }
   }
   if (I > most_modes_propagated) return std::nullopt;
-  return search_by_propagation(system, tolerance, Sought::leading_alone);
+  return search_by_propagation(system, tolerance, true);
 }
 
 ExponentSearch search_constant(const ScaledSystem& system) {

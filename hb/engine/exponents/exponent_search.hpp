@@ -26,19 +26,15 @@ struct ExponentSearch {
 void name_modes(Exponents& exponents, const Eigen::VectorXd& w2, const Eigen::VectorXd& b,
                 const std::vector<Eigen::Index>& group);
 
-// All modes propagated over the turn.
+// All modes propagated over the turn. With `leading_only` exponents far below the leading one are bounded only.
 [[nodiscard]] ExponentSearch search_by_propagation(const ScaledSystem& system, double tolerance,
-                                                   Sought sought = Sought::all);
+                                                   bool leading_only = false);
 
 // Every mode on its own, the others slaved to it; modes for which that diverges together, with more modes until the
 // reduction converges. Exponents `known` better from elsewhere take the place of those found. Slaving begins where
 // `starts`, a neighbour's `solved`, say.
 [[nodiscard]] ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance,
                                                const Exponents& known = {}, std::span<const SlavingStart> starts = {});
-
-// Those of `search` that lead, known better by all modes propagated over the turn; false where that does not tell the
-// growth better, or where others may lead too.
-[[nodiscard]] bool sharpen_leading(ExponentSearch& search, const ScaledSystem& system, double tolerance);
 
 // Only the leading exponents: the slowest modes (or `keep`) with the others slaved to them, and a bound that puts all
 // other exponents below; without such a bound all modes propagated. Empty if neither serves.

@@ -96,8 +96,7 @@ Stability analyse_stability(const NormalForm& form, double speed, const Stabilit
   whole.alpha_error = (alpha.error + errors.alpha) * VectorXd::Ones(n) * w.transpose();
   whole.beta_error = MatrixXd::Constant(n, n, beta.error + errors.beta);
   ExponentSearch search;
-  search.exponents =
-      propagated_exponents(whole, options.tolerance, options.leading_only ? Sought::leading_alone : Sought::all);
+  search.exponents = propagated_exponents(whole, options.tolerance, options.leading_only);
   search.method = StabilityMethod::propagation;
   search.evidence = "all unknowns propagated over the period by Radau IIA";
   search.complete = true;

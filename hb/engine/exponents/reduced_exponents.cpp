@@ -184,7 +184,7 @@ TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
 }  // namespace
 
 // Exponents of a reduced system by propagation with growing numbers of cells.
-Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, Sought sought) {
+Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
   const Index m = reduced.num_modes;
   const VectorXd W = mode_sizes(reduced);
   const double fastest = fastest_frequency(reduced, W);
@@ -214,7 +214,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, S
     given.bottomLeftCorner(m, m) = h * reduced.alpha_error * W.cwiseInverse().asDiagonal();
     given.bottomRightCorner(m, m) = h * reduced.beta_error;
     Cells fine{cells,
-               turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, sought == Sought::leading_alone,
+               turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, leading_only,
                               coarse ? coarse->turn.subspaces : MatrixXd()),
                {},
                {}};
@@ -234,8 +234,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, S
       result.converged = errors.changed[0] <= allowed(tolerance, fine.turn.s[0]);
       bool done = result.converged || at_rounding(0);
       if (done && enough == 0) enough = cells;
-      const bool further =
-          sought == Sought::all && cells < most_further * enough && work(double(cells)) < most_further_work;
+      const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
       for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
         done = done &&
                (at_rounding(i) || errors.changed[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
@@ -255,7 +254,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, S
 // Exponents of the modes kept by one reduction. A single slow mode is propagated as fast as its phase is found, and
 // propagation always settles. Where none is as accurate as asked, the best counts: near a double multiplier +-1 the
 // determinant's four factors tell growth far better than a propagated map does.
-Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, Sought sought) {
+Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only) {
   std::optional<Exponents> determinant = by_determinant(reduced, tolerance);
   if (determinant && determinant->converged) return *std::move(determinant);
   const double frequency = std::sqrt(std::abs(reduced.alpha.c(0, 0)));
@@ -263,7 +262,7 @@ Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, Soug
   constexpr double fast = 8;
   if (phase_may_settle && frequency > fast)
     if (std::optional<Exponents> result = by_phase(reduced, tolerance)) return *std::move(result);
-  Exponents result = propagated_exponents(reduced, tolerance, sought);
+  Exponents result = propagated_exponents(reduced, tolerance, leading_only);
   if (phase_may_settle && !(frequency > fast) && !result.converged)
     if (std::optional<Exponents> better = by_phase(reduced, tolerance)) return *std::move(better);
   if (determinant && !result.converged && (result.s.empty() || determinant->error[0] < result.error[0]))

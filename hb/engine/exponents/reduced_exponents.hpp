@@ -35,15 +35,11 @@ struct Exponents {
   }
 };
 
-// Exponents that a propagation ends for: all, the leading one, or that one alone, where exponents far below it are
-// lost, and bounded.
-enum class Sought { all, leading, leading_alone };
-
-// `tolerance`: wanted relative to the leading exponent, or to a hundredth of the crank's speed if it is smaller.
-[[nodiscard]] Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, Sought sought = Sought::all);
+// `tolerance`: wanted relative to the leading exponent, or to a hundredth of the crank's speed if it is smaller. With
+// `leading_only` exponents far below the leading one are lost, and bounded.
+[[nodiscard]] Exponents reduced_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only = false);
 
 // The same by propagation only.
-[[nodiscard]] Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance,
-                                             Sought sought = Sought::all);
+[[nodiscard]] Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, bool leading_only = false);
 
 }  // namespace hb

@@ -90,8 +90,8 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   const auto suffices = [&](const Stability& result) {
     return result.converged && (result.verdict != Verdict::undecided || options.growth_suffices);
   };
-  const bool all_decide = system.conservative.all();  // without damping
-  if (options.leading_only && system.num_modes() > 1 && !all_decide)
+  // Without damping all exponents are needed to decide.
+  if (options.leading_only && system.num_modes() > 1 && !system.conservative.all())
     if (const auto lead = search_leading(system, tolerance, options.keep)) {
       const Stability result = finished(system, *lead, tolerance);
       if (suffices(result) || (options.as_found && std::isfinite(result.growth_rate + result.growth_error)))
@@ -113,15 +113,8 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (search.complete && propagated_cells(system) * std::pow(double(system.num_modes()), 3) > 1e6) return result;
   if (search.complete && suffices(result)) return result;
   const double sharper = options.growth_suffices ? tolerance : std::min(tolerance, 1e-11);
-  if (search.complete && !all_decide && sharpen_leading(search, system, sharper)) {
-    Stability sharp = finished(system, search, tolerance);
-    sharp.evidence += "; the leading ones by all modes propagated over a turn";
-    sharp.solved = std::move(result.solved);
-    return sharp;
-  }
   Stability second = finished(system, search_by_propagation(system, sharper), tolerance);
   if (second.growth_error >= result.growth_error && second.verdict != Verdict::bounded) return result;
-  second.solved = std::move(result.solved);
   second.evidence += search.complete ? " (second method after a first that was undecided or less accurate than asked)"
                                      : " (the reduction did not account for all exponents)";
   return second;
