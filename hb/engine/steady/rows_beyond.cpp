@@ -5,6 +5,7 @@
 #include <complex>
 
 #include "lib/constants.hpp"
+#include "lib/dense.hpp"
 #include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -20,11 +21,18 @@ Index below_resonance(const WeightedSystem& s, Index i) {
   return static_cast<Index>(std::min(std::sqrt(std::max(s.mean(i) - 0.5 * s.G(i, i) * s.G(i, i), 0.0)), most));
 }
 
-// What coupling moves w_i^2 by at harmonic k, at most and to second order,
-//     sum_m (|K_m,ii|^2 |1/D_i(k+m) + 1/D_i(k-m)| + sum_{j != i} |K_m,ij|^2 (1/|D_j(k+m)| + 1/|D_j(k-m)|)).
+// What coupling moves w_i^2 by at harmonic k, at most and to second order, m = 1..P and j != i,
+//     sum_j |B_ij B_ji|/|D_j(k)| + sum_m (|K_m,ii|^2 |1/D_i(k+m) + 1/D_i(k-m)|
+//                                         + sum_j |K_m,ij|^2 (1/|D_j(k+m)| + 1/|D_j(k-m)|)).
 double moved(const WeightedSystem& s, Index i, Index k) {
   const double trifling = 1e-8 * s.coupling(i) * s.coupling(i);
   double sum = 0;
+  const auto within = [&](Index to, Index from) {
+    return std::complex<double>(s.K(to + s.I * from, 0).real(), static_cast<double>(k) * s.G_off(to, from));
+  };
+  for (Index j = 0; j < s.I; ++j)
+    if (const double strength = modulus(within(i, j)) * modulus(within(j, i)); j != i && strength > 0)
+      sum += strength / std::max(modulus(s.D(j, k)), 32 * eps * s.magnitude(j, k));
   for (Index m = 1; m <= s.P; ++m)
     for (Index j = 0; j < s.I; ++j) {
       const double strength = std::norm(s.K(i + s.I * j, m));
@@ -52,49 +60,54 @@ double largest_answer(const WeightedSystem& s, Index i, Index first) {
   return std::max(answer(k), answer(k + 1));
 }
 
-// The rows before, the next ones after them, and what all of them add up to.
+// The rows before, the next ones after them, and what all of them add up to, moduli of both signs together.
 class Rows {
  public:
-  Rows(const WeightedSystem& s, const Spectrum& x, const Spectrum& r, Index first, const Eigen::MatrixXd& T)
-      : s_(s), T_(T), sums_(s.I, s.I * s.P), within_(s.I, s.I), total_(Eigen::VectorXd::Zero(s.I)), answer_(s.I) {
+  Rows(const WeightedSystem& s, const Spectrum& x, const Spectrum& rest, const Spectrum& r, Index H, double known,
+       const Eigen::MatrixXd& T)
+      : s_(s),
+        r_(r),
+        T_(T),
+        sums_(s.I, s.I * s.P),
+        last_(Eigen::VectorXd::Zero(s.I * s.P)),
+        total_(Eigen::VectorXd::Zero(s.I)),
+        answer_(s.I) {
     const Index I = s.I, P = s.P, R = x.rows() - 1;
     // Coefficients of a_k-1, a_k-2, ..., a_k-P one below the other, as `last` has them.
     for (Index m = 1; m <= P; ++m) sums_.middleCols(I * (m - 1), I) = moduli(s.K.col(m)).reshaped(I, I);
-    within_ = moduli(s.K.col(0)).reshaped(I, I);
-    within_.diagonal().setZero();
-    last_ = Eigen::VectorXd::Zero(I * P);
     Eigen::VectorXd before = Eigen::VectorXd::Zero(I);
-    for (Index k = first; k <= R; ++k)
+    for (Index k = H + 1; k <= R; ++k)
       for (Index i = 0; i < I; ++i) {
-        const double here = modulus(x(k, i)) + (r(k, i) == 0.0 ? 0 : modulus(r(k, i)) / modulus(s.D(i, k)));
+        const double here = modulus(x(k, i)) + (rest(k, i) == 0.0 ? 0 : modulus(rest(k, i)) / modulus(s.D(i, k)));
         if (R - k < P) last_(I * (R - k) + i) = here;
         before(i) += here;
       }
-    before_ = weigh(before, T);
+    if (const double size = weigh(before, T); size > 0) last_ *= known / size;
   }
 
   void next(Index k) {
     const Index I = s_.I;
     answer_.noalias() = sums_ * last_;
+    if (k < r_.rows()) answer_ += 2 * moduli(r_.row(k)).transpose();
+    Eigen::VectorXd coupled;
+    if (s_.coupled_within(k) > 0.01) coupled = moduli(dense::Lu<std::complex<double>>(s_.block(k)).inverse()) * answer_;
     for (Index i = 0; i < I; ++i) answer_(i) /= stiffness(s_, i, k);
+    if (coupled.size() > 0) answer_ = answer_.cwiseMax(coupled);
+    total_ += answer_;
+    if (s_.P == 0) return;
     std::shift_right(last_.begin(), last_.end(), I);
     last_.head(I) = answer_;
-    total_ += answer_;
-    for (Index i = 0; i < I; ++i)
-      total_(i) +=
-          (within_.row(i) + static_cast<double>(k) * s_.G_off.row(i).cwiseAbs()).dot(answer_) / stiffness(s_, i, k);
   }
 
-  double before() const { return before_; }
-  double last() const { return weigh(last_.reshaped(s_.I, s_.P).rowwise().sum(), T_); }
+  double last() const { return s_.P > 0 ? weigh(last_.reshaped(s_.I, s_.P).rowwise().sum(), T_) : 0; }
   double total() const { return weigh(total_, T_); }
 
  private:
   const WeightedSystem& s_;
+  const Spectrum& r_;
   const Eigen::MatrixXd& T_;
-  Eigen::MatrixXd sums_, within_;
+  Eigen::MatrixXd sums_;
   Eigen::VectorXd last_, total_, answer_;
-  double before_ = 0;
 };
 
 }  // namespace
@@ -111,15 +124,14 @@ double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) {
 }
 
 // Row after row until no resonance is ahead and rows shrink, or all that are ahead could not make them count.
-double answered_beyond(const WeightedSystem& s, const Spectrum& x, const Spectrum& r, Index first,
-                       const Eigen::MatrixXd& T) {
-  constexpr double among = 1.5, shrinking = 0.3, negligible = 1e-3;
-  constexpr Index most_rows = 1000000;
-  const Index R = x.rows() - 1;
-  if (s.P == 0) return 0;
+double answered_beyond(const WeightedSystem& s, const Spectrum& x, const Spectrum& rest, const Spectrum& r, Index H,
+                       double known, const Eigen::MatrixXd& T) {
+  constexpr double among = 1.5, shrinking = 0.3, negligible = 1e-3, no_end = 1e8;
+  constexpr Index most_rows = 100000, between_looks = 32;
+  const Index R = x.rows() - 1, F = r.rows() - 1;
   double ahead = 0, all = 1;
   const auto look = [&](Index k) {
-    ahead = 0, all = 1;
+    ahead = 0, all = s.coupled_within(k) > 0.1 ? HUGE_VAL : 1;
     for (Index i = 0; i < s.I; ++i) {
       const double one = largest_answer(s, i, k);
       ahead = std::max(ahead, one);
@@ -127,18 +139,18 @@ double answered_beyond(const WeightedSystem& s, const Spectrum& x, const Spectru
     }
   };
   look(R + 1);
-  if (ahead <= shrinking) return among * ahead / (1 - ahead);
-  Rows rows(s, x, r, first, T);
-  if (!(rows.before() > 0)) return 0;
+  if (ahead <= shrinking) return among * known * ahead / (1 - ahead);
+  Rows rows(s, x, rest, r, H, known, T);
   for (Index k = R + 1; k <= R + most_rows; ++k) {
     rows.next(k);
-    if ((k - R) % s.P != 0) continue;
+    if (k < F || (k - R) % between_looks != 0) continue;
     end_if_wished();
     look(k + 1);
-    const double size = rows.last() / rows.before(), so_far = rows.total() / rows.before();
+    const double size = rows.last(), so_far = rows.total();
+    if (size == 0) return among * so_far;
     if (ahead <= shrinking) return among * (so_far + size * ahead / (1 - ahead));
-    if (size * all <= negligible) return among * (so_far + negligible);
-    if (!std::isfinite(size)) break;
+    if (size * all <= negligible * known) return among * (so_far + negligible * known);
+    if (!(so_far <= no_end * known)) break;
   }
   return HUGE_VAL;
 }

@@ -7,6 +7,7 @@
 
 #include "hb/engine/steady/rows_beyond.hpp"
 #include "lib/constants.hpp"
+#include "lib/dense.hpp"
 #include "lib/modulus.hpp"
 
 namespace hb::steady {
@@ -93,6 +94,7 @@ double directionless(const Operator& A, const Spectrum& r, const Spectrum& tail,
   const Index H = A.num_harmonics();
   const Passages way(A, tail.rows() - 1);
   if (!(safety * response * way.out.maxCoeff() * way.back.maxCoeff() <= shrinking)) return HUGE_VAL;
+  if (!(way.among.maxCoeff() <= shrinking)) return HUGE_VAL;
   Eigen::VectorXd beyond = Eigen::VectorXd::Zero(A.num_modes());
   for (Index k = H + 1; k < tail.rows(); ++k) beyond += 2 * moduli(tail.row(k)).transpose();
   const double outside = beyond.maxCoeff();
@@ -177,8 +179,11 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
       for (Index i = 0; i < I; ++i) rho(k, i) -= s.D(i, k) * part(k, i);
   };
   const auto answer_beyond = [&] {
-    for (Index i = 0; i < I; ++i)
-      for (Index k = H + 1; k <= R; ++k) e(k, i) = rho(k, i) == 0.0 ? 0.0 : rho(k, i) / s.D(i, k);
+    for (Index k = H + 1; k <= R; ++k) {
+      for (Index i = 0; i < I; ++i) e(k, i) = rho(k, i) == 0.0 ? 0.0 : rho(k, i) / s.D(i, k);
+      if (s.coupled_within(k) > 0.01)
+        e.row(k) = dense::Lu<std::complex<double>>(s.block(k)).solve(rho.row(k).transpose()).transpose();
+    }
     tail.bottomRows(R - H) += e.bottomRows(R - H);
   };
   answer_beyond();
@@ -238,9 +243,9 @@ Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double r
   // What comes back to the window from rows beyond R grows there as the first step's answer from the tail did.
   const double known = result.outside + result.rest;
   if (known > 0 && std::isfinite(known)) {
-    const double share = answered_beyond(s, tail, rho, H + 1, T);
-    result.beyond = std::max(1.0, first_ratio) * (1 + round) * known * share;
-    result.resonance_ahead = share > 0.3;
+    const double answered = answered_beyond(s, tail, rho, r, H, known, T);
+    result.beyond = std::max(1.0, first_ratio) * (1 + round) * answered;
+    result.resonance_ahead = answered > 0.3 * known;
   }
   return result;
 }

@@ -53,6 +53,24 @@ WeightedSystem weighted(const ScaledSystem& system) {
   return s;
 }
 
+Eigen::MatrixXcd WeightedSystem::block(Eigen::Index k) const {
+  Eigen::MatrixXcd B =
+      K.col(0).reshaped(I, I) + std::complex<double>(0, static_cast<double>(k)) * G_off.cast<std::complex<double>>();
+  for (Eigen::Index i = 0; i < I; ++i) B(i, i) = D(i, k);
+  return B;
+}
+
+double WeightedSystem::coupled_within(Eigen::Index k) const {
+  double largest = 0;
+  for (Eigen::Index i = 0; i < I; ++i) {
+    double sum = 0;
+    for (Eigen::Index j = 0; j < I; ++j)
+      if (j != i) sum += modulus({K(i + I * j, 0).real(), static_cast<double>(k) * G_off(i, j)});
+    if (sum > 0) largest = std::max(largest, sum / modulus(D(i, k)));
+  }
+  return largest;
+}
+
 Operator::Operator(const WeightedSystem& system, Eigen::Index num_harmonics)
     : system_(&system),
       H_(num_harmonics),

@@ -43,6 +43,10 @@ struct WeightedSystem {
     const double size = std::abs(mean(i)) + n * n + n * std::abs(G(i, i));
     return size > 0 ? size : (coupling(i) > 0 ? coupling(i) : 1);
   }
+  // B(k), what of A couples harmonic k to itself: D(k), K's mean off the diagonal, and i k G_off.
+  [[nodiscard]] Eigen::MatrixXcd block(Eigen::Index k) const;
+  // Largest sum over j != i of |B_ij/B_ii|.
+  [[nodiscard]] double coupled_within(Eigen::Index k) const;
   // Size of |D_i(k)| away from resonance, smallest over k: for judging what is negligible.
   double smallest_diagonal(Eigen::Index i) const { return std::max(std::abs(mean(i)), 1.0); }
 };
