@@ -128,37 +128,4 @@ TEST(JointForces, RigidOnesAreTheSameBesideAnyResponse) {
   }
 }
 
-// As many samples as are kept and more than that, asked for in two orders, all rods and some, these in any order.
-TEST(JointForces, ATableServesEverySpeedAndResponseAsOneOfItsOwn) {
-  const Linkage linkage = six_link::linkage({.J = 45.0});
-  const auto response = [](int link, Eigen::Index H) {
-    FourierSeries q(2, H);
-    for (Eigen::Index k = 1; k <= H; ++k)
-      for (Eigen::Index i = 0; i < 2; ++i) q.c(i, k) = std::polar(std::pow(0.9, double(k)), double(k * (i + link)));
-    return LinkResponse{link, q};
-  };
-  const std::vector<int> links = elastic_links(linkage);
-  ASSERT_EQ(links.size(), 2);
-  std::vector<std::vector<LinkResponse>> cases = {{}, {response(links[1], 7)}};
-  for (const Eigen::Index H : {5, 90, 300, 1300}) cases.push_back({response(links[1], H), response(links[0], H)});
-  const auto expect_same = [&](const ForceTable& table, const std::vector<LinkResponse>& responses, double Omega) {
-    const JointForces found = joint_forces(table, Omega, responses), expected = joint_forces(linkage, Omega, responses);
-    for (std::size_t j = 0; j < expected.joints.size(); ++j) {
-      EXPECT_EQ(found.joints[j].elastic.c, expected.joints[j].elastic.c) << found.joints[j].name;
-      EXPECT_EQ(found.joints[j].rigid.c, expected.joints[j].rigid.c) << found.joints[j].name;
-    }
-    EXPECT_EQ(found.torque.c, expected.torque.c);
-    EXPECT_EQ(found.frame.elastic.c, expected.frame.elastic.c);
-  };
-  const ForceTable upward(linkage), downward(linkage);
-  for (std::size_t i = 0; i < cases.size(); ++i) {
-    expect_same(upward, cases[i], 10.0 + double(i));
-    expect_same(downward, cases[cases.size() - 1 - i], 10.0 + double(i));
-  }
-  const std::vector<LinkResponse> both = {response(links[0], 9), response(links[1], 9)}, turned = {both[1], both[0]};
-  const JointForces one = joint_forces(upward, 20, both), other = joint_forces(upward, 20, turned);
-  const double size = one.torque.c.cwiseAbs().maxCoeff();
-  EXPECT_LE((one.torque.c - other.torque.c).cwiseAbs().maxCoeff(), 1e-13 * size);
-}
-
 }  // namespace
