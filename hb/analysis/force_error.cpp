@@ -27,10 +27,10 @@ std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, co
 }
 
 // Forces are linear in the deflections.
-LargestForces change(const ForceTable& table, double speed, const std::vector<LinkResponse>& responses,
+LargestForces change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                      const std::vector<LinkResponse>& better) {
   constexpr double digits = 1e-5;  // enough of an estimate
-  const JointForces added = deflection_forces(table, speed, changes(responses, better), digits);
+  const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
   LargestForces largest{0, bound(added.torque)};
   for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));
   return largest;
@@ -41,6 +41,24 @@ LargestForces elastic_part(const JointForces& forces) {
   LargestForces largest{0, bound(fourier::difference(forces.torque, forces.torque_rigid))};
   for (const JointForce& joint : forces.joints)
     largest.force = std::max(largest.force, bound(fourier::difference(joint.elastic, joint.rigid)));
+  return largest;
+}
+
+// An error of q may stand in its last harmonic N, and forces weigh harmonic n by some 1 + n^2: what it counts for
+// there,
+//     (1 + N^2) sum |q_n| / sum (1 + n^2) |q_n|,     the largest of all rods.
+double weight_of_last(const std::vector<LinkResponse>& responses) {
+  double largest = 1;
+  for (const LinkResponse& response : responses) {
+    double sum = 0, weighed = 0;
+    for (Eigen::Index n = 0; n <= response.q.num_harmonics(); ++n) {
+      const double size = response.q.c.col(n).cwiseAbs().sum(), k = static_cast<double>(n);
+      sum += size;
+      weighed += (1 + k * k) * size;
+    }
+    const double last = static_cast<double>(response.q.num_harmonics());
+    if (weighed > 0) largest = std::max(largest, (1 + last * last) * sum / weighed);
+  }
   return largest;
 }
 
@@ -55,21 +73,21 @@ LargestForces largest_of(const JointForces& forces) {
   return largest;
 }
 
-ForceErrors force_errors(const ForceTable& table, double speed, const JointForces& forces, const LargestForces& largest,
+ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces, const LargestForces& largest,
                          double response_error, const std::vector<LinkResponse>& responses,
                          const std::vector<LinkResponse>& more_harmonics, const std::vector<LinkResponse>& more_modes) {
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
   const LargestForces elastic = elastic_part(forces);
-  ForceErrors errors{forces.force_error + response_error * elastic.force,
-                     forces.torque_error + response_error * elastic.torque, 0, 0};
+  const double error = response_error * (more_harmonics.empty() ? weight_of_last(responses) : 1);
+  ForceErrors errors{forces.force_error + error * elastic.force, forces.torque_error + error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
-    const LargestForces more = change(table, speed, responses, more_harmonics);
+    const LargestForces more = change(linkage, speed, responses, more_harmonics);
     errors.force += safety * more.force;
     errors.torque += safety * more.torque;
   }
   if (!more_modes.empty()) {
-    const LargestForces more = change(table, speed, responses, more_modes);
+    const LargestForces more = change(linkage, speed, responses, more_modes);
     errors.force_cut = safety * more.force;
     errors.torque_cut = safety * more.torque;
   }

@@ -11,7 +11,6 @@
 #include "hb/analysis/rod_steady.hpp"
 #include "hb/analysis/theory_growth.hpp"
 #include "hb/engine/steady/rough_state.hpp"
-#include "lib/linkage/force_table.hpp"
 #include "lib/linkage/transmission_angle.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/stop_wish.hpp"
@@ -225,15 +224,15 @@ void add_forces(const SceneModel& model, double speed, const Settings& settings,
     more_modes.push_back({rod.link, rod.more_modes.c.size() > 0 ? rod.more_modes : rod.steady->q});
     response_error = std::max(response_error, rod.steady->error_bound);
   }
-  result.forces = joint_forces(*model.forces, speed, responses);
+  result.forces = joint_forces(*model.linkage(), speed, responses);
   stages.push_back({"joint forces", watch.seconds(), ""});
   Stopwatch error_watch;
   std::vector<LinkResponse> more_harmonics;
   for (std::size_t r = 0; r < model.rods.size(); ++r)
     more_harmonics.push_back(
         {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
-  result.force_errors = force_errors(*model.forces, speed, *result.forces, largest_of(*result.forces), response_error,
-                                     responses, more_harmonics, more_modes);
+  result.force_errors = force_errors(*model.linkage(), speed, *result.forces, largest_of(*result.forces),
+                                     response_error, responses, more_harmonics, more_modes);
   stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
 }
 
@@ -319,7 +318,6 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
     model.rods.push_back(std::move(rod));
   } else {
     const Linkage& linkage = *model.linkage();
-    model.forces = std::make_shared<const ForceTable>(linkage);
     for (const int link : elastic_links(linkage)) {
       RodModel rod;
       rod.name = body_name(linkage, link);

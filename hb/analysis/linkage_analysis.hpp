@@ -44,7 +44,6 @@ struct SceneModel {
   std::vector<RodModel> rods;
   // Of the same rods and modes, for the theory error; null where q is not asked for and for a [hill] scene.
   std::shared_ptr<const ExactModel> exact;
-  std::shared_ptr<const ForceTable> forces;  // null for a [hill] scene
   std::vector<Stage> stages;
 
   const Linkage* linkage() const { return std::get_if<Linkage>(&scene.model); }

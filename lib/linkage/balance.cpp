@@ -118,37 +118,57 @@ Eigen::Vector2d integrals_of_mode(double l, Eigen::Index i) {
 
 }  // namespace
 
-RodMotion<double> rod_motion(const BodyMotion& motion) {
-  return {motion.phi1, motion.phi2, motion.e.imag(), dot(motion.e, motion.z1), dot(motion.e, motion.z2)};
+BodyLoad deflection_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
+                         const DeflectionIntegrals& at) {
+  const Body& body = *body_at(linkage, link);
+  const BodyMotion& m = motion[static_cast<std::size_t>(link)];
+  const double mu = body.mass / body.length, Omega = speed;
+  const double c_x = body.elastic->damping_x, c_y = body.elastic->damping_y;
+  const double w = at(0), w_t = Omega * at(2), w_tt = Omega * Omega * at(4);
+  const double xw = at(1), xw_t = Omega * at(3), xw_tt = Omega * Omega * at(5);
+  const double phi_t = Omega * m.phi1, phi_tt = Omega * Omega * m.phi2;
+
+  const double along = mu * (-2 * phi_t * w_t - phi_tt * w) - c_x * phi_t * w;
+  const double across = mu * (w_tt - phi_t * phi_t * w) + c_y * w_t;
+  // int x p_y dx - int w p_x dx with the rigid axial density p_x = mu (g sin phi + a0x - phi_t^2 x) + c_x v0x; the
+  // rotary inertia of w integrates to rho J [w_tt]_0^l = 0.
+  const double a0x = Omega * Omega * dot(m.e, m.z2), v0x = Omega * dot(m.e, m.z1);
+  const double p_x0 = mu * (linkage.gravity * m.e.imag() + a0x) + c_x * v0x;
+  const double moment = mu * (xw_tt - phi_t * phi_t * xw) + c_y * xw_t - (p_x0 * w - mu * phi_t * phi_t * xw);
+  return {m.e * Complex(along, across), moment};
 }
 
 BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
                       const Eigen::Ref<const Eigen::VectorXd>& q, const Eigen::Ref<const Eigen::VectorXd>& q1,
                       const Eigen::Ref<const Eigen::VectorXd>& q2) {
-  const Body& body = *body_at(linkage, link);
-  const BodyMotion& m = motion[at(link)];
-  DeflectionIntegrals<double> sum{};
+  const double l = body_at(linkage, link)->length;
+  DeflectionIntegrals sum = DeflectionIntegrals::Zero();
   for (Eigen::Index i = 1; i <= q.size(); ++i) {
-    const Eigen::Vector2d of_mode = integrals_of_mode(body.length, i);
-    const std::array<double, 3> derivatives = {q(i - 1), q1(i - 1), q2(i - 1)};
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += of_mode(k % 2) * derivatives[k / 2];
+    const Eigen::Vector2d of_mode = integrals_of_mode(l, i);
+    sum.segment<2>(0) += of_mode * q(i - 1);
+    sum.segment<2>(2) += of_mode * q1(i - 1);
+    sum.segment<2>(4) += of_mode * q2(i - 1);
   }
-  const RodLoad<double> load = deflection_load(body, linkage.gravity, speed, rod_motion(m), sum);
-  return {m.e * Complex(load.along, load.across), load.moment};
+  return deflection_load(linkage, motion, link, speed, sum);
 }
 
-Eigen::MatrixXd deflection_samples(const Linkage& linkage, const LinkResponse& response, Eigen::Index num_samples) {
-  const double l = body_at(linkage, response.link)->length;
-  const FourierSeries& q = response.q;
-  Eigen::Matrix2Xd of_modes(2, q.num_components());
-  for (Eigen::Index i = 1; i <= q.num_components(); ++i) of_modes.col(i - 1) = integrals_of_mode(l, i);
-  const Eigen::Matrix2Xcd sums = of_modes * q.c;
-  FourierSeries integrals(6, q.num_harmonics());
-  for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k) {
-    const double n = static_cast<double>(k);
-    integrals.c.col(k) << sums.col(k), Complex(0, n) * sums.col(k), -n * n * sums.col(k);
+std::vector<DeflectionSamples> deflection_samples(const Linkage& linkage, const std::vector<LinkResponse>& responses,
+                                                  Eigen::Index num_samples) {
+  std::vector<DeflectionSamples> samples;
+  for (const LinkResponse& response : responses) {
+    const double l = body_at(linkage, response.link)->length;
+    const FourierSeries& q = response.q;
+    Eigen::Matrix2Xd of_modes(2, q.num_components());
+    for (Eigen::Index i = 1; i <= q.num_components(); ++i) of_modes.col(i - 1) = integrals_of_mode(l, i);
+    const Eigen::Matrix2Xcd sums = of_modes * q.c;
+    FourierSeries integrals(6, q.num_harmonics());
+    for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k) {
+      const double n = static_cast<double>(k);
+      integrals.c.col(k) << sums.col(k), Complex(0, n) * sums.col(k), -n * n * sums.col(k);
+    }
+    samples.push_back({response.link, fourier::synthesise(integrals, num_samples)});
   }
-  return fourier::synthesise(integrals, num_samples);
+  return samples;
 }
 
 Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples) {

@@ -1,17 +1,19 @@
 #include "lib/linkage/joint_forces.hpp"
 
 #include <algorithm>
-#include <memory>
+#include <numbers>
 
 #include "lib/fourier/moduli.hpp"
 #include "lib/fourier/turn_sampling.hpp"
-#include "lib/linkage/force_table.hpp"
+#include "lib/linkage/balance.hpp"
+#include "lib/linkage/joint_rows.hpp"
+#include "lib/stop_wish.hpp"
 
 namespace hb {
 
 namespace {
 
-using Eigen::Index;
+using Complex = std::complex<double>;
 
 // Next to a resonance rigid forces are rounding beside elastic ones, and yet known: they have a group of their own.
 constexpr int rigid_group = 0, elastic_group = 1, torque_group = 2;
@@ -37,6 +39,50 @@ TurnSamplingOptions sampling_options(const Linkage& linkage, const std::vector<L
   return options;
 }
 
+// Calls at(j) for those of the turn's samples that are asked for, with the motion at tau_j.
+template <class At>
+void along_turn(const Linkage& linkage, Eigen::Index N, Eigen::Index begin, Eigen::Index step,
+                std::vector<BodyMotion>& motion, const At& at) {
+  constexpr Eigen::Index often = 256;
+  for (Eigen::Index j = begin; j < N; j += step) {
+    if (j % often == begin) end_if_wished();
+    motion_at(linkage, 2 * std::numbers::pi * static_cast<double>(j) / static_cast<double>(N), motion);
+    at(j);
+  }
+}
+
+void add_deflections(const Linkage& linkage, const std::vector<BodyMotion>& motion, double speed,
+                     const std::vector<DeflectionSamples>& deflections, Eigen::Index j, std::vector<BodyLoad>& loads) {
+  for (const DeflectionSamples& rod : deflections) {
+    const BodyLoad added = deflection_load(linkage, motion, rod.link, speed, rod.integrals.col(j));
+    loads[at(rod.link)].force += added.force;
+    loads[at(rod.link)].moment += added.moment;
+  }
+}
+
+// Joints cancel in the sum over all bodies: what they ask of pivots, guides and motor is
+//     G = sum of load,   M = sum of load.moment + (z - O) x load.force,
+// a slider's applied force F, taken off its load there, being given back to the frame:  -(G + F),  -(M + (z - O) x F).
+Eigen::Vector3d on_frame(const Linkage& linkage, const std::vector<BodyMotion>& motion,
+                         const std::vector<BodyLoad>& loads, const Eigen::Ref<const Eigen::VectorXd>& slider_forces) {
+  Complex force = 0;
+  double moment = 0;
+  const auto add = [&](std::size_t body, Complex its) {
+    force += its;
+    moment += (std::conj(motion[body].z - linkage.crank.pivot) * its).imag();
+  };
+  for (std::size_t b = 0; b < loads.size(); ++b) {
+    add(b, loads[b].force);
+    moment += loads[b].moment;
+  }
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
+    const std::size_t body = at(closing_index(static_cast<int>(d)));
+    if (std::holds_alternative<Slider>(linkage.dyads[d].closing))
+      add(body, slider_forces(static_cast<Eigen::Index>(d)) * motion[body].e);
+  }
+  return {-force.real(), -force.imag(), -moment};
+}
+
 double longest_body(const Linkage& linkage) {
   double longest = 0;
   for (int i = 0; i < linkage.num_bodies(); ++i)
@@ -44,149 +90,104 @@ double longest_body(const Linkage& linkage) {
   return longest;
 }
 
-// ForceTable's components at one speed.
-class ForcesOverTurn {
- public:
-  using Angles = ForceTable::Angles;
-
-  ForcesOverTurn(const ForceTable& table, double speed, const std::vector<LinkResponse>& responses)
-      : table_(table), speed_(speed), responses_(responses) {
-    for (const LinkResponse& response : responses_)
-      places_.push_back(
-          static_cast<std::size_t>(std::ranges::find(table.links(), response.link) - table.links().begin()));
-  }
-
-  // take(j, at) for the samples that are asked for, at.rigid(i) and at.added(i) those of component i at tau_j,
-  // tau_(j + step), ... side by side.
-  template <class Take>
-  void along(Index N, Index begin, Index step, const Take& take) {
-    constexpr Index most_at_once = 2048;
-    std::vector<Eigen::MatrixXd> deflections;
-    for (const LinkResponse& response : responses_)
-      deflections.push_back(deflection_samples(table_.linkage(), response, N));
-    loads_.resize(responses_.size());
-    for (Index first = begin; first < N; first += most_at_once * step) {
-      const Index count = std::min(most_at_once, (N - first + step - 1) / step);
-      const std::shared_ptr<const ForceTable::Turn> turn = table_.at(N, first, step, count);
-      Index j = first;
-      for (const ForceTable::Samples& samples : *turn) {
-        for (std::size_t r = 0; r < responses_.size(); ++r)
-          loads_[r] = load(samples.rods[places_[r]], responses_[r].link, deflections[r], j, step);
-        take(j, At{*this, samples});
-        j += ForceTable::together * step;
-      }
-    }
-  }
-
- private:
-  struct At {
-    const ForcesOverTurn& of;
-    const ForceTable::Samples& samples;
-
-    Angles rigid(Index component) const {
-      const auto i = static_cast<std::size_t>(component);
-      return samples.rigid[0][i] + of.speed_ * (samples.rigid[1][i] + of.speed_ * samples.rigid[2][i]);
-    }
-    Angles added(Index component) const {
-      Angles sum = Angles::Zero();
-      for (std::size_t r = 0; r < of.loads_.size(); ++r) {
-        const RodLoad<Angles>&unit = samples.rods[of.places_[r]].forces[static_cast<std::size_t>(component)],
-              &load = of.loads_[r];
-        sum += unit.along * load.along + unit.across * load.across + unit.moment * load.moment;
-      }
-      return sum;
-    }
-  };
-
-  RodLoad<Angles> load(const ForceTable::Rod& rod, int link, const Eigen::MatrixXd& deflection, Index j,
-                       Index step) const {
-    DeflectionIntegrals<Angles> integrals;
-    for (std::size_t i = 0; i < integrals.size(); ++i)
-      for (Index k = 0; k < ForceTable::together; ++k)
-        integrals[i](k) = deflection(static_cast<Index>(i), j + k * step);
-    return deflection_load(*body_at(table_.linkage(), link), table_.linkage().gravity, speed_, rod.motion, integrals);
-  }
-
-  const ForceTable& table_;
-  double speed_;
-  const std::vector<LinkResponse>& responses_;
-  std::vector<std::size_t> places_;  // of the responses' links in the table
-  std::vector<RodLoad<Angles>> loads_;  // at the angles side by side
-};
-
-void put(const ForceTable::Angles& values, Index row, Index j, Index step, Eigen::MatrixXd& samples) {
-  for (Index k = 0; k < ForceTable::together; ++k) samples(row, j + k * step) = values(k);
-}
-
 }  // namespace
 
-// Sampled per crank angle: the rigid components of ForceTable, then the elastic ones.
-JointForces joint_forces(const ForceTable& table, double speed, const std::vector<LinkResponse>& responses,
+// Sampled per crank angle: rigid and elastic (x, y) of every row, rigid and elastic torque, both of the frame.
+JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                          double tolerance) {
-  const Linkage& linkage = table.linkage();
-  const auto num_rows = static_cast<Index>(table.rows().size());
-  const Index n = table.num_components(), torque = 2 * num_rows, frame = torque + 1;
+  const std::vector<JointRow> rows = joint_rows(linkage);
+  const auto num_rows = static_cast<Eigen::Index>(rows.size());
   std::vector<TurnComponent> components;
-  for (const int group : {rigid_group, elastic_group}) {
-    components.insert(components.end(), table.rows().size() * 2, {group, 1});
-    components.push_back({torque_group, 1});
-    // Forces on the frame of a balanced linkage are what joint forces leave of each other.
+  for (Eigen::Index i = 0; i < num_rows; ++i)
+    for (const int group : {rigid_group, rigid_group, elastic_group, elastic_group}) components.push_back({group, 1});
+  components.insert(components.end(), 2, {torque_group, 1});
+  // Forces on the frame of a balanced linkage are what joint forces leave of each other.
+  for (const int group : {rigid_group, elastic_group})
     for (const double unit : {1.0, 1.0, 1 / longest_body(linkage)}) components.push_back({group, unit});
-  }
-  ForcesOverTurn forces(table, speed, responses);
-  const auto fill = [&](Eigen::MatrixXd& samples, Index begin, Index step) {
-    forces.along(samples.cols(), begin, step, [&](Index j, const auto& at) {
-      for (Index i = 0; i < n; ++i) {
-        const ForceTable::Angles rigid = at.rigid(i);
-        put(rigid, i, j, step, samples);
-        put(rigid + at.added(i), n + i, j, step, samples);
+
+  std::vector<BodyMotion> motion;
+  std::array<std::vector<BodyLoad>, 3> powers;
+  std::vector<BodyLoad> rigid, elastic;
+  MechanismForces forces_rigid, forces;
+  const auto fill = [&](Eigen::MatrixXd& samples, Eigen::Index begin, Eigen::Index step) {
+    const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, samples.cols());
+    const std::vector<DeflectionSamples> deflections = deflection_samples(linkage, responses, samples.cols());
+    along_turn(linkage, samples.cols(), begin, step, motion, [&](Eigen::Index j) {
+      rigid_loads(linkage, motion, slider_forces.col(j), powers);
+      rigid.resize(motion.size());
+      for (std::size_t b = 0; b < motion.size(); ++b)
+        rigid[b] = {powers[0][b].force + speed * (powers[1][b].force + speed * powers[2][b].force),
+                    powers[0][b].moment + speed * (powers[1][b].moment + speed * powers[2][b].moment)};
+      elastic = rigid;
+      auto frame = samples.col(j).tail<6>();
+      frame.head<3>() = on_frame(linkage, motion, rigid, slider_forces.col(j));
+      balance(linkage, motion, rigid, forces_rigid);
+      if (!deflections.empty()) {
+        add_deflections(linkage, motion, speed, deflections, j, elastic);
+        frame.tail<3>() = on_frame(linkage, motion, elastic, slider_forces.col(j));
+        balance(linkage, motion, elastic, forces);
+      } else {
+        frame.tail<3>() = frame.head<3>();
+        forces = forces_rigid;
       }
+      for (Eigen::Index i = 0; i < num_rows; ++i) {
+        const JointRow& row = rows[static_cast<std::size_t>(i)];
+        const Complex f_rigid = resolved(row, forces_rigid, motion), f = resolved(row, forces, motion);
+        samples.col(j).segment<4>(4 * i) << f_rigid.real(), f_rigid.imag(), f.real(), f.imag();
+      }
+      samples.col(j).segment<2>(4 * num_rows) << forces_rigid.torque, forces.torque;
     });
   };
   const TurnSeries turn = sample_turn(components, fill, sampling_options(linkage, responses, tolerance));
 
   JointForces result;
-  for (Index i = 0; i < num_rows; ++i) {
-    const JointRow& row = table.rows()[static_cast<std::size_t>(i)];
-    const Index skipped = first_component(row), first = 2 * i + skipped, count = 2 - skipped;
-    result.joints.push_back({row.name, cut_rows(turn, first, count), cut_rows(turn, n + first, count)});
-    for (Index c = first; c < first + count; ++c)
-      result.force_error = std::max({result.force_error, left_out(turn, c), left_out(turn, n + c)});
+  for (Eigen::Index i = 0; i < num_rows; ++i) {
+    const JointRow& row = rows[static_cast<std::size_t>(i)];
+    const Eigen::Index skipped = first_component(row), first = 4 * i + skipped, count = 2 - skipped;
+    result.joints.push_back({row.name, cut_rows(turn, first, count), cut_rows(turn, first + 2, count)});
+    for (Eigen::Index c = 0; c < count; ++c)
+      result.force_error = std::max({result.force_error, left_out(turn, first + c), left_out(turn, first + 2 + c)});
   }
-  result.torque_rigid = cut_rows(turn, torque, 1);
-  result.torque = cut_rows(turn, n + torque, 1);
-  result.frame = {cut_rows(turn, frame, 3), cut_rows(turn, n + frame, 3)};
-  result.torque_error = std::max(left_out(turn, torque), left_out(turn, n + torque));
+  result.torque_rigid = cut_rows(turn, 4 * num_rows, 1);
+  result.torque = cut_rows(turn, 4 * num_rows + 1, 1);
+  result.frame = {cut_rows(turn, 4 * num_rows + 2, 3), cut_rows(turn, 4 * num_rows + 5, 3)};
+  result.torque_error = std::max(left_out(turn, 4 * num_rows), left_out(turn, 4 * num_rows + 1));
   return result;
 }
 
-JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
-                         double tolerance) {
-  return joint_forces(ForceTable(linkage), speed, responses, tolerance);
-}
-
-// Sampled per crank angle: what is added to the components of ForceTable, without those of the frame.
-JointForces deflection_forces(const ForceTable& table, double speed, const std::vector<LinkResponse>& responses,
+// Sampled per crank angle: (x, y) of every row, then the torque.
+JointForces deflection_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                               double tolerance) {
-  const auto num_rows = static_cast<Index>(table.rows().size());
-  const Index torque = 2 * num_rows;
-  std::vector<TurnComponent> components(2 * table.rows().size(), TurnComponent{elastic_group, 1});
+  const std::vector<JointRow> rows = joint_rows(linkage);
+  const auto num_rows = static_cast<Eigen::Index>(rows.size());
+  std::vector<TurnComponent> components(2 * rows.size(), TurnComponent{elastic_group, 1});
   components.push_back({torque_group, 1});
-  ForcesOverTurn forces(table, speed, responses);
-  const auto fill = [&](Eigen::MatrixXd& samples, Index begin, Index step) {
-    forces.along(samples.cols(), begin, step, [&](Index j, const auto& at) {
-      for (Index i = 0; i <= torque; ++i) put(at.added(i), i, j, step, samples);
+
+  std::vector<BodyMotion> motion;
+  std::vector<BodyLoad> loads;
+  MechanismForces forces;
+  const auto fill = [&](Eigen::MatrixXd& samples, Eigen::Index begin, Eigen::Index step) {
+    const std::vector<DeflectionSamples> deflections = deflection_samples(linkage, responses, samples.cols());
+    along_turn(linkage, samples.cols(), begin, step, motion, [&](Eigen::Index j) {
+      loads.assign(motion.size(), BodyLoad{});
+      add_deflections(linkage, motion, speed, deflections, j, loads);
+      balance(linkage, motion, loads, forces);
+      for (Eigen::Index i = 0; i < num_rows; ++i) {
+        const Complex f = resolved(rows[static_cast<std::size_t>(i)], forces, motion);
+        samples.col(j).segment<2>(2 * i) << f.real(), f.imag();
+      }
+      samples(2 * num_rows, j) = forces.torque;
     });
   };
-  const TurnSeries turn = sample_turn(components, fill, sampling_options(table.linkage(), responses, tolerance));
+  const TurnSeries turn = sample_turn(components, fill, sampling_options(linkage, responses, tolerance));
 
   JointForces result;
-  for (Index i = 0; i < num_rows; ++i) {
-    const JointRow& row = table.rows()[static_cast<std::size_t>(i)];
-    const Index skipped = first_component(row);
+  for (Eigen::Index i = 0; i < num_rows; ++i) {
+    const JointRow& row = rows[static_cast<std::size_t>(i)];
+    const Eigen::Index skipped = first_component(row);
     result.joints.push_back({row.name, {}, cut_rows(turn, 2 * i + skipped, 2 - skipped)});
   }
-  result.torque = cut_rows(turn, torque, 1);
+  result.torque = cut_rows(turn, 2 * num_rows, 1);
   return result;
 }
 

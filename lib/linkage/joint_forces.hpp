@@ -13,8 +13,6 @@
 
 namespace hb {
 
-class ForceTable;  // force_table.hpp
-
 // What a body's gravity, inertia and damping ask of its joints: the sum of the forces on it, and their moment about
 // its joint 0, must equal (force, moment). Global frame.
 struct BodyLoad {
@@ -89,15 +87,12 @@ struct JointForces {
 // Over the whole turn at one speed (rad per unit time); sampling doubles until the Fourier coefficients have decayed
 // below `tolerance` relative to the largest (or 2^14 samples, or twice what the responses need). An empty `responses`
 // gives elastic = rigid.
-[[nodiscard]] JointForces joint_forces(const ForceTable& table, double speed,
-                                       const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
-// The same where a table serves no other speed.
 [[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                                        double tolerance = 1e-13);
 
 // What the deflections alone add, in the same way: `elastic` and `torque` less the rigid ones, which are empty. Linear
 // in the responses. Without errors and `frame`.
-[[nodiscard]] JointForces deflection_forces(const ForceTable& table, double speed,
+[[nodiscard]] JointForces deflection_forces(const Linkage& linkage, double speed,
                                             const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
 
 }  // namespace hb

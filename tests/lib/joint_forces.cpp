@@ -1,10 +1,11 @@
+#include "lib/linkage/joint_forces.hpp"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "lib/linkage/force_table.hpp"
 #include "lib/rod/rod.hpp"
 #include "tests/support/dense_steady_state.hpp"
 #include "tests/support/six_link.hpp"
@@ -96,7 +97,7 @@ TEST(JointForces, ThoseOfTheDeflectionsAreWhatElasticOnesHaveMoreThanRigidOnes) 
     responses.push_back({link, q});
   }
   const JointForces all = joint_forces(linkage, Omega, responses);
-  const JointForces added = deflection_forces(ForceTable(linkage), Omega, responses);
+  const JointForces added = deflection_forces(linkage, Omega, responses);
   const auto samples = [](const FourierSeries& series) { return fourier::synthesise(series, 1024); };
   ASSERT_EQ(added.joints.size(), all.joints.size());
   for (std::size_t j = 0; j < all.joints.size(); ++j) {
