@@ -47,7 +47,7 @@ LargestForces elastic_part(const JointForces& forces) {
 // An error of q may stand in its last harmonic N, and forces weigh harmonic n by some 1 + n^2: what it counts for
 // there,
 //     (1 + N^2) sum |q_n| / sum (1 + n^2) |q_n|,     the largest of all rods.
-double weight_of_last(const std::vector<LinkResponse>& responses) {
+double weight_beyond(const std::vector<LinkResponse>& responses) {
   double largest = 1;
   for (const LinkResponse& response : responses) {
     double sum = 0, weighed = 0;
@@ -56,7 +56,7 @@ double weight_of_last(const std::vector<LinkResponse>& responses) {
       sum += size;
       weighed += (1 + k * k) * size;
     }
-    const double last = static_cast<double>(response.q.num_harmonics());
+    const double last = 2 * static_cast<double>(response.q.num_harmonics() + 1);
     if (weighed > 0) largest = std::max(largest, (1 + last * last) * sum / weighed);
   }
   return largest;
@@ -79,7 +79,7 @@ ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
   const LargestForces elastic = elastic_part(forces);
-  const double error = response_error * (more_harmonics.empty() ? weight_of_last(responses) : 1);
+  const double error = response_error * (more_harmonics.empty() ? weight_beyond(responses) : 1);
   ForceErrors errors{forces.force_error + error * elastic.force, forces.torque_error + error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
     const LargestForces more = change(linkage, speed, responses, more_harmonics);

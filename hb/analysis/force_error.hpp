@@ -21,8 +21,8 @@ struct LargestForces {
 [[nodiscard]] LargestForces largest_of(const JointForces& forces);
 
 // `largest` of `forces`, which belong to `responses`, whose relative error is `response_error`; `more_harmonics` and
-// `more_modes` are better ones of the same rods; without the former the error of q is taken to stand in its last
-// harmonics, without the latter their part is left out.
+// `more_modes` are better ones of the same rods; without the former the error of q is taken to stand in
+// harmonics beyond it, without the latter their part is left out.
 [[nodiscard]] ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces,
                                        const LargestForces& largest, double response_error,
                                        const std::vector<LinkResponse>& responses,
