@@ -79,7 +79,7 @@ ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
   const LargestForces elastic = elastic_part(forces);
-  const double error = response_error * (more_harmonics.empty() ? weight_beyond(responses) : 1);
+  const double error = response_error * (more_harmonics.empty() ? safety * weight_beyond(responses) : 1);
   ForceErrors errors{forces.force_error + error * elastic.force, forces.torque_error + error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
     const LargestForces more = change(linkage, speed, responses, more_harmonics);

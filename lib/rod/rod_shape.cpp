@@ -136,7 +136,7 @@ struct Grid {
   }
 };
 
-// Local maxima of |F| that are no lower than `least`; the highest first.
+// Local maxima of |F| whose samples are no lower than `least`; the highest first, by the parabolas through them.
 std::vector<Candidate> candidates_of(const Grid& grid, double least) {
   constexpr std::size_t most = 32;
   const Eigen::Index num_x = grid.F.cols() - 1, N = grid.F.rows();
@@ -149,9 +149,10 @@ std::vector<Candidate> candidates_of(const Grid& grid, double least) {
     for (Eigen::Index i = 1; i < num_x; ++i) {
       const double here = size(j, i), below = size(j, i - 1), above = size(j, i + 1);
       const double earlier = size(before, i), later = size(after, i);
-      if (here >= least && here >= below && here >= above && here >= earlier && here > later)
-        candidates.push_back({here, static_cast<double>(i) + vertex(below, here, above),
-                              static_cast<double>(j) + vertex(earlier, here, later), sign(j, i)});
+      if (!(here >= least && here >= below && here >= above && here >= earlier && here > later)) continue;
+      const double along = vertex(below, here, above), onward = vertex(earlier, here, later);
+      const double top = here + 0.25 * (along * (above - below) + onward * (later - earlier));
+      candidates.push_back({top, static_cast<double>(i) + along, static_cast<double>(j) + onward, sign(j, i)});
     }
   }
   if (candidates.empty()) {  // constant in time
