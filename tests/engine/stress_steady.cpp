@@ -116,10 +116,10 @@ void run(stress::Family family, int trials, bool resonant) {
       tally.uncovered, tally.unsettled, tally.closest);
 }
 
-// One or two modes of which the last is within 0.3 of harmonic n = 2..8 with damping down to 1e-7; loads of the first
-// harmonics.
+// One or two modes of which the last is within 0.3 of harmonic n = 2..8 with damping down to 1e-7, coupled within a
+// harmonic too, by gyroscopic terms or a constant part; loads of the first harmonics, faint ones up to beyond n.
 HillSystem resonant_at(Index n, stress::Random& random) {
-  const Index I = random.integer(1, 2), P = random.integer(1, 3), F = random.integer(0, 3);
+  const Index I = random.integer(1, 2), P = random.integer(1, 3), F = random.chance(0.3) ? n + 2 : random.integer(0, 3);
   HillSystem system;
   system.mass = Eigen::MatrixXd::Identity(I, I);
   system.damping = Eigen::MatrixXd::Zero(I, I);
@@ -135,8 +135,16 @@ HillSystem resonant_at(Index n, stress::Random& random) {
       for (Index j = 0; j <= i; ++j)
         if (random.chance(0.7))
           system.stiffness[0].c(i + I * j, k) = system.stiffness[0].c(j + I * i, k) = coupling * random(-1, 1);
-    for (Index k = 0; k <= F; ++k) system.load[0].c(i, k) = random(-1, 1) * random.power(-3, 0);
+    for (Index k = 0; k <= F; ++k) system.load[0].c(i, k) = random(-1, 1) * random.power(k > 3 ? -12 : -3, 0);
   }
+  if (I == 2 && random.chance(0.3)) {
+    const double gyroscopic = random.power(-3, 0.3);
+    system.damping(0, 1) += gyroscopic;
+    system.damping(1, 0) -= gyroscopic;
+  }
+  if (I == 2 && random.chance(0.3))
+    system.stiffness[0].c(1, 0) = system.stiffness[0].c(2, 0) =
+        random(-0.9, 0.9) * std::sqrt(std::abs(system.stiffness[0].c(0, 0) * system.stiffness[0].c(3, 0)));
   return system;
 }
 

@@ -99,14 +99,33 @@ class Rows {
     last_.head(I) = answer_;
   }
 
+  // What rows R+1, R+2, ... answer comes back to rows before them down to H + 1.
+  void back(Index R, Index H) {
+    const Index I = s_.I;
+    for (Index k = R; k > std::max(H, R - s_.P); --k) {
+      answer_.setZero();
+      for (Index n = 0; n < first_.cols() && R + 1 + n - k <= s_.P; ++n)
+        answer_ += sums_.middleCols(I * (R + n - k), I) * first_.col(n);
+      answer(k);
+      total_ += answer_;
+    }
+  }
+
   double last() const { return s_.P > 0 ? weigh(last_.reshaped(s_.I, s_.P).rowwise().sum(), T_) : 0; }
   double total() const { return weigh(total_, T_); }
 
  private:
+  void answer(Index k) {
+    Eigen::VectorXd coupled;
+    if (s_.coupled_within(k) > 0.01) coupled = moduli(dense::Lu<std::complex<double>>(s_.block(k)).inverse()) * answer_;
+    for (Index i = 0; i < s_.I; ++i) answer_(i) /= stiffness(s_, i, k);
+    if (coupled.size() > 0) answer_ = answer_.cwiseMax(coupled);
+  }
+
   const WeightedSystem& s_;
   const Spectrum& r_;
   const Eigen::MatrixXd& T_;
-  Eigen::MatrixXd sums_;
+  Eigen::MatrixXd sums_, first_;
   Eigen::VectorXd last_, total_, answer_;
 };
 
@@ -126,7 +145,7 @@ double weigh(const Eigen::VectorXd& sizes, const Eigen::MatrixXd& T) {
 // Row after row until no resonance is ahead and rows shrink, or all that are ahead could not make them count.
 double answered_beyond(const WeightedSystem& s, const Spectrum& x, const Spectrum& rest, const Spectrum& r, Index H,
                        double known, const Eigen::MatrixXd& T) {
-  constexpr double among = 1.5, shrinking = 0.3, negligible = 1e-3, no_end = 1e8;
+  constexpr double among = 2, shrinking = 0.3, negligible = 1e-3, no_end = 1e8;
   constexpr Index most_rows = 100000, between_looks = 32;
   const Index R = x.rows() - 1, F = r.rows() - 1;
   double ahead = 0, all = 1;
@@ -139,11 +158,13 @@ double answered_beyond(const WeightedSystem& s, const Spectrum& x, const Spectru
     }
   };
   look(R + 1);
-  if (ahead <= shrinking) return among * known * ahead / (1 - ahead);
+  const bool loaded = F > R && !r.bottomRows(F - R).isZero(0);
+  if (ahead <= shrinking && !loaded) return among * known * ahead / (1 - ahead);
   Rows rows(s, x, rest, r, H, known, T);
   for (Index k = R + 1; k <= R + most_rows; ++k) {
     rows.next(k);
-    if (k < F || (k - R) % between_looks != 0) continue;
+    if (k == R + std::max<Index>(s.P, 1)) rows.back(R, H);
+    if (k < F || k < R + s.P || ((k - R) % between_looks != 0 && !loaded)) continue;
     end_if_wished();
     look(k + 1);
     const double size = rows.last(), so_far = rows.total();
