@@ -44,12 +44,15 @@ double moved(const WeightedSystem& s, Index i, Index k) {
   return sum;
 }
 
-// |D_i(k)|, about its least less twice what coupling moves it by, down to the damping or rounding.
+// |D_i(k)|, about its least less twice what coupling moves it by, down to the damping, rounding, or a millionth of what
+// it is moved by: no nearer do systems come that were not sought for it.
 double stiffness(const WeightedSystem& s, Index i, Index k) {
+  constexpr double as_near = 1e-6;
   const Index above = k - below_resonance(s, i);
   const double d = modulus(s.D(i, k));
   if (above < 0 || above > 1) return d;
-  return std::max({d - 2 * moved(s, i, k), static_cast<double>(k) * std::abs(s.G(i, i)), 32 * eps * s.magnitude(i, k)});
+  const double by = 2 * moved(s, i, k);
+  return std::max({d - by, as_near * by, static_cast<double>(k) * std::abs(s.G(i, i)), 32 * eps * s.magnitude(i, k)});
 }
 
 // Largest c_i/|D_i(k)| over k >= first, c_i all that couples row k of mode i to others.
