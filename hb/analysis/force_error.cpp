@@ -44,8 +44,8 @@ LargestForces elastic_part(const JointForces& forces) {
   return largest;
 }
 
-// An error of q may stand in its last harmonic N, and forces weigh harmonic n by some 1 + n^2: what it counts for
-// there,
+// An error of q may stand in harmonics beyond its own H, up to N = 2 (H + 1) say, and forces weigh harmonic n by some
+// 1 + n^2: what it counts for there,
 //     (1 + N^2) sum |q_n| / sum (1 + n^2) |q_n|,     the largest of all rods.
 double weight_beyond(const std::vector<LinkResponse>& responses) {
   double largest = 1;
@@ -56,8 +56,8 @@ double weight_beyond(const std::vector<LinkResponse>& responses) {
       sum += size;
       weighed += (1 + k * k) * size;
     }
-    const double last = 2 * static_cast<double>(response.q.num_harmonics() + 1);
-    if (weighed > 0) largest = std::max(largest, (1 + last * last) * sum / weighed);
+    const double N = 2 * static_cast<double>(response.q.num_harmonics() + 1);
+    if (weighed > 0) largest = std::max(largest, (1 + N * N) * sum / weighed);
   }
   return largest;
 }

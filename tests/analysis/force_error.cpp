@@ -73,6 +73,30 @@ TEST_P(OfTheModesKept, CoversTheTrueOne) {
   }
 }
 
+// As sweeps have it: without an answer of more harmonics.
+TEST_P(OfTheModesKept, CoversTheTrueOneFromTheErrorOfQAlone) {
+  const auto [scene, speed] = GetParam();
+  const JointForces truth = accurate_forces(scene, speed, 5, {.tolerance = 1e-14, .method = SteadyMethod::direct});
+  for (const double tolerance : {1e-2, 1e-4, 1e-7, 1e-10, 1e-13}) {
+    const Settings settings = settings_of(5, tolerance);
+    const SceneModel model = model_of(scene, settings);
+    std::vector<LinkResponse> responses;
+    double response_error = 0;
+    for (const RodModel& rod : model.rods) {
+      const SteadyState state = solve_steady_state(rod.system, speed, {.tolerance = tolerance});
+      responses.push_back({rod.link, state.q});
+      response_error = std::max(response_error, state.error_bound);
+    }
+    const JointForces forces = joint_forces(*model.linkage(), speed, responses);
+    const ForceErrors told =
+        force_errors(*model.linkage(), speed, forces, largest_of(forces), response_error, responses, {}, {});
+    const Relative error = difference(forces, truth);
+    EXPECT_LE(error.force, told.force) << tolerance;
+    EXPECT_LE(error.torque, told.torque) << tolerance;
+    EXPECT_LE(told.force, std::max(1e4 * tolerance, 1e-8)) << tolerance;
+  }
+}
+
 TEST_P(OfTheCut, CoversTheTrueOne) {
   const auto [scene, speed] = GetParam();
   const JointForces truth = accurate_forces(scene, speed, 40, {.tolerance = 1e-12});

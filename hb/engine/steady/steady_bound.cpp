@@ -104,6 +104,17 @@ double directionless(const Operator& A, const Spectrum& r, const Spectrum& tail,
   return window + weigh(way.out * component + way.among * outside, T);
 }
 
+// Size in q of what e has beyond the window.
+double size_outside(const WeightedSystem& s, Index H, const Spectrum& r, const Spectrum& tail,
+                    const Eigen::MatrixXd& T) {
+  const Index R = tail.rows() - 1;
+  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(s.I);
+  for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
+  double size = weigh(sizes, T);
+  if (r.rows() > R + 1) size += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
+  return size;
+}
+
 }  // namespace
 
 double size_in_q(const Spectrum& x, const Eigen::MatrixXd& T) { return weigh(wiener_norms(x), T); }
@@ -141,21 +152,6 @@ double amplified(const Operator& A, const Eigen::MatrixXd& r, double response, c
 double amplified(const Eigen::VectorXd& sizes, double response, const Eigen::MatrixXd& T) {
   return safety * response * weigh(sizes, T);
 }
-
-namespace {
-
-// Size in q of what e has beyond the window.
-double size_outside(const WeightedSystem& s, Index H, const Spectrum& r, const Spectrum& tail,
-                    const Eigen::MatrixXd& T) {
-  const Index R = tail.rows() - 1;
-  Eigen::VectorXd sizes = Eigen::VectorXd::Zero(s.I);
-  for (Index k = H + 1; k <= R; ++k) sizes += 2 * moduli(tail.row(k)).transpose();
-  double size = weigh(sizes, T);
-  if (r.rows() > R + 1) size += 2 * sizes_of_rows(s, r.bottomRows(r.rows() - R - 1), R + 1, T).sum();
-  return size;
-}
-
-}  // namespace
 
 // hb/engine/README.md (S6).
 Correction correction(Operator& A, Inverse& inverse, const Spectrum& r, double response, const Eigen::MatrixXd& T,
