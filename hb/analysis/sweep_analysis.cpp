@@ -359,11 +359,18 @@ class SweepRun {
     std::vector<SweepPoint> points = work_.results<SweepPoint>(
         what, places.size(),
         [&](std::size_t k) {
-          return work_.ends_early() ? left_out(places[k]) : analyse_point(scene_, places[k], only_);
+          return work_.ends_early() ? left_out(places[k])
+                                    : analyse_point(scene_, places[k], only_, {.at_boundary = is_boundary(places[k])});
         },
         [](auto& visit, SweepPoint& point) { visit_point(visit, point); });
     std::erase_if(points, [](const SweepPoint& point) { return point.problem == not_computed; });
     std::ranges::move(points, std::back_inserter(result_.refined));
+  }
+
+  bool is_boundary(double x) const {
+    return std::ranges::any_of(result_.rods, [x](const SweepRod& rod) {
+      return std::ranges::find(rod.boundaries, x, &StabilityBoundary::x) != rod.boundaries.end();
+    });
   }
 
   // Boundaries, peaks, and the fastest growth between points.

@@ -81,7 +81,7 @@ SweepPoint PointFamily::at(std::size_t k) {
   } else {
     solve(*block, 0, block->nodes.size());
     const PointSolution start = foretold(*block, values_[k]);
-    point = analyse_point(scene_, values_[k], only_, &start);
+    point = analyse_point(scene_, values_[k], only_, {.start = &start});
   }
   const std::lock_guard lock(mutex_);
   if (--block->left == 0) blocks_[k / block_size_].reset();
@@ -118,7 +118,7 @@ void PointFamily::solve(Block& block, std::size_t first, std::size_t count) {
     lock.unlock();
     PointSolution solution;
     try {
-      node->point = analyse_point(scene_, values_[k], only_, nullptr, &solution);
+      node->point = analyse_point(scene_, values_[k], only_, {.solution = &solution});
     } catch (...) {
       lock.lock();
       node->state = Node::State::untouched;

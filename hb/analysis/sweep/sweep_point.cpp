@@ -104,10 +104,9 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
         stress_point(stress, stress_cycle(link, coefficients, speed, q, finer, cut ? point.error_bound : HUGE_VAL));
 }
 
-// `solution` may be null.
-RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, double speed, const Settings& settings,
-                     const Only& only, std::span<const SlavingStart> start, Responses& responses,
-                     std::vector<SlavingStart>* solution) {
+RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double speed, const Settings& settings,
+                     const Only& only, const PointOptions& options, Responses& responses) {
+  const RodModel& rod = model.rods[r];
   RodPoint point;
   responses.scaled = scale_system(rod.system, speed);
   const ScaledSystem& scaled = responses.scaled;
@@ -126,18 +125,19 @@ RodPoint analyse_rod(const SceneModel& model, const RodModel& rod, double x, dou
     }
   }
   if (only.stability) {  // of every rod: the mechanism is stable where all are
-    StabilityOptions options = exponent_options(settings);
-    options.starts = start;
-    options.keeps_solved = solution != nullptr;
+    StabilityOptions exponents = exponent_options(settings);
+    if (options.start != nullptr && r < options.start->size()) exponents.starts = (*options.start)[r];
+    exponents.keeps_solved = options.solution != nullptr;
+    exponents.growth_suffices = options.at_boundary;
     if (only.all_exponents() && settings.search) {
-      point.stability = stability_sample(scaled, x, options);
+      point.stability = stability_sample(scaled, x, exponents);
     } else {
       point.stability.emplace();
       point.stability->x = x;
       point.stability->speed = speed;
-      point.stability->stability = analyse_stability(scaled, options);
+      point.stability->stability = analyse_stability(scaled, exponents);
     }
-    if (solution != nullptr) *solution = std::move(point.stability->stability.solved);
+    if (options.solution != nullptr) (*options.solution)[r] = std::move(point.stability->stability.solved);
   }
   return point;
 }
@@ -211,8 +211,7 @@ MachinePoint machine_point(const MachineLoads& loads, double speed) {
   return point;
 }
 
-SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted, const PointSolution* start,
-                         PointSolution* solution) {
+SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted, const PointOptions& options) {
   const ScenePlace place = scene.at(x);
   SweepPoint point;
   point.x = x;
@@ -220,15 +219,11 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted, 
   point.problem = place.problem;
   if (!place.model) return point;
   const Only only = available(*place.model, wanted);
-  const std::vector<RodModel>& rods = place.model->rods;
-  std::vector<Responses> solved(rods.size());
-  if (solution != nullptr) solution->resize(rods.size());
-  for (std::size_t r = 0; r < rods.size(); ++r) {
-    const bool begun = start != nullptr && r < start->size();
-    point.rods.push_back(analyse_rod(*place.model, rods[r], x, place.speed, scene.settings(), only,
-                                     begun ? (*start)[r] : std::span<const SlavingStart>(), solved[r],
-                                     solution != nullptr ? &(*solution)[r] : nullptr));
-  }
+  std::vector<Responses> solved(place.model->rods.size());
+  if (options.solution != nullptr) options.solution->resize(solved.size());
+  for (std::size_t r = 0; r < solved.size(); ++r)
+    point.rods.push_back(
+        analyse_rod(*place.model, r, x, place.speed, scene.settings(), only, options, solved[r]));
   std::optional<JointForces> forces;
   if (only.reactions && std::ranges::none_of(solved, [](const Responses& rod) { return rod.q.c.size() == 0; }))
     forces = add_forces(point, *place.model, solved);

@@ -71,9 +71,15 @@ struct SweepPoint {
 // Stability::solved of each rod.
 using PointSolution = std::vector<std::vector<SlavingStart>>;
 
-// Slaving begins where `start`, if given, says: that decides how long it takes and moves what comes out by less than
-// its error. `solution`, if given, takes what it came to.
+struct PointOptions {
+  // Where slaving begins: decides how long it takes and moves what comes out by less than its error.
+  const PointSolution* start = nullptr;
+  PointSolution* solution = nullptr;  // takes what slaving came to
+  // At the end of a band the growth rate is zero: accurate as asked it suffices, no second method seeks its sign.
+  bool at_boundary = false;
+};
+
 [[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted,
-                                       const PointSolution* start = nullptr, PointSolution* solution = nullptr);
+                                       const PointOptions& options = {});
 
 }  // namespace hb
