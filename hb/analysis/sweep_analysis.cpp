@@ -308,9 +308,10 @@ class SweepRun {
     point.prominence = m.prominence;
     point.speed = scene_.at(peak->x).speed;
     if (only_.all_exponents() && !is_refined(point)) {
-      const std::optional<StabilitySample> sample =
-          stability_sample([&](double x) { return rod.system(x); }, point.peak.x, exponent_options(settings_));
-      if (sample) name_mode(point, sample->stability);
+      StabilityOptions options = exponent_options(settings_);
+      options.as_found = true;  // growth is zero where the response is unbounded
+      if (const std::optional<ScaledSystem> system = rod.system(point.peak.x))
+        name_mode(point, analyse_stability(*system, options));
     }
     return point;
   }

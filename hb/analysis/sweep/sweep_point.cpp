@@ -128,7 +128,7 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
     StabilityOptions exponents = exponent_options(settings);
     if (options.start != nullptr && r < options.start->size()) exponents.starts = (*options.start)[r];
     exponents.keeps_solved = options.solution != nullptr;
-    exponents.growth_suffices = options.at_boundary;
+    exponents.as_found = options.at_boundary;
     if (only.all_exponents() && settings.search) {
       point.stability = stability_sample(scaled, x, exponents);
     } else {

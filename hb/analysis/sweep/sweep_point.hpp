@@ -75,7 +75,7 @@ struct PointOptions {
   // Where slaving begins: decides how long it takes and moves what comes out by less than its error.
   const PointSolution* start = nullptr;
   PointSolution* solution = nullptr;  // takes what slaving came to
-  // At the end of a band the growth rate is zero: accurate as asked it suffices, no second method seeks its sign.
+  // At the end of a band the growth rate is zero: no second method seeks its sign.
   bool at_boundary = false;
 };
 

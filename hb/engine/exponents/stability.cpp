@@ -88,14 +88,14 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (options.method == StabilityMethod::propagation)
     return finished(system, search_by_propagation(system, tolerance), tolerance);
   const auto suffices = [&](const Stability& result) {
+    if (options.as_found && std::isfinite(result.growth_rate + result.growth_error)) return true;
     return result.converged && (result.verdict != Verdict::undecided || options.growth_suffices);
   };
   // Without damping all exponents are needed to decide.
   if (options.leading_only && system.num_modes() > 1 && !system.conservative.all())
     if (const auto lead = search_leading(system, tolerance, options.keep)) {
       const Stability result = finished(system, *lead, tolerance);
-      if (suffices(result) || (options.as_found && std::isfinite(result.growth_rate + result.growth_error)))
-        return result;
+      if (suffices(result)) return result;
     }
   Exponents propagated;
   if (options.method == StabilityMethod::automatic && propagates_at_once(system)) {

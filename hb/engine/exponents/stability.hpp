@@ -32,7 +32,7 @@ struct StabilityOptions {
   bool verdict_only = false;
   // A growth rate within the tolerance is enough, also where its error leaves the verdict open.
   bool growth_suffices = false;
-  // With leading_only: the leading exponents with the error that they come with, however large; no second method.
+  // All exponents, or with leading_only those, with the error that they come with, however large: no second method.
   bool as_found = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};
