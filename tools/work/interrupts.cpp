@@ -15,9 +15,9 @@ constexpr int signals[] = {SIGINT, SIGTERM, SIGHUP};
 
 struct Slot {
   std::atomic<int> state = 0;  // 0 free, 1 being filled, 2 + kind
-  char path[4096];
+  char path[4096] = {};
 };
-Slot slots[16];
+constinit Slot slots[16];  // no page of it is touched before it is needed
 std::atomic<pid_t> child_group = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
