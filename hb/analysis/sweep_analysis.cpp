@@ -308,12 +308,20 @@ class SweepRun {
     point.prominence = m.prominence;
     point.speed = scene_.at(peak->x).speed;
     if (only_.all_exponents() && !is_refined(point)) {
-      StabilityOptions options = exponent_options(settings_);
-      options.as_found = true;  // growth is zero where the response is unbounded
       if (const std::optional<ScaledSystem> system = rod.system(point.peak.x))
-        name_mode(point, analyse_stability(*system, options));
+        name_mode(point, exponents_of(*system, m.component));
     }
     return point;
+  }
+
+  // By one method, unless it misses those of a mode: frequency and damping need no sign of a growth rate near zero.
+  Stability exponents_of(const ScaledSystem& system, int mode) const {
+    StabilityOptions options = exponent_options(settings_);
+    options.one_method = true;
+    Stability found = analyse_stability(system, options);
+    if (std::ranges::find(found.exponents, mode, &Exponent::mode) != found.exponents.end()) return found;
+    options.one_method = false;
+    return analyse_stability(system, options);
   }
 
   // Everything is computed there: where the response is bounded.
@@ -361,17 +369,20 @@ class SweepRun {
         what, places.size(),
         [&](std::size_t k) {
           return work_.ends_early() ? left_out(places[k])
-                                    : analyse_point(scene_, places[k], only_, {.at_boundary = is_boundary(places[k])});
+                                    : analyse_point(scene_, places[k], only_, {.at_boundary = at_boundary(places[k])});
         },
         [](auto& visit, SweepPoint& point) { visit_point(visit, point); });
     std::erase_if(points, [](const SweepPoint& point) { return point.problem == not_computed; });
     std::ranges::move(points, std::back_inserter(result_.refined));
   }
 
-  bool is_boundary(double x) const {
-    return std::ranges::any_of(result_.rods, [x](const SweepRod& rod) {
-      return std::ranges::find(rod.boundaries, x, &StabilityBoundary::x) != rod.boundaries.end();
-    });
+  // Which rods have a boundary there.
+  std::vector<bool> at_boundary(double x) const {
+    std::vector<bool> there;
+    for (const SweepRod& rod : result_.rods)
+      there.push_back(std::ranges::any_of(
+          rod.boundaries, [x](const StabilityBoundary& boundary) { return boundary.converged && boundary.x == x; }));
+    return there;
   }
 
   // Boundaries, peaks, and the fastest growth between points.

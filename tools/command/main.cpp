@@ -4,6 +4,7 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #endif
 
 #include <cerrno>
@@ -47,9 +48,12 @@ int flush_output(int status) {
 }
 
 #ifdef __GLIBC__
-// The next memory that is asked for comes in pages of 2 MB, where the system has them: one page fault instead of 512. They
-// begin behind what says how large the first piece is: where something was written before, small pages stay.
+// The heap goes on in pages of 2 MB where the system has them: one page fault instead of 512. Its first header lies in
+// the small page before, since only memory that nobody has touched becomes large.
 void use_large_pages() {
+  rlimit space{}, data{};
+  if (getrlimit(RLIMIT_AS, &space) != 0 || getrlimit(RLIMIT_DATA, &data) != 0) return;
+  if (space.rlim_cur != RLIM_INFINITY || data.rlim_cur != RLIM_INFINITY) return;
   constexpr std::uintptr_t page = 2 << 20, small = 4096;
   constexpr std::size_t some = 64 << 20;
   const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
@@ -61,7 +65,8 @@ void use_large_pages() {
 }
 #endif
 
-void prepare_process() {
+// Before other threads ask for memory.
+void prepare_memory() {
 #ifdef __GLIBC__
   // Matrices of a speed or a place of a map are freed and allocated again thousands of times: their pages stay.
   constexpr int kept = 256 << 20;
@@ -71,6 +76,9 @@ void prepare_process() {
   mallopt(M_TOP_PAD, at_once);
   use_large_pages();
 #endif
+}
+
+void prepare_process() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
   std::signal(SIGPIPE, SIG_IGN);  // files come first, see flush_output
   std::set_terminate(end_without_abort);
@@ -82,6 +90,7 @@ void prepare_process() {
 #ifdef HB_WITH_MPI
 
 int main(int argc, char** argv) {
+  prepare_memory();
   const hb::tools::MpiRanks ranks(argc, argv);
   hb::tools::set_ranks(ranks);
   prepare_process();
@@ -100,6 +109,7 @@ int main(int argc, char** argv) {
 #else
 
 int main(int argc, char** argv) {
+  prepare_memory();
   prepare_process();
   // Under mpirun the program with MPI beside this one takes over; alone, nobody waits for MPI to be loaded.
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr || std::getenv("PMI_SIZE") != nullptr) {

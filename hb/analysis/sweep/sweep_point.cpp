@@ -128,7 +128,7 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
     StabilityOptions exponents = exponent_options(settings);
     if (options.start != nullptr && r < options.start->size()) exponents.starts = (*options.start)[r];
     exponents.keeps_solved = options.solution != nullptr;
-    exponents.as_found = options.at_boundary;
+    exponents.one_method = r < options.at_boundary.size() && options.at_boundary[r];
     if (only.all_exponents() && settings.search) {
       point.stability = stability_sample(scaled, x, exponents);
     } else {
@@ -222,8 +222,7 @@ SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted, 
   std::vector<Responses> solved(place.model->rods.size());
   if (options.solution != nullptr) options.solution->resize(solved.size());
   for (std::size_t r = 0; r < solved.size(); ++r)
-    point.rods.push_back(
-        analyse_rod(*place.model, r, x, place.speed, scene.settings(), only, options, solved[r]));
+    point.rods.push_back(analyse_rod(*place.model, r, x, place.speed, scene.settings(), only, options, solved[r]));
   std::optional<JointForces> forces;
   if (only.reactions && std::ranges::none_of(solved, [](const Responses& rod) { return rod.q.c.size() == 0; }))
     forces = add_forces(point, *place.model, solved);

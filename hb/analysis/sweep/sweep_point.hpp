@@ -75,8 +75,7 @@ struct PointOptions {
   // Where slaving begins: decides how long it takes and moves what comes out by less than its error.
   const PointSolution* start = nullptr;
   PointSolution* solution = nullptr;  // takes what slaving came to
-  // At the end of a band the growth rate is zero: no second method seeks its sign.
-  bool at_boundary = false;
+  std::vector<bool> at_boundary;  // rods with growth rate zero, an end of a band: no second method seeks its sign
 };
 
 [[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted,

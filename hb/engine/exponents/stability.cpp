@@ -88,14 +88,14 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (options.method == StabilityMethod::propagation)
     return finished(system, search_by_propagation(system, tolerance), tolerance);
   const auto suffices = [&](const Stability& result) {
-    if (options.as_found && std::isfinite(result.growth_rate + result.growth_error)) return true;
     return result.converged && (result.verdict != Verdict::undecided || options.growth_suffices);
   };
   // Without damping all exponents are needed to decide.
   if (options.leading_only && system.num_modes() > 1 && !system.conservative.all())
     if (const auto lead = search_leading(system, tolerance, options.keep)) {
       const Stability result = finished(system, *lead, tolerance);
-      if (suffices(result)) return result;
+      if (suffices(result) || (options.as_found && std::isfinite(result.growth_rate + result.growth_error)))
+        return result;
     }
   Exponents propagated;
   if (options.method == StabilityMethod::automatic && propagates_at_once(system)) {
@@ -111,7 +111,7 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
   if (search.method == StabilityMethod::propagation || options.method == StabilityMethod::slaving) return result;
   // Beyond about a second's work the fastest modes turn so often that propagation is less accurate than what is there.
   if (search.complete && propagated_cells(system) * std::pow(double(system.num_modes()), 3) > 1e6) return result;
-  if (search.complete && suffices(result)) return result;
+  if (search.complete && (suffices(result) || options.one_method)) return result;
   const double sharper = options.growth_suffices ? tolerance : std::min(tolerance, 1e-11);
   Stability second = finished(system, search_by_propagation(system, sharper), tolerance);
   if (second.growth_error >= result.growth_error && second.verdict != Verdict::bounded) return result;

@@ -32,8 +32,10 @@ struct StabilityOptions {
   bool verdict_only = false;
   // A growth rate within the tolerance is enough, also where its error leaves the verdict open.
   bool growth_suffices = false;
-  // All exponents, or with leading_only those, with the error that they come with, however large: no second method.
+  // With leading_only: the leading exponents with the error that they come with, however large; no second method.
   bool as_found = false;
+  // Of all exponents those of the first method that accounts for them, with the error that they come with.
+  bool one_method = false;
   // With leading_only: modes to keep together at the first try, as a neighbouring point's result says in `kept`.
   std::vector<int> keep = {};
   // Where all exponents are looked for: what slaving came to in a neighbouring system, Stability::solved.
