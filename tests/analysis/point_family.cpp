@@ -78,5 +78,25 @@ TEST(PointFamily, ExponentsAreThoseOfEachPlaceAlone) {
   }
 }
 
+// Where a band of AB ends, the sign of its growth rate is not pursued; that of CD is.
+TEST(SweepPoint, AtTheEndOfABandTheRodThatEndsItHasOneMethod) {
+  const SweepScene scene = scene_along("tests/scenes/six_link.toml", 1600, 1700, 2);
+  constexpr double end = 1683.8460206305933;
+  const auto at = [&](std::vector<bool> rods) {
+    return analyse_point(scene, end, scene.settings().only, {.at_boundary = std::move(rods)}).rods;
+  };
+  const auto second = [](const RodPoint& rod) {
+    return rod.stability->stability.evidence.find("(second method") != std::string::npos;
+  };
+  const std::vector<RodPoint> pursued = at({}), ended = at({true, false});
+  EXPECT_TRUE(second(pursued[0]));
+  EXPECT_FALSE(second(ended[0]));
+  const Stability &a = pursued[0].stability->stability, &b = ended[0].stability->stability;
+  EXPECT_LE(std::abs(a.growth_rate - b.growth_rate), a.growth_error + b.growth_error);
+  EXPECT_LE(b.growth_error, 1e-7);
+  EXPECT_EQ(pursued[1].stability->stability.evidence, ended[1].stability->stability.evidence);
+  EXPECT_EQ(pursued[1].stability->stability.growth_rate, ended[1].stability->stability.growth_rate);
+}
+
 }  // namespace
 }  // namespace hb

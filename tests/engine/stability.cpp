@@ -241,6 +241,26 @@ TEST(Stability, LeadingExponentsAloneAreThoseOfTheFullSet) {
   EXPECT_GE(skipped, 10);
 }
 
+TEST(Stability, OneMethodKeepsItsErrorsWhereASecondOneIsAskedOtherwise) {
+  std::mt19937 generator(1683);
+  int spared = 0;
+  const auto second = [](const Stability& of) { return of.evidence.find("(second method") != std::string::npos; };
+  for (int i = 0; i < 80; ++i) {
+    const HillSystem system = random_system(generator, 5);
+    const Stability both = analyse_stability(system, 1.0, {.tolerance = 1e-13});
+    const Stability one = analyse_stability(system, 1.0, {.tolerance = 1e-13, .one_method = true});
+    EXPECT_FALSE(second(one)) << "system " << i;
+    EXPECT_EQ(one.exponents.size() + one.uncertain.size(), both.exponents.size() + both.uncertain.size());
+    EXPECT_LE(std::abs(both.growth_rate - one.growth_rate), both.growth_error + one.growth_error) << "system " << i;
+    EXPECT_LE(both.growth_error, one.growth_error) << "system " << i;
+    if (both.verdict != Verdict::undecided && one.verdict != Verdict::undecided) {
+      EXPECT_EQ(both.verdict, one.verdict) << "system " << i;
+    }
+    spared += second(both);
+  }
+  EXPECT_GE(spared, 10);
+}
+
 TEST(Stability, LeadingExponentsHaveFiniteBarsInsideATongue) {
   const Linkage linkage = six_link::linkage({.J = 45});
   const LinkageCoefficients coefficients = linkage_coefficients(linkage);
