@@ -245,7 +245,7 @@ TEST(Stability, OneMethodKeepsItsErrorsWhereASecondOneIsAskedOtherwise) {
   std::mt19937 generator(1683);
   int spared = 0;
   const auto second = [](const Stability& of) { return of.evidence.find("(second method") != std::string::npos; };
-  for (int i = 0; i < 80; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const HillSystem system = random_system(generator, 5);
     const Stability both = analyse_stability(system, 1.0, {.tolerance = 1e-13});
     const Stability one = analyse_stability(system, 1.0, {.tolerance = 1e-13, .one_method = true});
