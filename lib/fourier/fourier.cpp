@@ -194,20 +194,21 @@ static const Plans& plans(Eigen::Index N) {
 
 struct RealTransform::Impl {
   Eigen::Index N, n;
+  const Plans& plan;
+  // Aligned as all matrices are: where a vector begins decides in which order its numbers are added.
+  Eigen::VectorXd samples_memory;
+  Eigen::VectorXcd spectrum_memory;
   double* samples;
   fftw_complex* spectrum;
-  const Plans& plan;
 
   Impl(Eigen::Index num_samples, Eigen::Index num_components)
-      : N(num_samples), n(num_components), samples(nullptr), spectrum(nullptr), plan(checked(N, n)) {
-    samples = fftw_alloc_real(static_cast<std::size_t>(N * n));
-    spectrum = fftw_alloc_complex(static_cast<std::size_t>((N / 2 + 1) * n));
-    if (!samples || !spectrum) throw std::bad_alloc();
-  }
-  ~Impl() {
-    fftw_free(samples);
-    fftw_free(spectrum);
-  }
+      : N(num_samples),
+        n(num_components),
+        plan(checked(N, n)),
+        samples_memory(N * n),
+        spectrum_memory((N / 2 + 1) * n),
+        samples(samples_memory.data()),
+        spectrum(reinterpret_cast<fftw_complex*>(spectrum_memory.data())) {}
   static const Plans& checked(Eigen::Index N, Eigen::Index n) {
     if (N < 1 || n < 1) throw std::invalid_argument("RealTransform: length and number of components must be positive");
     return plans(N);
