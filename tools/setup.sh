@@ -9,7 +9,7 @@ purpose=${1:-command}
 packages=(
   g++ cmake ninja-build git
   libeigen3-dev libfftw3-dev libtomlplusplus-dev libcli11-dev libfmt-dev nlohmann-json3-dev
-  libsundials-cvode6 libsundials-nvecserial6 libnlopt-dev libnlopt-cxx-dev libjs-dygraphs
+  libsundials-cvode6 libsundials-nvecserial6 libnlopt-dev libnlopt-cxx-dev libmimalloc-dev libjs-dygraphs
   gnuplot-nox fonts-dejavu-core
 )
 case $purpose in
