@@ -41,10 +41,12 @@ int flush_output(int status) {
   _exit(hb::tools::exit_failed);
 }
 
+// Before objects with initialisers ask for memory.
+[[gnu::constructor(101)]] void end_cleanly_without_memory() { std::set_terminate(end_without_abort); }
+
 void prepare_process() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit then shows as a write error, like a full disk
   std::signal(SIGPIPE, SIG_IGN);  // files come first, see flush_output
-  std::set_terminate(end_without_abort);
   hb::tools::end_cleanly_on_signals();
 }
 
