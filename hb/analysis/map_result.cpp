@@ -191,9 +191,9 @@ MapResult compute_map(const ScenePlane& plane, const PlaneAxis& x_axis, std::vec
     }
   }
   if (search.boundaries) result.boundaries = worst_boundaries(plane, result.maps, search);
-  result.lines =
-      resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
-                      {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()}, max_lines);
+  result.lines = resonance_lines([&](double u, double v) { return plane.system(0, u, v); },
+                                 {result.x().front(), result.x().back()}, {result.y().front(), result.y().back()},
+                                 max_lines, search.for_each);
   result.missing = missing_points(plane, result.maps.front());
   return result;
 }

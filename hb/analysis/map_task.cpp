@@ -101,6 +101,9 @@ Map MapTask::compute(Work& work) const {
     work.step(fmt::format("stability map, step {}", ++steps), all);
   };
   curves.parts = search.parts;
+  search.for_each = [&](std::size_t count, const std::function<void(std::size_t)>& task) {
+    work.for_each(count, task);
+  };
   Map map{compute_map(*plane_, x_axis_, x, y_axis_, y, search),
           plane_->scene(),
           settings_,

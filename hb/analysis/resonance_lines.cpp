@@ -11,7 +11,7 @@
 namespace hb {
 namespace {
 
-constexpr std::size_t lattice = 97;  // places per side where the frequencies are computed
+constexpr std::size_t lattice = 65;  // places per side where the frequencies are computed
 constexpr int modes_with_lines = 2;
 constexpr int max_order = 8;
 
@@ -70,22 +70,22 @@ std::string ResonanceLine::name(bool subscripts) const {
 }
 
 std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<double, 2> x, std::array<double, 2> y,
-                                           std::size_t max_lines) {
-  std::vector<PlanePoint> places;
+                                           std::size_t max_lines, const ForEach& for_each) {
+  std::vector<PlanePoint> places(lattice * lattice);
   std::array<std::vector<double>, modes_with_lines> w;  // frequencies over the speed
-  for (std::size_t j = 0; j < lattice; ++j) {
+  for (std::vector<double>& of_mode : w) of_mode.assign(places.size(), std::numeric_limits<double>::quiet_NaN());
+  do_each(for_each, lattice, [&](std::size_t j) {
     for (std::size_t i = 0; i < lattice; ++i) {
-      const PlanePoint place = {x[0] + (x[1] - x[0]) * static_cast<double>(i) / (lattice - 1),
-                                y[0] + (y[1] - y[0]) * static_cast<double>(j) / (lattice - 1)};
-      places.push_back(place);
-      const std::optional<ScaledSystem> system = at(place[0], place[1]);
-      const Eigen::VectorXd squares = system ? system->squared_frequencies() : Eigen::VectorXd();
-      for (int m = 0; m < modes_with_lines; ++m) {
-        w[static_cast<std::size_t>(m)].push_back(
-            m < squares.size() && squares(m) >= 0 ? std::sqrt(squares(m)) : std::numeric_limits<double>::quiet_NaN());
-      }
+      const std::size_t p = i + lattice * j;
+      places[p] = {x[0] + (x[1] - x[0]) * static_cast<double>(i) / (lattice - 1),
+                   y[0] + (y[1] - y[0]) * static_cast<double>(j) / (lattice - 1)};
+      const std::optional<ScaledSystem> system = at(places[p][0], places[p][1]);
+      if (!system) continue;
+      const Eigen::VectorXd squares = system->squared_frequencies();
+      for (Eigen::Index m = 0; m < std::min<Eigen::Index>(modes_with_lines, squares.size()); ++m)
+        if (squares(m) >= 0) w[static_cast<std::size_t>(m)][p] = std::sqrt(squares(m));
     }
-  }
+  });
   std::vector<ResonanceLine> lines;
   struct Kind {
     int i, j, sign;

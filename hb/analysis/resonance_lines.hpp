@@ -22,8 +22,9 @@ struct ResonanceLine {
 };
 
 // Lines of the lowest two modes that cross the rectangle, strongest kinds first (sums before differences, then by k),
-// at most `max_lines`.
+// at most `max_lines`. `for_each`: who does some of the places.
 [[nodiscard]] std::vector<ResonanceLine> resonance_lines(const MapSystemAt& at, std::array<double, 2> x,
-                                                         std::array<double, 2> y, std::size_t max_lines);
+                                                         std::array<double, 2> y, std::size_t max_lines,
+                                                         const ForEach& for_each);
 
 }  // namespace hb

@@ -36,6 +36,15 @@ struct Parts {
 // Has all parts computed or taken.
 using PartsOf = std::function<void(const Parts&)>;
 
+// Calls task(0) .. task(count - 1), perhaps from several threads: what is too short to be kept or sent elsewhere.
+// Empty: one after the other.
+using ForEach = std::function<void(std::size_t count, const std::function<void(std::size_t)>& task)>;
+
+inline void do_each(const ForEach& for_each, std::size_t count, const std::function<void(std::size_t)>& task) {
+  if (for_each) return for_each(count, task);
+  for (std::size_t k = 0; k < count; ++k) task(k);
+}
+
 // Writes numbers one after the other, reads them in the same order. One function for both directions keeps them alike.
 class PartWriter {
  public:

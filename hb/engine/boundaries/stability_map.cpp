@@ -163,7 +163,7 @@ class MapSearch {
     using Sample = std::optional<StabilitySample>;
     const std::vector<double>&x = mesh_.x().values, &y = mesh_.y().values;
     std::vector<std::size_t> open;
-    points_ = surface_grid(*surface_, x, y, at_nodes_.tolerance, open);
+    points_ = surface_grid(*surface_, x, y, at_nodes_.tolerance, options_.for_each, open);
     const std::vector<Sample> samples = results<Sample>(
         open.size(), [&](std::size_t k) { return single_answer(x[open[k] % x.size()], y[open[k] / x.size()]); },
         [](auto& visit, Sample& sample) {

@@ -27,6 +27,7 @@ struct MapOptions {
   // Whether the system depends on x and on y. Along an axis on which it does not, one line is computed for all.
   std::array<bool, 2> varies = {true, true};
   PartsOf parts;  // who computes the parts of a step; empty: one after the other
+  ForEach for_each = {};  // who does what is short
 };
 
 enum class MapSource {
