@@ -33,12 +33,13 @@ SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const Sc
   return state;
 }
 
-std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
-                                       double accuracy) {
+std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed, double accuracy,
+                                       const FourierSeries* near) {
   constexpr double of_residual = 0.1;
+  if (system.num_modes() != num_modes) near = nullptr;  // other unknowns than q
   const std::optional<FourierSeries> q =
       RoughSolver(system, speed)
-          .solve(load_at(system, speed), of_residual * accuracy / nearest_amplification(system, speed));
+          .solve(load_at(system, speed), of_residual * accuracy / nearest_amplification(system, speed), near);
   if (!q) return std::nullopt;
   return ritz_coordinates(*q, num_modes);
 }

@@ -15,8 +15,9 @@ namespace hb {
 [[nodiscard]] SteadyState solve_rod(const HillSystem& system, Eigen::Index num_modes, const ScaledSystem& scaled,
                                     SteadyOptions options);
 // q to nearly `accuracy` of its largest value, without an error bound: what is left of the load grows by the resonance.
-// Empty where that is not reached at once, as near a response without bound: solve_rod tells why.
+// Empty where that is not reached at once, as near a response without bound: solve_rod tells why. `near`: q of fewer
+// modes where it is there, or nullptr.
 [[nodiscard]] std::optional<FourierSeries> rough_rod(const HillSystem& system, Eigen::Index num_modes, double speed,
-                                                     double accuracy);
+                                                     double accuracy, const FourierSeries* near = nullptr);
 
 }  // namespace hb

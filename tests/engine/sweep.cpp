@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <random>
 #include <tuple>
 
 #include "hb/engine/boundaries/interval_search.hpp"
@@ -413,6 +415,28 @@ TEST(ResponsePeak, WhereAnotherAngleTakesTheLeadIsLocated) {
   ASSERT_TRUE(peak);
   EXPECT_LE(std::abs(peak->x - x0), peak->error);
   EXPECT_LT(peak->error, 1e-4);
+}
+
+// A flat top, whose slope rounding hides near by: narrow intervals there seem to turn anywhere.
+TEST(ResponsePeak, WhatRoundingHidesIsNotTakenForTheTop) {
+  const double x0 = 325.0891729;
+  const auto noise = [](double x, unsigned seed) {
+    std::minstd_rand generator(static_cast<unsigned>(std::hash<double>()(x)) ^ (977 * seed));
+    generator.discard(10);
+    return std::uniform_real_distribution<double>(-1, 1)(generator);
+  };
+  for (unsigned seed = 1; seed <= 200; ++seed) {
+    const auto off = [&](double relative) {
+      return constant_response([=](double x) {
+        return std::optional(3.5 * (1 - 1e-5 * (x - x0) * (x - x0)) * (1 + relative * noise(x, seed)));
+      });
+    };
+    const ResponseAt rough = off(1e-7), fine = off(1e-14);
+    const std::optional<ResponsePeak> peak = locate_peak({rough, fine, fine, 1e-7, 1e-14}, 322.5, 325, 327.5, 5e-14);
+    ASSERT_TRUE(peak);
+    EXPECT_LE(std::abs(peak->x - x0), peak->error) << seed;
+    EXPECT_LT(peak->error, 1e-4) << seed;
+  }
 }
 
 TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {

@@ -64,7 +64,7 @@ std::optional<PeakResponses> RodAlong::responses(int component, double about) co
   const std::optional<SteadyState> state = solved(about, fine);
   if (!state) return std::nullopt;
   fine.num_harmonics = static_cast<int>(more_harmonics * state->num_harmonics);
-  return PeakResponses{alone(rough), alone(fine), alone(sure)};
+  return PeakResponses{alone(rough), alone(fine), alone(sure), accuracy.rough, accuracy.fine};
 }
 
 }  // namespace hb

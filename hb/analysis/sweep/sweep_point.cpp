@@ -49,13 +49,13 @@ StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
 // The response with more modes, for errors by comparison. Where q is accurate, what more modes add is not seen below
 // `accuracy` of it; else it is so much more accurate that the difference shows the error of q, whose highest harmonics
 // count most in joint forces. Needs no error bound of its own. Empty where there is none.
-FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings) {
+FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings, const FourierSeries& q) {
   constexpr double accuracy = 1e-6, better = 1e-2;
   SteadyOptions options = response_options(settings);
   const bool accurate = options.tolerance <= better * accuracy;
   options.tolerance = accurate ? accuracy : std::min(accuracy, better * options.tolerance);
   const Eigen::Index num_modes = comparison_modes(rod.num_modes);
-  if (std::optional<FourierSeries> q = rough_rod(rod.finer, num_modes, speed, options.tolerance)) return *std::move(q);
+  if (auto finer = rough_rod(rod.finer, num_modes, speed, options.tolerance, &q)) return *std::move(finer);
   SteadyState state = solve_rod(rod.finer, num_modes, speed, options);
   return state.status == SteadyStatus::singular ? FourierSeries() : std::move(state.q);
 }
@@ -120,7 +120,8 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
       for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
         point.max_abs.push_back(fourier::max_abs(state.q, i).value);
       responses.q = std::move(state.q);
-      if (rod.finer.num_modes() > 0) compare(responses, model, rod, speed, with_more_modes(rod, speed, settings));
+      if (rod.finer.num_modes() > 0)
+        compare(responses, model, rod, speed, with_more_modes(rod, speed, settings, responses.q));
       if (only.shape && rod.reported) add_shape(point, model, rod, speed, responses);
     }
   }

@@ -14,6 +14,7 @@ namespace hb {
 namespace {
 
 constexpr double pole_distance = 2e-6;  // relative: so near a pole has to show
+constexpr double pole_rounding = 64 * eps;  // of its place, which that of the system moves
 
 double height(const FourierSeries& response) { return fourier::max_abs(response, 0).value; }
 
@@ -42,7 +43,7 @@ std::optional<ResponsePeak> locate_pole(const ResponseAt& value, double about, d
                  second = fourier::mean_product(A, fourier::difference(q->q, r->q));
     // (r - x0)/(p - x0)
     const double ratio = first / second * (r->x - q->x) / (q->x - p->x), next = (r->x - ratio * p->x) / (1 - ratio);
-    const double change = std::abs(next - x0), error = change + 4 * eps * std::abs(next);
+    const double change = std::abs(next - x0), error = change + pole_rounding * std::abs(next);
     if (!(change <= std::max(0.5 * changed, tolerance * std::abs(next)))) return std::nullopt;
     const bool shown = step > 0 && std::abs(r->x - next) <= 2 * nearest;
     if (shown && error <= tolerance * std::abs(next)) return ResponsePeak{next, HUGE_VAL, error, true};
@@ -62,12 +63,39 @@ struct Bracket {
   double a, x, b, ga, gx, gb;
   std::optional<ResponsePeak> pole;  // found instead
   double width = 0;  // of the resonance, or of half of what is between a and b
+  bool fine = false;  // by fine responses
+  bool ended = false;  // narrower ones do not tell where the least lies
 
+  // Whether g and gx differ by more than errors of heights; where not, fine responses may tell, once.
+  bool differ(double g, const PeakResponses& at) const {
+    return std::abs(g - gx) > 4 * (fine ? at.fine_error : at.rough_error) * gx;
+  }
+  bool to_fine(const PeakResponses& at);
   bool narrow(const PeakResponses& at, double most_width, double tolerance);
 };
 
+std::optional<double> flattened_at(const ResponseAt& value, double x) {
+  const std::optional<FourierSeries> q = value(x);
+  if (!q) return std::nullopt;
+  return flattened(height(*q));
+}
+
+// False where that has been done, there is none, or it does not confirm the bracket.
+bool Bracket::to_fine(const PeakResponses& at) {
+  if (fine) return false;
+  fine = true;
+  const std::optional<double> low = flattened_at(at.fine, a), inside = flattened_at(at.fine, x),
+                              high = flattened_at(at.fine, b);
+  if (!low || !inside || !high || !(*inside <= std::min(*low, *high))) return false;
+  ga = *low;
+  gx = *inside;
+  gb = *high;
+  return true;
+}
+
 // By parabolas, or golden sections where these do not shrink the bracket, until that is no wider than `most_width` and
-// the vertex moves by less than half of the width w. False where there is no response.
+// the vertex moves by less than half of the width w, or until heights differ by their errors alone. False where there
+// is no response.
 bool Bracket::narrow(const PeakResponses& at, double most_width, double tolerance) {
   constexpr double golden = 0.3819660112501051, near_pole = 1e-5;
   constexpr int max_steps = 60;
@@ -75,6 +103,11 @@ bool Bracket::narrow(const PeakResponses& at, double most_width, double toleranc
   for (int step = 0; step < max_steps; ++step) {
     width = 0.5 * (b - a);
     if (b - a <= 1e-3 * tolerance * std::abs(x)) break;
+    if (!differ(std::min(ga, gb), at)) {
+      if (to_fine(at)) continue;
+      ended = true;
+      break;
+    }
     const double c = ((gb - gx) / (b - x) - (gx - ga) / (x - a)) / (b - a);
     const double slope = (gx - ga) / (x - a) + c * (x - a), vertex = x - slope / (2 * c), w = std::sqrt(gx / c);
     if (step > 0 && b - a <= most_width && std::abs(vertex - x) <= 0.5 * w) {
@@ -92,17 +125,21 @@ bool Bracket::narrow(const PeakResponses& at, double most_width, double toleranc
     double y = vertex;
     if (!(vertex > a && vertex < b && (shrinks || w < 0.05 * (b - a))))
       y = b - x > x - a ? x + golden * (b - x) : x - golden * (x - a);
-    const std::optional<FourierSeries> at_y = at.rough(y);
-    if (!at_y) return false;
-    const double gy = flattened(height(*at_y));
-    if (gy < gx) {
+    const std::optional<double> gy = flattened_at(fine ? at.fine : at.rough, y);
+    if (!gy) return false;
+    if (!differ(*gy, at)) {
+      if (to_fine(at)) continue;
+      ended = true;
+      break;
+    }
+    if (*gy < gx) {
       (y > x ? a : b) = x;
       (y > x ? ga : gb) = gx;
       x = y;
-      gx = gy;
+      gx = *gy;
     } else {
       (y > x ? b : a) = y;
-      (y > x ? gb : ga) = gy;
+      (y > x ? gb : ga) = *gy;
     }
   }
   return true;
@@ -148,9 +185,12 @@ std::optional<ResponsePeak> highest(const ResponseInterpolant& response, double 
   // Two angles may be as high there: then the slope jumps, and it is the heights that tell.
   constexpr double nearer = 0.125;
   const double all = turned(h), jump = (turned(nearer * h) - nearer * all) / (1 - nearer);
-  const double x_error =
-      (jump > 0.25 * all ? 2 * error / jump : 2 * h * response.slope_error(x, error) / all) + 4 * eps * std::abs(x);
-  return ResponsePeak{x, height(response(x)), all > 0 ? x_error : HUGE_VAL, false};
+  // Slopes whose errors hide how they change do not tell that the top lies here.
+  constexpr double above = 4;
+  const double slope_error = response.slope_error(x, error);
+  if (!(all > above * slope_error)) return ResponsePeak{x, height(response(x)), HUGE_VAL, false};
+  const double x_error = (jump > 0.25 * all ? 2 * error / jump : 2 * h * slope_error / all) + 4 * eps * std::abs(x);
+  return ResponsePeak{x, height(response(x)), x_error, false};
 }
 
 // Interpolation over ever narrower intervals round the top, or round a pole that shows: what is known then, the best of
@@ -171,7 +211,7 @@ std::optional<ResponsePeak> interpolate_top(const PeakResponses& at, const Brack
     }
     const ResponseInterpolant response(c, r, fine);
     if (const std::optional<double> pole = response.pole()) {
-      const double moved = std::abs(*pole - last_pole) + 4 * eps * std::abs(c);
+      const double moved = std::abs(*pole - last_pole) + pole_rounding * std::abs(c);
       if (moved <= tolerance * std::abs(c)) return ResponsePeak{*pole, HUGE_VAL, moved, true};
       const double room = 0.1 * std::min(*pole - top.a, top.b - *pole),
                    nearest = std::min(pole_distance * std::abs(c), room);
@@ -208,12 +248,9 @@ std::optional<ResponsePeak> interpolate_top(const PeakResponses& at, const Brack
 
 std::optional<ResponsePeak> locate_peak(const PeakResponses& responses, double low, double inside, double high,
                                         double tolerance) {
-  const auto g = [&](double x) -> std::optional<double> {
-    const std::optional<FourierSeries> q = responses.rough(x);
-    if (!q) return std::nullopt;
-    return flattened(height(*q));
-  };
-  const std::optional<double> g_low = g(low), g_inside = g(inside), g_high = g(high);
+  const std::optional<double> g_low = flattened_at(responses.rough, low),
+                              g_inside = flattened_at(responses.rough, inside),
+                              g_high = flattened_at(responses.rough, high);
   if (!g_low || !g_inside || !g_high) return std::nullopt;
   Bracket top{low, inside, high, *g_low, *g_inside, *g_high, std::nullopt};
   constexpr int most_tries = 8;
@@ -227,10 +264,10 @@ std::optional<ResponsePeak> locate_peak(const PeakResponses& responses, double l
     if (found && found->converged) return found;
     const double half = 0.5 * (top.b - top.a);
     if (found && found->error < half && (!best || found->error < best->error)) best = found;
-    if (half <= tolerance * std::abs(top.x)) break;
+    if (half <= tolerance * std::abs(top.x) || top.ended) break;
     most_width = 2 * narrower * half;
   }
-  return best ? best : ResponsePeak{top.x, 1 / std::sqrt(top.gx), 0.5 * (top.b - top.a), false};
+  return best ? best : ResponsePeak{top.x, 1 / std::sqrt(top.gx), std::max(top.x - top.a, top.b - top.x), false};
 }
 
 }  // namespace hb

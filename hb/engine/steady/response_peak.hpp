@@ -23,6 +23,7 @@ struct PeakResponses {
   ResponseAt rough;  // a few digits: to find the neighbourhood
   ResponseAt fine;  // what is interpolated
   ResponseAt sure;  // with its error bounded: what the interpolant is compared with
+  double rough_error = 1e-5, fine_error = 1e-13;  // of heights, relative
 };
 
 // The maximum between low and high, given low < inside < high with the response inside not below the two others. Where

@@ -13,6 +13,7 @@ namespace hb {
 struct RoughSolver::Impl {
   steady::WeightedSystem weighted;
   Eigen::MatrixXd L, T;  // with the weights
+  Eigen::MatrixXd T_inverse;
   std::optional<steady::Operator> A;
   std::optional<steady::IterativeInverse> inverse;
   double tolerance = 0;  // that the window of A was made for
@@ -20,6 +21,23 @@ struct RoughSolver::Impl {
   explicit Impl(const ScaledSystem& scaled, const Eigen::MatrixXd& mass) : weighted(steady::weighted(scaled)) {
     L = weighted.weight.asDiagonal() * dense::inverse(Eigen::MatrixXd(mass * scaled.T)) / (scaled.speed * scaled.speed);
     T = scaled.T * weighted.weight.cwiseInverse().asDiagonal();
+    T_inverse = scaled.speed * scaled.speed * L * mass;
+  }
+
+  // y/scale of `near` on the window, and f - A y of f there; empty where that is no smaller than f. The tolerance
+  // becomes that of what is left: so that the whole keeps its own, and the difference from `near` shows to at least its
+  // root.
+  steady::Spectrum begun(const FourierSeries& near, double scale, steady::Spectrum& f, double& tolerance) {
+    const Eigen::Index H = A->num_harmonics(), known = std::min(H + 1, near.c.cols());
+    steady::Spectrum y = steady::Spectrum::Zero(H + 1, weighted.I), left;
+    y.topRows(known) = (T_inverse.leftCols(near.num_components()) * near.c.leftCols(known)).transpose() * (1 / scale);
+    A->couple(y, H, left);
+    left = f - A->D().cwiseProduct(y) - left;
+    const double load = A->scaled_norm(f), rest = A->scaled_norm(left);
+    if (!(rest < load)) return {};
+    tolerance = std::min(tolerance * load / rest, std::sqrt(tolerance));
+    f = std::move(left);
+    return y;
   }
 };
 
@@ -33,7 +51,8 @@ RoughSolver::~RoughSolver() = default;
 RoughSolver::RoughSolver(RoughSolver&&) noexcept = default;
 RoughSolver& RoughSolver::operator=(RoughSolver&&) noexcept = default;
 
-std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, double tolerance) {
+std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, double tolerance,
+                                                const FourierSeries* near) {
   constexpr Eigen::Index most_harmonics = 256;
   constexpr double negligible = 1e-3;  // of the load; a sharper resonance at so high a harmonic is not looked for
   steady::WeightedSystem& system = impl_->weighted;
@@ -59,7 +78,10 @@ std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, doubl
   steady::Spectrum f = steady::Spectrum::Zero(window + 1, system.I), x;
   const Eigen::Index rows = std::min(window + 1, system.f.rows());
   f.topRows(rows) = system.f.topRows(rows);
+  steady::Spectrum start;
+  if (near != nullptr) start = impl_->begun(*near, scale, f, tolerance);
   if (!impl_->inverse->solve(f, tolerance, x) || !x.allFinite()) return std::nullopt;
+  if (start.size() > 0) x += start;
   FourierSeries q(Eigen::MatrixXcd(scale * impl_->T * x.transpose()));
   q.c.col(0) = q.c.col(0).real().cast<std::complex<double>>().eval();
   return q;

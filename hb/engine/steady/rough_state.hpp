@@ -21,8 +21,10 @@ class RoughSolver {
 
   // Over the crank angle, the residual of the window's rows below `tolerance` of the load; near resonance the error is
   // as many times larger as the response. The window of the first load serves all of no smaller tolerance. Empty where
-  // the iteration does not get there: solve_steady_state finds out why.
-  [[nodiscard]] std::optional<FourierSeries> solve(const FourierSeries& load, double tolerance);
+  // the iteration does not get there: solve_steady_state finds out why. `near`: what the answer is near to, of the
+  // first components alone, or nullptr; the difference is then told, too, however small, to the root of the tolerance.
+  [[nodiscard]] std::optional<FourierSeries> solve(const FourierSeries& load, double tolerance,
+                                                   const FourierSeries* near = nullptr);
 
  private:
   struct Impl;
