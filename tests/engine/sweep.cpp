@@ -439,6 +439,26 @@ TEST(ResponsePeak, WhatRoundingHidesIsNotTakenForTheTop) {
   }
 }
 
+TEST(ResponsePeak, LiesBetweenTwoPlacesThatAreAsHigh) {
+  for (const double w : {1e-2, 1e-3, 1e-5}) {
+    const ResponseAt value = constant_response([w](double x) { return std::optional(1 / std::hypot(x - 2, w)); });
+    for (const double off : {0.0, 1e-9}) {
+      const std::optional<ResponsePeak> peak = locate_peak({value, value, value}, 1.5 + off, 2.5, 3.5);
+      ASSERT_TRUE(peak) << w;
+      EXPECT_LE(std::abs(peak->x - 2), peak->error) << w;
+      EXPECT_LT(peak->error, 1e-9) << w;
+    }
+  }
+}
+
+TEST(ResponsePeak, IsNotToldWhereFineValuesDenyIt) {
+  const auto climbing = [](double x) { return std::optional(1 + 1e-6 * x); };
+  const ResponseAt fine = constant_response(climbing);
+  const ResponseAt rough =
+      constant_response([&](double x) { return std::optional(*climbing(x) * (x == 2.5 ? 1 + 5e-6 : 1)); });
+  EXPECT_FALSE(locate_peak({rough, fine, fine}, 2, 2.5, 3));
+}
+
 TEST(ResponsePeak, SaysWhenTheFunctionDoesNotExist) {
   const ResponseAt value = constant_response([](double x) -> std::optional<double> {
     if (x > 1.1) return std::nullopt;

@@ -6,7 +6,7 @@ rm -rf "$folder"
 mkdir -p "$folder"
 (cd "$build" && cpack -G DEB -B "$folder" >"$folder/cpack.log") || { cat "$folder/cpack.log"; exit 1; }
 package=$(ls "$folder"/*.deb)
-dpkg-deb --field "$package" Depends | grep -q libfftw3 || { echo "the package does not name FFTW"; exit 1; }
+dpkg-deb --field "$package" Depends | grep -q libnlopt || { echo "the package does not name NLopt"; exit 1; }
 dpkg-deb --extract "$package" "$folder/root"
 "$folder/root/usr/bin/hb" steady "$scene" --rpm 300 --only stability >"$folder/steady.txt"
 grep -q stable "$folder/steady.txt"

@@ -46,9 +46,9 @@ StressPoint stress_point(const RodStress& stress, const StressCycle& cycle) {
   return point;
 }
 
-// The response with more modes, for errors by comparison. Where q is accurate, what more modes add is not seen below
-// `accuracy` of it; else it is so much more accurate that the difference shows the error of q, whose highest harmonics
-// count most in joint forces. Needs no error bound of its own. Empty where there is none.
+// The response with more modes, for errors by comparison. Where q is accurate it is to `accuracy`, and what more modes
+// add is told however small; else it is so much more accurate that the difference shows the error of q, whose highest
+// harmonics count most in joint forces. Needs no error bound of its own. Empty where there is none.
 FourierSeries with_more_modes(const RodModel& rod, double speed, const Settings& settings, const FourierSeries& q) {
   constexpr double accuracy = 1e-6, better = 1e-2;
   SteadyOptions options = response_options(settings);

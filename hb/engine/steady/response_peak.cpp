@@ -80,13 +80,13 @@ std::optional<double> flattened_at(const ResponseAt& value, double x) {
   return flattened(height(*q));
 }
 
-// False where that has been done, there is none, or it does not confirm the bracket.
+// False where that has been done, or there is none.
 bool Bracket::to_fine(const PeakResponses& at) {
   if (fine) return false;
   fine = true;
   const std::optional<double> low = flattened_at(at.fine, a), inside = flattened_at(at.fine, x),
                               high = flattened_at(at.fine, b);
-  if (!low || !inside || !high || !(*inside <= std::min(*low, *high))) return false;
+  if (!low || !inside || !high) return false;
   ga = *low;
   gx = *inside;
   gb = *high;
@@ -95,7 +95,7 @@ bool Bracket::to_fine(const PeakResponses& at) {
 
 // By parabolas, or golden sections where these do not shrink the bracket, until that is no wider than `most_width` and
 // the vertex moves by less than half of the width w, or until heights differ by their errors alone. False where there
-// is no response.
+// is no response, or where fine ones do not have the least g inside.
 bool Bracket::narrow(const PeakResponses& at, double most_width, double tolerance) {
   constexpr double golden = 0.3819660112501051, near_pole = 1e-5;
   constexpr int max_steps = 60;
@@ -103,11 +103,7 @@ bool Bracket::narrow(const PeakResponses& at, double most_width, double toleranc
   for (int step = 0; step < max_steps; ++step) {
     width = 0.5 * (b - a);
     if (b - a <= 1e-3 * tolerance * std::abs(x)) break;
-    if (!differ(std::min(ga, gb), at)) {
-      if (to_fine(at)) continue;
-      ended = true;
-      break;
-    }
+    if (!fine && !differ(std::min(ga, gb), at) && !to_fine(at)) return false;
     const double c = ((gb - gx) / (b - x) - (gx - ga) / (x - a)) / (b - a);
     const double slope = (gx - ga) / (x - a) + c * (x - a), vertex = x - slope / (2 * c), w = std::sqrt(gx / c);
     if (step > 0 && b - a <= most_width && std::abs(vertex - x) <= 0.5 * w) {
@@ -141,6 +137,7 @@ bool Bracket::narrow(const PeakResponses& at, double most_width, double toleranc
       (y > x ? b : a) = y;
       (y > x ? gb : ga) = *gy;
     }
+    if (fine && gx > std::min(ga, gb)) return false;
   }
   return true;
 }
