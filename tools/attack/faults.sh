@@ -83,13 +83,14 @@ kills() {
   rm -rf "$work/whole" "$work/parts"* "$work"/whole.*
 }
 
-# A disk that is full after some kilobytes, at the start and at a resume: finished parts stay, the table is printed.
+# A disk that is full after some kilobytes, at the start and at a resume: finished parts stay, the table is printed. (Not
+# killed: that may leave half a part, which a resume rightly takes away.)
 full_disks() {
   local blocks=$((1 + RANDOM % 60)) job=${jobs[RANDOM % ${#jobs[@]}]} status before=0 child
   exec_run "$job" "$work/disk" --no-plots >/dev/null 2>&1 &
   child=$!
   pause 700
-  kill -KILL $child 2>/dev/null || true
+  kill -TERM $child 2>/dev/null || true
   wait $child 2>/dev/null || true
   [[ -e $work/disk.part ]] && before=$(stat -c %s "$work/disk.part") && cp "$work/disk.part" "$work/kept"
   {
