@@ -12,7 +12,7 @@ void deepen_stack() {
 }
 
 void use_large_pages() {
-  mi_option_enable(mi_option_large_os_pages);
+  mi_option_enable(mi_option_large_os_pages);  // where an administrator has set some aside, those first
   mi_option_set(mi_option_eager_commit_delay, 0);  // in the first memory of a thread too
 }
 
