@@ -239,7 +239,7 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
       if (!(pace < -0.1)) return false;
       if (iteration > 2 * window && iteration + std::log(goal / best) / pace > most_iterations) return false;
     }
-    if (iteration >= 4 && rho > 0.25) mixing = true;
+    if (iteration >= 3 && rho > 0.2) mixing = true;
     if (mixing)
       x = anderson.step(x, f);
     else

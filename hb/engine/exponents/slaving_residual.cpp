@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hb/engine/exponents/neighbouring_numbers.hpp"
 #include "hb/engine/exponents/slaving_iteration.hpp"
 #include "lib/constants.hpp"
 #include "lib/modulus.hpp"
@@ -40,15 +41,22 @@ void carried_by(const VectorXd& z, VectorXd& back, VectorXd& c) {
   c = c.cwiseMin(1.0).cwiseMax(least_carried);
 }
 
-// For each harmonic k the largest size_l carried from k to l.
-void reached(const VectorXd& size, const VectorXd& carried, VectorXd& result) {
-  const Index H = size.size() - 1;
-  result = size.cwiseMax(least_carried * size.maxCoeff());
-  for (Index d = 1; d <= H && carried(d) > least_carried; ++d) {
-    auto below = result.head(H + 1 - d), above = result.tail(H + 1 - d);
-    below = below.cwiseMax(carried(d) * size.tail(H + 1 - d));
-    above = above.cwiseMax(carried(d) * size.head(H + 1 - d));
-  }
+// For each harmonic k the largest size_l carried from k to l. `padded` is room for the sizes between zeros.
+void reached(const VectorXd& size, const VectorXd& carried, VectorXd& padded, VectorXd& result) {
+  const Index count = size.size();
+  Index farthest = 0;
+  while (farthest + 1 < count && carried(farthest + 1) > least_carried) ++farthest;
+  padded.setZero(count + 2 * farthest);
+  padded.segment(farthest, count) = size;
+  result.resize(count);
+  const double least = least_carried * size.maxCoeff();
+  const double* const middle = padded.data() + farthest;
+  in_groups(count, [&]<int width>(std::integral_constant<int, width>, Index k) {
+    Numbers<width> most = at<width>(middle + k).max(least);
+    for (Index d = 1; d <= farthest; ++d)
+      most = most.max(carried(d) * at<width>(middle + k - d).max(at<width>(middle + k + d)));
+    at<width>(result.data() + k) = most;
+  });
 }
 
 }  // namespace
@@ -59,7 +67,7 @@ double Iteration::carried_change(const FourierSeries& alpha) {
   // What matters less than this part of alpha's rounding is not looked into.
   const double negligible = 0.01 * 4 * eps * alpha_.cwiseAbs().maxCoeff();
   double sum = 0, squares = 0, others = 0;
-  VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1), phase(H_), carried, back, part;
+  VectorXd r1(H_ + 1), r2(H_ + 1), size1(H_ + 1), size2(H_ + 1), phase(H_), carried, back, padded, change;
   for (Index j = 0; j < n_; ++j) {
     const auto own = given_.c.row(F_[j] + I_ * F_[j]);
     const double fast = std::max(std::sqrt(std::abs(own(0).real())), 1e-3);
@@ -84,13 +92,10 @@ double Iteration::carried_change(const FourierSeries& alpha) {
       }
       carried_by(phase, back, carried);
       const auto add = [&](const VectorXd& r, const VectorXd& gain, double effect) {
-        reached(gain, carried, part);
-        part *= effect / gain.maxCoeff();
-        for (Index k = 0; k <= H_; ++k) {
-          const double change = part(k) * r(k);
-          sum += (k > 0 ? 2 : 1) * change;
-          squares += (k > 0 ? 2 : 1) * change * change;
-        }
+        reached(gain, carried, padded, change);
+        change.array() *= effect / gain.maxCoeff() * r.array();
+        sum += 2 * change.sum() - change(0);
+        squares += 2 * change.squaredNorm() - change(0) * change(0);
       };
       add(r1, size1, effect_(q, 0));
       add(r2, size2, effect_(q, 1));
