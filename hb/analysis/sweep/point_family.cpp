@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/lanes.hpp"
+
 namespace hb {
 namespace {
 
@@ -46,15 +48,27 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
   SlavingStart start;
   start.modes = nodes.front()->modes;
   start.diverges = nodes[weights.above - 1]->diverges && nodes[weights.above]->diverges;
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(size), doubt = sum;
-  for (std::size_t j = 0; j < nodes.size(); ++j) {
-    if (size == 0 || nodes[j]->solution.size() != size || nodes[j]->modes != nodes.front()->modes) return start;
-    sum += weights.w[j] * nodes[j]->solution;
-    doubt += weights.d[j] * nodes[j]->solution;
-    start.amplification = std::max(start.amplification, nodes[j]->amplification);
-    start.change = std::max(start.change, nodes[j]->change);
+  for (const SlavingStart* node : nodes) {
+    if (size < Lanes::width || node->solution.size() != size || node->modes != nodes.front()->modes) return start;
+    start.amplification = std::max(start.amplification, node->amplification);
+    start.change = std::max(start.change, node->change);
   }
-  if (doubt.cwiseAbs().maxCoeff() <= foretold * sum.cwiseAbs().maxCoeff()) start.solution = std::move(sum);
+  Eigen::VectorXd solution(size);
+  Lanes largest, doubt;
+  for (Eigen::Index i = 0; i < size; i += Lanes::width) {
+    const Eigen::Index first = std::min(i, size - Lanes::width);
+    Lanes sum, change;
+    for (std::size_t j = 0; j < nodes.size(); ++j) {
+      const Lanes x = Lanes::load(nodes[j]->solution.data() + first);
+      sum += weights.w[j] * x;
+      change += weights.d[j] * x;
+    }
+    largest = max(largest, abs(sum));
+    doubt = max(doubt, abs(change));
+    sum.store(solution.data() + first);
+  }
+  if (std::ranges::max(doubt.values()) <= foretold * std::ranges::max(largest.values()))
+    start.solution = std::move(solution);
   return start;
 }
 

@@ -7,6 +7,7 @@
 
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
+#include "lib/fourier/moduli.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -280,7 +281,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErr
     if (largest > 0) {
       h.c *= 1 / largest;  // complex division would square the divisor
       h.c = (L * h.c).eval();
-      const double scale = h.c.cwiseAbs().maxCoeff();
+      const double scale = fourier::moduli(h.c).maxCoeff();
       h.c *= 1 / scale;
       scaled.load_scale = largest * (scale / (speed * speed));
       scaled.f_rounding = steps * eps * L.cwiseAbs() * (sizes(system.load, I, speed) / largest) / scale;
