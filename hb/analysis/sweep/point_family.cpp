@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lib/lanes.hpp"
 
@@ -85,13 +86,14 @@ PointFamily::PointFamily(const SweepScene& scene, const Only& only)
 }
 
 SweepPoint PointFamily::at(std::size_t k) {
+  if (block_size_ == 1) return analyse_point(scene_, values_[k], only_);
   const std::shared_ptr<Block> block = block_of(k);
   const auto place = std::ranges::find(block->places, k);
   SweepPoint point;
   if (place != block->places.end()) {
     const auto n = static_cast<std::size_t>(place - block->places.begin());
     solve(*block, n, 1);
-    point = block->nodes[n].point;
+    point = std::move(block->nodes[n].point);
   } else {
     solve(*block, 0, block->nodes.size());
     const PointSolution start = foretold(*block, values_[k]);

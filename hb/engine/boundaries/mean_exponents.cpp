@@ -164,6 +164,23 @@ void add_frozen(std::vector<MeanExponent>& mean, const ScaledSystem& system) {
   }
 }
 
+// Of one mode both vectors are 1 in size and all C_ij one number c: C (1 - C/delta)^-1 = C/(1 - 2 c/delta).
+std::vector<MeanExponent> of_one_mode(const ScaledSystem& system) {
+  const double b = system.G(0, 0), w2 = system.K.c(0, 0).real();
+  const cplx root = std::sqrt(cplx(b * b / 4 - w2, 0));
+  std::vector<MeanExponent> result(2);
+  result[0].value = -b / 2 - root;
+  result[1].value = -b / 2 + root;
+  double sizes = 0;
+  for (Index k = 1; k <= system.K.num_harmonics(); ++k) sizes += modulus(system.K.c(0, k));
+  const double c = sizes / std::max(2 * std::abs(root), 1e-3), left = 1 - 2 * c / least_detuning;
+  for (MeanExponent& mean : result) {
+    mean.modulation = c;
+    mean.coupling = margin * (left > 0 ? c / left : HUGE_VAL);
+  }
+  return result;
+}
+
 }  // namespace
 
 bool are_conjugate(cplx a, cplx b) { return a.imag() != 0 && std::abs(a - std::conj(b)) <= 1e-9 * std::abs(a); }
@@ -189,6 +206,7 @@ double moved(const MeanExponent& p, const MeanExponent& q) {
 }
 
 std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
+  if (system.num_modes() == 1) return of_one_mode(system);
   const MeanModes modes = mean_modes(system);
   const Index n = modes.mu.size(), H = system.K.num_harmonics();
   std::vector<MeanExponent> result(static_cast<std::size_t>(n));

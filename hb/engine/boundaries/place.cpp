@@ -30,14 +30,11 @@ double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Str
 }  // namespace
 
 Place place_of(const StabilitySample& sample, const SystemAt& at) {
-  Place made;
-  made.sample = sample;
-  made.mean = sample.mean;
+  Place made{.sample = sample, .mean = sample.mean};
   if (made.mean.empty()) {
     if (const std::optional<ScaledSystem> system = at(sample.x)) made.mean = mean_exponents(*system);
   }
   made.pair = leading_pair(sample);
-  made.alone = leading_alone(sample);
   made.unstable = is_unstable(sample);
   return made;
 }

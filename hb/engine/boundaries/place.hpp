@@ -19,7 +19,7 @@ struct Place {
   StabilitySample sample;
   std::vector<MeanExponent> mean;
   mutable std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
-  std::optional<LeadingPair> pair, alone;
+  std::optional<LeadingPair> pair;
   bool unstable = false;
   // Which strands of other places, by x, these go on as; filled by `onward`.
   mutable std::map<double, std::vector<std::size_t>> continued_at;
@@ -30,6 +30,11 @@ struct Place {
     return *known_strands;
   }
   mutable std::optional<Strands> known_strands;
+  const std::optional<LeadingPair>& alone() const {
+    if (!known_alone) known_alone.emplace(leading_alone(sample));
+    return *known_alone;
+  }
+  mutable std::optional<std::optional<LeadingPair>> known_alone;
 
   double x() const { return sample.x; }
   double growth() const { return sample.stability.growth_rate / sample.speed; }

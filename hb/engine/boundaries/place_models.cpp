@@ -76,7 +76,7 @@ std::vector<const Place*> apart_beside(const Places& places, const Place& p, con
   // Nodes nearer to each other would tell of the exponents' errors.
   const double room = 0.25 * (q.x() - p.x());
   const auto alike = [&](const Place& place) {
-    return is_apart(place, what) && (what == Apart::pair || place.alone->half_trace == p.alone->half_trace);
+    return is_apart(place, what) && (what == Apart::pair || place.alone()->half_trace == p.alone()->half_trace);
   };
   if (!is_apart(p, what) || !alike(q)) return {};
   std::vector<const Place*> chosen = {&p, &q};

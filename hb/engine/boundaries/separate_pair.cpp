@@ -25,7 +25,7 @@ bool is_apart(const std::optional<LeadingPair>& pair, Apart what, const Stabilit
 }
 
 const std::optional<LeadingPair>& pair_of(const Place& place, Apart what) {
-  return what == Apart::pair ? place.pair : place.alone;
+  return what == Apart::pair ? place.pair : place.alone();
 }
 
 // Upper estimate of the growth of all other exponents between p and q.
@@ -148,7 +148,7 @@ bool stays_leading(const std::vector<const Place*>& places, Apart what) {
 
 bool foretold(const std::vector<const Place*>& places, Apart what, const Place& between) {
   if (!is_apart(between, what) || between.unstable != places[0]->unstable) return false;
-  if (what == Apart::alone && between.alone->half_trace != places[0]->alone->half_trace) return false;
+  if (what == Apart::alone && between.alone()->half_trace != places[0]->alone()->half_trace) return false;
   const GrowthBounds growth = model_of(places, what).leading(between.x());
   return growth.low <= between.growth() + between.growth_error() &&
          between.growth() - between.growth_error() <= growth.high;
