@@ -4,10 +4,12 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
 #include "lib/fourier/moduli.hpp"
+#include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -68,10 +70,14 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
   return result;
 }
 
+FourierSeries cut(FourierSeries series, Eigen::Index num_harmonics) {
+  return num_harmonics == series.num_harmonics() ? std::move(series) : fourier::resized(series, num_harmonics);
+}
+
 // Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean; of a
 // mode whose own stiffness is small beside its couplings these count. Other modes' stiffnesses do not: they may be 1e20
 // times as large.
-FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
+FourierSeries without_rounding(FourierSeries K, Eigen::Index I) {
   Eigen::ArrayXXd square(I * I, K.c.cols());  // of every coefficient
   Eigen::ArrayXd most = Eigen::ArrayXd::Zero(I * I);
   for (Eigen::Index k = 0; k < K.c.cols(); ++k) {
@@ -84,7 +90,7 @@ FourierSeries without_rounding(const FourierSeries& K, Eigen::Index I) {
   const Eigen::ArrayXd rounding = (1e-17 * scale * scale.transpose()).reshaped();
   Eigen::Index H = K.num_harmonics();
   while (H > 0 && (square.col(H).sqrt() <= rounding).all()) --H;
-  return fourier::resized(K, H);
+  return cut(std::move(K), H);
 }
 
 // Sum over the powers of Omega and all harmonics of the size of every component: what rounding errors are relative to.
@@ -220,8 +226,75 @@ ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::Matr
   end_if_wished();
   scaled.K.c *= 1 / (speed * speed);
   end_if_wished();
-  scaled.K = without_rounding(scaled.K, I);
+  scaled.K = without_rounding(std::move(scaled.K), I);
   return scaled;
+}
+
+// f and its rounding errors, of so many steps in epsilon.
+void add_load(const HillSystem& system, const Eigen::MatrixXd& L, double steps, ScaledSystem& scaled) {
+  const Eigen::Index I = system.num_modes();
+  const double speed = scaled.speed;
+  scaled.f_rounding = Eigen::VectorXd::Zero(I);
+  FourierSeries h = load_at(system, speed);
+  if (h.c.size() == 0) return;
+  // The load's own scale is taken out first: amplitudes from 1e-200 to 1e200 neither overflow nor vanish.
+  const double largest = h.c.real().cwiseAbs().maxCoeff() + h.c.imag().cwiseAbs().maxCoeff();
+  if (!(largest > 0)) return;
+  h.c *= 1 / largest;  // complex division would square the divisor
+  if (I == 1)
+    h.c *= L(0, 0);
+  else
+    h.c = (L * h.c).eval();
+  const double scale = fourier::moduli(h.c).maxCoeff();
+  h.c *= 1 / scale;
+  scaled.load_scale = largest * (scale / (speed * speed));
+  scaled.f_rounding = steps * eps * L.cwiseAbs() * (sizes(system.load, I, speed) / largest) / scale;
+  const Eigen::Index significant = fourier::significant_harmonics(h, 1e-18);
+  scaled.f = cut(std::move(h), significant);
+}
+
+Eigen::MatrixXd number(double x) { return Eigen::MatrixXd::Constant(1, 1, x); }
+
+// Of one mode with positive mass, number by number: matrices would cost several times as much as what is in them.
+ScaledSystem one_mode(const HillSystem& system, double speed) {
+  require_speed(speed);
+  end_if_wished();
+  const double l = 1 / std::sqrt(system.mass(0, 0));
+  ScaledSystem scaled;
+  scaled.speed = speed;
+  scaled.T = number(l);
+  scaled.T_inverse = number(1 / l);
+  scaled.G = number(l * system.damping(0, 0) * l / speed);
+  scaled.K = stiffness_at(system, speed);
+  scaled.K.c *= l * l;
+  scaled.K.c *= 1 / (speed * speed);
+  const auto size = [&](Eigen::Index k) { return modulus(scaled.K.c(0, k)); };
+  Eigen::Index H = scaled.K.num_harmonics();
+  double largest = 0;
+  for (Eigen::Index k = 0; k <= H; ++k) largest = std::max(largest, size(k));
+  const double rounding = 1e-17 * std::max(std::abs(scaled.K.c(0, 0).real()), 1e-8 * largest);
+  while (H > 0 && size(H) <= rounding) --H;
+  scaled.K = cut(std::move(scaled.K), H);
+  return scaled;
+}
+
+bool is_one_mode(const HillSystem& system) { return system.num_modes() == 1 && system.mass(0, 0) > 0; }
+
+void add_bounds_of_one(const HillSystem& system, const GivenErrors& given, ScaledSystem& scaled) {
+  const double speed = scaled.speed, b = system.damping(0, 0), l = scaled.T(0, 0);
+  scaled.conservative = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(1, b == -b);
+  double real = 0, imaginary = 0, mean = 0, factor = 1;  // see sizes, mean_sizes
+  for (const FourierSeries& part : system.stiffness) {
+    for (Eigen::Index k = 0; k < part.c.cols(); ++k) {
+      real += 2 * factor * std::abs(part.c(0, k).real());
+      imaginary += 2 * factor * std::abs(part.c(0, k).imag());
+    }
+    if (part.c.size() > 0) mean += factor * std::abs(part.c(0, 0).real());
+    factor *= speed;
+  }
+  const double steps = scaling_steps(system, scaled.T.diagonal(), speed);
+  scaled.K_rounding = number(steps * eps / (speed * speed) * l * (real + imaginary - mean) * l);
+  add_given(given, scaled.T, scaled);
 }
 
 }  // namespace
@@ -251,12 +324,20 @@ Eigen::VectorXd squared_frequencies(const HillSystem& system, double speed) {
 }
 
 ScaledSystem scale_unloaded(const HillSystem& system, double speed) {
+  if (is_one_mode(system)) return one_mode(system, speed);
   Eigen::MatrixXd L;
   return scaled_matrices(system, speed, L);
 }
 
 ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErrors& given) {
   const Eigen::Index I = system.num_modes();
+  constexpr double steps_of_scaling = 4;  // adding three powers and the cut
+  if (is_one_mode(system)) {
+    ScaledSystem scaled = one_mode(system, speed);
+    add_bounds_of_one(system, given, scaled);
+    add_load(system, scaled.T, steps_of_scaling, scaled);
+    return scaled;
+  }
   Eigen::MatrixXd L;
   ScaledSystem scaled = scaled_matrices(system, speed, L);
   const Eigen::MatrixXd& T = scaled.T;
@@ -265,29 +346,14 @@ ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErr
   const bool scaling = is_diagonal(L) && is_diagonal(T);
   scaled.conservative = conservative_modes(system);
   if (!scaling) scaled.conservative.setConstant(scaled.conservative.all());
-  const double steps = scaling ? 4 : 4 + 2 * static_cast<double>(I);
+  const double steps = steps_of_scaling + (scaling ? 0 : 2 * static_cast<double>(I));
   Eigen::VectorXd stiffness_size = sizes(system.stiffness, I * I, speed);
   if (scaling) stiffness_size -= mean_sizes(system.stiffness, I * I, speed);
   const double stiffness_steps = scaling ? scaling_steps(system, T.diagonal(), speed) : steps;
   scaled.K_rounding = stiffness_steps * eps / (speed * speed) * L.cwiseAbs() *
                       Eigen::Map<const Eigen::MatrixXd>(stiffness_size.data(), I, I) * T.cwiseAbs();
   add_given(given, L, scaled);
-  scaled.f_rounding = Eigen::VectorXd::Zero(I);
-
-  FourierSeries h = load_at(system, speed);
-  if (h.c.size() > 0) {
-    // The load's own scale is taken out first: amplitudes from 1e-200 to 1e200 neither overflow nor vanish.
-    const double largest = h.c.real().cwiseAbs().maxCoeff() + h.c.imag().cwiseAbs().maxCoeff();
-    if (largest > 0) {
-      h.c *= 1 / largest;  // complex division would square the divisor
-      h.c = (L * h.c).eval();
-      const double scale = fourier::moduli(h.c).maxCoeff();
-      h.c *= 1 / scale;
-      scaled.load_scale = largest * (scale / (speed * speed));
-      scaled.f_rounding = steps * eps * L.cwiseAbs() * (sizes(system.load, I, speed) / largest) / scale;
-      scaled.f = fourier::resized(h, fourier::significant_harmonics(h, 1e-18));
-    }
-  }
+  add_load(system, L, steps, scaled);
   return scaled;
 }
 
