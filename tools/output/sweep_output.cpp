@@ -35,9 +35,15 @@ Json verdict_json(const RodPoint& rod) {
 }
 
 Json exponents_json(const Stability& stability) {
-  Json array = Json::array();
-  for (const Exponent& exponent : stability.exponents)
-    array.push_back(Json::array({exponent.value.real(), exponent.value.imag()}));
+  Json::array_t array;
+  array.reserve(stability.exponents.size());
+  for (const Exponent& exponent : stability.exponents) {
+    Json::array_t parts;
+    parts.reserve(2);
+    parts.emplace_back(exponent.value.real());
+    parts.emplace_back(exponent.value.imag());
+    array.emplace_back(std::move(parts));
+  }
   return array;
 }
 

@@ -229,7 +229,8 @@ class Search {
 
   // NaN: settled; otherwise where to look.
   double doubtful(Place& p, Place& q) {
-    if (p.unstable ? excludes_gaps(at_, p.sample, q.sample) : bounded(p.sample, q.sample)) return nan;
+    const bool whole = p.x() == first_ && q.x() == last_;  // looked at before
+    if (!whole && (p.unstable ? excludes_gaps(at_, p.sample, q.sample) : bounded(p.sample, q.sample))) return nan;
     for (const Apart what : {Apart::pair, Apart::alone})
       if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())
         if (const std::optional<double> x = doubtful_while_apart(places, what, options_.least_growth)) {

@@ -186,8 +186,7 @@ std::vector<ModeState> modes_by_continuity(const Stability& stability, double sp
       matches.push_back({distance, p, m, frequency});
     }
   }
-  std::stable_sort(matches.begin(), matches.end(),
-                   [](const Match& a, const Match& b) { return a.distance < b.distance; });
+  if (!std::ranges::is_sorted(matches, {}, &Match::distance)) std::ranges::stable_sort(matches, {}, &Match::distance);
   std::vector<ModeState> states(expected.size(), ModeState{nan, nan, nan});
   std::vector<bool> used(stability.exponents.size(), false), settled(expected.size(), false);
   for (const Match& match : matches) {

@@ -20,8 +20,7 @@ constexpr int steps_inside = 30;
 
 }  // namespace
 
-PairModel::PairModel(std::vector<PairNode> nodes)
-    : nodes_(std::move(nodes)), mean_(terms(&LeadingPair::mean)), half_trace_(terms(&LeadingPair::half_trace)) {
+PairModel::PairModel(std::vector<PairNode> nodes) : nodes_(std::move(nodes)), terms_(terms()) {
   for (std::size_t k = 0; k < std::min<std::size_t>(2, nodes_.size()); ++k) {
     mean_error_ = std::max(mean_error_, nodes_[k].pair.mean_error);
     half_trace_error_ = std::max(half_trace_error_, nodes_[k].pair.half_trace_error);
@@ -29,41 +28,46 @@ PairModel::PairModel(std::vector<PairNode> nodes)
   for (const PairNode& node : nodes_) largest_ = std::max(largest_, std::abs(node.pair.half_trace));
 }
 
-PairModel::Terms PairModel::terms(double LeadingPair::*of) const {
-  Terms d;
+std::vector<PairModel::Both> PairModel::terms() const {
+  std::vector<Both> d;
   d.reserve(nodes_.size());
-  for (const PairNode& node : nodes_) d.push_back(node.pair.*of);
+  for (const PairNode& node : nodes_) d.emplace_back(node.pair.mean, node.pair.half_trace);
   for (std::size_t order = 1; order < d.size(); ++order)
     for (std::size_t k = d.size() - 1; k >= order; --k) d[k] = (d[k] - d[k - 1]) / (nodes_[k].x - nodes_[k - order].x);
   return d;
 }
 
-// Not inlined: the same bits whether the error is asked for or not.
-[[gnu::noinline]] PairModel::Value PairModel::at(double x, const Terms& terms) const {
-  double sum = terms[0], product = 1, last = HUGE_VAL, before = HUGE_VAL;
-  for (std::size_t k = 1; k < terms.size(); ++k) {
+// Not inlined: the same bits whether errors are asked for or not.
+[[gnu::noinline]] PairModel::Values PairModel::at(double x) const {
+  Both sum = terms_[0], last = Both::Constant(HUGE_VAL), before = last;
+  double product = 1;
+  for (std::size_t k = 1; k < terms_.size(); ++k) {
     product *= x - nodes_[k - 1].x;
+    const Both term = terms_[k] * product;
     before = last;
-    last = std::abs(terms[k] * product);
-    sum += terms[k] * product;
+    last = term.abs();
+    sum += term;
   }
-  return {sum, terms.size() < 4 ? HUGE_VAL : std::max(of_last_term * last, of_term_before * before)};
+  const Both error =
+      terms_.size() < 4 ? Both::Constant(HUGE_VAL) : Both((of_last_term * last).max(of_term_before * before));
+  return {{sum[0], error[0]}, {sum[1], error[1]}};
 }
 
 // The remainder of cos 2 pi phi through n nodes is (2 pi)^n/n! prod (phi - phi_k) at most; twice, as phi is taken for
 // linear in x.
-PairModel::Value PairModel::half_trace_at(double x) const {
-  Value c = at(x, half_trace_);
+PairModel::Values PairModel::bounded_at(double x) const {
+  Values values = at(x);
+  Value& c = values.half_trace;
   const double turned = nodes_[1].turned * (x - nodes_[0].x) / (nodes_[1].x - nodes_[0].x);
   double remainder = 2 * largest_;
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     remainder *= two_pi * std::abs(turned - nodes_[k].turned) / static_cast<double>(k + 1);
   if (!(remainder <= c.error)) c.error = std::isnan(remainder) ? HUGE_VAL : remainder;  // not known how far they turned
-  return c;
+  return values;
 }
 
 PairModel::Bounds PairModel::bounds(double x) const {
-  const Value mean = at(x, mean_), c = half_trace_at(x);
+  const auto [mean, c] = bounded_at(x);
   const double E = c.error + half_trace_error_, e = mean.error + mean_error_, size = std::abs(c.value),
                most_apart = std::acosh(std::max(1.0, size + E)) / two_pi;
   return {{mean.value - e + std::acosh(std::max(1.0, size - E)) / two_pi, mean.value + e + most_apart},
@@ -73,18 +77,20 @@ PairModel::Bounds PairModel::bounds(double x) const {
 GrowthBounds PairModel::leading(double x) const { return bounds(x).leading; }
 
 double PairModel::predicted(double x) const {
-  return at(x, mean_).value + std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
+  const auto [mean, c] = at(x);
+  return mean.value + std::acosh(std::max(1.0, std::abs(c.value))) / two_pi;
 }
 
 double PairModel::lower(double x) const {
-  return at(x, mean_).value - std::acosh(std::max(1.0, std::abs(at(x, half_trace_).value))) / two_pi;
+  const auto [mean, c] = at(x);
+  return mean.value - std::acosh(std::max(1.0, std::abs(c.value))) / two_pi;
 }
 
 std::vector<double> PairModel::telling() const {
   std::vector<double> found = probes(nodes_[0].x, nodes_[1].x), places = found;
   places.insert(places.end(), {nodes_[0].x, nodes_[1].x});
   std::ranges::sort(places);
-  const auto c = [&](double x) { return at(x, half_trace_).value; };
+  const auto c = [&](double x) { return at(x).half_trace.value; };
   const auto size = [&](double x) { return std::abs(c(x)); };
   std::vector<double> values(places.size());
   std::ranges::transform(places, values.begin(), c);

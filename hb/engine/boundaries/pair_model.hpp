@@ -3,6 +3,7 @@
 // hb/engine/README.md, (B11).
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "hb/engine/boundaries/growth_model.hpp"
@@ -42,14 +43,17 @@ class PairModel {
   struct Value {
     double value, error;
   };
+  struct Values {
+    Value mean, half_trace;
+  };
+  using Both = Eigen::Array2d;  // of mean growth and half trace
   // Newton's divided differences.
-  using Terms = std::vector<double>;
-  Terms terms(double LeadingPair::*of) const;
-  Value at(double x, const Terms& terms) const;
-  Value half_trace_at(double x) const;
+  std::vector<Both> terms() const;
+  Values at(double x) const;
+  Values bounded_at(double x) const;
 
   std::vector<PairNode> nodes_;
-  Terms mean_, half_trace_;
+  std::vector<Both> terms_;
   double mean_error_ = 0, half_trace_error_ = 0, largest_ = 1;
 };
 

@@ -11,10 +11,11 @@ double folded(double s) {
 }
 
 void sort(std::vector<Exponent>& exponents) {
-  std::stable_sort(exponents.begin(), exponents.end(), [](const Exponent& a, const Exponent& b) {
+  const auto before = [](const Exponent& a, const Exponent& b) {
     if (a.value.real() != b.value.real()) return a.value.real() > b.value.real();
     return a.value.imag() < b.value.imag();
-  });
+  };
+  if (!std::ranges::is_sorted(exponents, before)) std::ranges::stable_sort(exponents, before);
 }
 
 void set_growth(Stability& result, double growth, double low, double high) {
