@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "hb/engine/boundaries/mean_exponents.hpp"
 #include "hb/engine/exponents/stability.hpp"
 
 namespace hb {
@@ -46,6 +47,68 @@ TEST(ScaledSystem, ErrorsOfGivenCoefficientsAreInThoseOfExponents) {
     EXPECT_LT(exact.exponents[i].error, 0.1 * change);
     EXPECT_GE(found.exponents[i].error, change);
     EXPECT_LT(found.exponents[i].error, 3 * change);
+  }
+}
+
+// `count` times the same mode, none coupled to another.
+HillSystem equal_modes(Eigen::Index count, double modulation) {
+  HillSystem s;
+  s.mass = 2.7 * Eigen::MatrixXd::Identity(count, count);
+  s.damping = 0.31 * Eigen::MatrixXd::Identity(count, count);
+  s.stiffness[0] = FourierSeries(count * count, 4);
+  s.stiffness[1] = FourierSeries(count * count, 1);
+  s.load[1] = FourierSeries(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index own = i * (count + 1);
+    s.stiffness[0].c(own, 0) = 3.3;
+    s.stiffness[0].c(own, 2) = {0.1 * modulation, 0.7 * modulation};
+    s.stiffness[0].c(own, 4) = 1e-18;  // below rounding
+    s.stiffness[1].c(own, 1) = {0.3 * modulation, 0};
+    s.load[1].c.row(i) << 0.2, std::complex<double>(3, 1), std::complex<double>(0, 1e-3);
+  }
+  return s;
+}
+
+// One mode alone is scaled by formulas of its own.
+TEST(ScaledSystem, OneModeIsScaledAsBesideAnother) {
+  const double speed = 1.3;
+  const GivenErrors given{Eigen::MatrixXd::Constant(1, 1, 1e-9), Eigen::MatrixXd::Constant(1, 1, 1e-8)};
+  const GivenErrors given_both{1e-9 * Eigen::Matrix2d::Identity(), 1e-8 * Eigen::Matrix2d::Identity()};
+  const ScaledSystem one = scale_system(equal_modes(1, 1), speed, given);
+  const ScaledSystem two = scale_system(equal_modes(2, 1), speed, given_both);
+  EXPECT_EQ(one.speed, two.speed);
+  EXPECT_DOUBLE_EQ(one.T(0, 0), two.T(0, 0));
+  EXPECT_DOUBLE_EQ(one.T_inverse(0, 0), two.T_inverse(0, 0));
+  EXPECT_DOUBLE_EQ(one.G(0, 0), two.G(0, 0));
+  EXPECT_DOUBLE_EQ(one.K_rounding(0, 0), two.K_rounding(0, 0));
+  EXPECT_DOUBLE_EQ(one.f_rounding(0), two.f_rounding(0));
+  EXPECT_DOUBLE_EQ(one.G_error(0, 0), two.G_error(0, 0));
+  EXPECT_DOUBLE_EQ(one.load_scale, two.load_scale);
+  EXPECT_EQ(one.diagonal_damping, two.diagonal_damping);
+  EXPECT_EQ(one.conservative(0), two.conservative(0));
+  ASSERT_EQ(one.K.c.cols(), 3);
+  ASSERT_EQ(two.K.c.cols(), 3);
+  EXPECT_LT((one.K.c.row(0) - two.K.c.row(0)).norm(), 1e-15 * one.K.c.norm());
+  ASSERT_EQ(one.f.c.cols(), two.f.c.cols());
+  EXPECT_LT((one.f.c.row(0) - two.f.c.row(0)).norm(), 1e-15 * one.f.c.norm());
+}
+
+TEST(ScaledSystem, OneModeHasItsMeanExponentsBesideAnother) {
+  for (const double modulation : {0.0, 0.01, 0.1, 10.0}) {
+    const auto one = mean_exponents(scale_system(equal_modes(1, modulation), 1.3));
+    const auto two = mean_exponents(scale_system(equal_modes(2, modulation), 1.3));
+    ASSERT_EQ(one.size(), 2u);
+    ASSERT_EQ(two.size(), 4u);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      const MeanExponent &a = one[i], &b = two[2 * i];
+      EXPECT_LT(std::abs(a.value - b.value), 1e-15);
+      EXPECT_NEAR(a.modulation, b.modulation, 1e-14 * b.modulation);
+      EXPECT_EQ(a.drift, 0);
+      if (std::isinf(b.coupling))
+        EXPECT_EQ(a.coupling, b.coupling);
+      else
+        EXPECT_NEAR(a.coupling, b.coupling, 1e-14 * b.coupling);
+    }
   }
 }
 
