@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "lib/lanes.hpp"
 
@@ -93,7 +92,7 @@ SweepPoint PointFamily::at(std::size_t k) {
   if (place != block->places.end()) {
     const auto n = static_cast<std::size_t>(place - block->places.begin());
     solve(*block, n, 1);
-    point = std::move(block->nodes[n].point);
+    point = block->nodes[n].point;
   } else {
     solve(*block, 0, block->nodes.size());
     const PointSolution start = foretold(*block, values_[k]);
