@@ -87,6 +87,18 @@ TheoryCorrection::TheoryCorrection(const ExactModel& model, double speed, std::s
   }
 }
 
+Index TheoryCorrection::stiffness_harmonics(double relative) const {
+  Index last = 0;
+  for (const Compared& rod : compared_) {
+    const Eigen::VectorXd squares = rod.C.c.row(0).tail(rod.C.num_harmonics()).cwiseAbs2();
+    if (squares.size() == 0) continue;
+    const double least = relative * relative * squares.maxCoeff();
+    for (Index k = last; k < squares.size(); ++k)
+      if (squares(k) > least) last = k + 1;
+  }
+  return last;
+}
+
 std::optional<FourierSeries> TheoryCorrection::answer(std::size_t rod, const MatrixXd& samples, double tolerance) {
   const HillSystem& system = *rods_[rod].system;
   FourierSeries load = on_unknowns(fourier::analyse(samples), system.num_modes());
