@@ -40,6 +40,9 @@ class TheoryCorrection {
   struct Compared {
     Eigen::MatrixXd M, B;
     FourierSeries C, h;
+    Eigen::MatrixXd C_there, h_there;  // at the angles asked for last, N x components
+
+    Eigen::MatrixXd residual(const Eigen::MatrixXd& q, const Eigen::MatrixXd& q1, const Eigen::MatrixXd& q2);
   };
 
   // The linear rod's answer to the load on q given by samples; empty at resonance.

@@ -39,8 +39,11 @@ PeriodicCoefficients first_modes_of(const HillSystem& system, double speed, Inde
   PeriodicCoefficients part{FourierSeries(kept * kept, H), FourierSeries(kept * kept, 0), kept};
   double power = 1 / (speed * speed);
   for (const FourierSeries& C : system.stiffness) {
-    for (Index j = 0; j < kept && C.c.size() > 0; ++j)
-      part.alpha.c.block(kept * j, 0, kept, C.c.cols()) += (power * per_mass).lazyProduct(C.c.middleRows(n * j, kept));
+    const MatrixXd factor = power * per_mass;
+    for (Index k = 0; k < C.c.cols(); ++k)
+      for (Index j = 0; j < kept; ++j)
+        for (Index l = 0; l < kept; ++l)
+          for (Index i = 0; i < kept; ++i) part.alpha.c(i + kept * j, k) += factor(i, l) * C.c(l + n * j, k);
     power *= speed;
   }
   part.beta.c.col(0).real() = (per_mass * system.damping.topLeftCorner(kept, kept) / speed).reshaped();
@@ -62,7 +65,7 @@ std::optional<NormalForm> variations(const ExactModel& model, double speed, cons
   const auto crank_angle = [N](Index j) { return two_pi * double(j) / double(N); };
   const CrankAngles angles(model.linkage(), Eigen::VectorXd(Eigen::VectorXd::LinSpaced(count, crank_angle(first),
                                                                                        crank_angle(N - step + first))));
-  ExactResidual exact = model.residual(speed, angles, {at(all.q), at(all.q1), at(all.q2)}, true);
+  ExactResidual exact = model.linearised(speed, angles, {at(all.q), at(all.q1), at(all.q2)});
   if (exact.breakdown) return std::nullopt;
   return normal_form({speed, std::move(exact.by_q2), std::move(exact.by_q1), std::move(exact.by_q)});
 }
