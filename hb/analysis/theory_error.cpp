@@ -263,12 +263,11 @@ std::optional<std::vector<FourierSeries>> second_order(TheoryCorrection& correct
 
 }  // namespace
 
-// Points enough for 1e-3 of the error.
-ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_modes) {
+ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_modes, Index points_beside_modes) {
   std::vector<ExactModel::Rod> rods;
   const std::vector<int> links = elastic_links(linkage);
   for (std::size_t r = 0; r < links.size(); ++r) rods.push_back({links[r], num_modes.at(r)});
-  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 8);
+  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + points_beside_modes);
 }
 
 TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,

@@ -22,6 +22,7 @@ constexpr Index most_growth_modes = 2;  // higher ones change the six-link mecha
 // the first look.
 constexpr double negligible = 1e-6, apart = 1e-4;
 constexpr Index fewest_angles = 24;
+constexpr Index points_beside_modes = 7;
 // What an answer may be off by.
 constexpr GrowthAccuracy growth_accuracy{.of_change = 0.02, .of_rate = 1e-7};
 // Twice the angles leave about the square of what they change, which may be this part of the answer.
@@ -39,12 +40,13 @@ PeriodicCoefficients first_modes_of(const HillSystem& system, double speed, Inde
   PeriodicCoefficients part{FourierSeries(kept * kept, H), FourierSeries(kept * kept, 0), kept};
   double power = 1 / (speed * speed);
   for (const FourierSeries& C : system.stiffness) {
-    const MatrixXd factor = power * per_mass;
-    for (Index k = 0; k < C.c.cols(); ++k)
-      for (Index j = 0; j < kept; ++j)
-        for (Index l = 0; l < kept; ++l)
-          for (Index i = 0; i < kept; ++i) part.alpha.c(i + kept * j, k) += factor(i, l) * C.c(l + n * j, k);
+    for (Index j = 0; j < kept && C.c.size() > 0; ++j)
+      part.alpha.c.block(kept * j, 0, kept, C.c.cols()) += power * C.c.middleRows(n * j, kept);
     power *= speed;
+  }
+  for (Index j = 0; j < kept; ++j) {
+    auto columns = part.alpha.c.middleRows(kept * j, kept);
+    columns = per_mass.lazyProduct(columns).eval();
   }
   part.beta.c.col(0).real() = (per_mass * system.damping.topLeftCorner(kept, kept) / speed).reshaped();
   return part;
@@ -233,7 +235,7 @@ std::optional<double> growth_theory_error(const Linkage& linkage, double speed, 
     motion.emplace_back(
         Eigen::MatrixXcd(moved.c.topLeftCorner(kept, 1 + fourier::significant_harmonics(moved, negligible))));
   }
-  return Looks(theory_model(linkage, num_modes), speed, motion, linear).settled();
+  return Looks(theory_model(linkage, num_modes, points_beside_modes), speed, motion, linear).settled();
 }
 
 }  // namespace hb
