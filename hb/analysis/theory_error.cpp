@@ -179,9 +179,13 @@ bool differs_by_more(const std::vector<FourierSeries>& from, const std::vector<F
 
 // (T1) at q + dq, roughly, where that changes dq by more than `most` of itself.
 std::optional<std::vector<FourierSeries>> second_correction(TheoryCorrection& correction,
+                                                            const CrankAngles& first_angles,
                                                             const std::vector<FourierSeries>& dq, double most) {
   const std::vector<FourierSeries> q = cut_responses(correction.rods(), of_second_look.negligible);
-  const CrankAngles angles(correction.model().linkage(), num_samples(correction, q, of_second_look));
+  const Index N = num_samples(correction, q, of_second_look);
+  std::optional<CrankAngles> own;
+  if (N != first_angles.size()) own.emplace(correction.model().linkage(), N);
+  const CrankAngles& angles = own ? *own : first_angles;
   Corrections second = correction.at(angles, moved_by(q, dq, angles.size()), of_second_look.tolerance);
   if (second.breakdown || second.singular) return std::nullopt;
   if (!differs_by_more(dq, second.dq, most, difference(dq, second.dq, sampled_size))) return std::nullopt;
@@ -255,7 +259,7 @@ std::optional<std::vector<FourierSeries>> second_order(TheoryCorrection& correct
     return change;
   }
   const auto second =
-      second_correction(correction, dq, amplification * first_error > amplified ? most_amplified : most_second);
+      second_correction(correction, angles, dq, amplification * first_error > amplified ? most_amplified : most_second);
   if (!second) return std::nullopt;
   auto change = repeated_corrections(correction, angles, q, *second);
   return change ? change : change_by_newton(correction.model(), correction.speed(), q, first_error);

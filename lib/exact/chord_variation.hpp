@@ -15,10 +15,10 @@ namespace hb::exact {
 // so that the closure is differentiated by c and the speed alone. Scratch is kept from one call to the next.
 template <bool by_speed>
 class ChordVariation {
-  using Moved = DualIn<by_speed ? 2 : 1>;
+  using Moved = Dual<by_speed ? 2 : 1>;
 
  public:
-  using Varied = DualIn<by_speed ? 4 : 3>;
+  using Varied = Dual<by_speed ? 4 : 3>;
 
   // Of all rods, those of `mechanism` with rod s varied: rods()[r].base and .axial_force are the answers.
   template <class SliderForces>

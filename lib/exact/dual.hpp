@@ -9,88 +9,87 @@
 namespace hb {
 
 template <std::size_t n>
-struct DualIn {
+struct Dual {
   static constexpr std::size_t directions = n;
   using Slopes = std::array<Lanes, n>;
   Lanes value;
   Slopes slope;
 
-  DualIn() = default;
-  DualIn(const Lanes& v) : value(v) {}  // NOLINT(google-explicit-constructor): a constant
+  Dual() = default;
+  Dual(const Lanes& v) : value(v) {}  // NOLINT(google-explicit-constructor): a constant
 
   // value and, in every direction, slope(direction)
   template <class Slope>
-  static DualIn with(const Lanes& value, const Slope& slope) {
-    DualIn result(value);
+  static Dual with(const Lanes& value, const Slope& slope) {
+    Dual result(value);
     for (std::size_t d = 0; d < n; ++d) result.slope[d] = slope(d);
     return result;
   }
 };
-using Dual = DualIn<4>;
 
 template <std::size_t n>
-DualIn<n> operator-(const DualIn<n>& a) {
-  return DualIn<n>::with(-a.value, [&](std::size_t d) { return -a.slope[d]; });
+Dual<n> operator-(const Dual<n>& a) {
+  return Dual<n>::with(-a.value, [&](std::size_t d) { return -a.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator+(const DualIn<n>& a, const DualIn<n>& b) {
-  return DualIn<n>::with(a.value + b.value, [&](std::size_t d) { return a.slope[d] + b.slope[d]; });
+Dual<n> operator+(const Dual<n>& a, const Dual<n>& b) {
+  return Dual<n>::with(a.value + b.value, [&](std::size_t d) { return a.slope[d] + b.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator-(const DualIn<n>& a, const DualIn<n>& b) {
-  return DualIn<n>::with(a.value - b.value, [&](std::size_t d) { return a.slope[d] - b.slope[d]; });
+Dual<n> operator-(const Dual<n>& a, const Dual<n>& b) {
+  return Dual<n>::with(a.value - b.value, [&](std::size_t d) { return a.slope[d] - b.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator*(const DualIn<n>& a, const DualIn<n>& b) {
-  return DualIn<n>::with(a.value * b.value, [&](std::size_t d) { return a.value * b.slope[d] + b.value * a.slope[d]; });
+Dual<n> operator*(const Dual<n>& a, const Dual<n>& b) {
+  return Dual<n>::with(a.value * b.value, [&](std::size_t d) { return a.value * b.slope[d] + b.value * a.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator*(const Lanes& a, const DualIn<n>& b) {
-  return DualIn<n>::with(a * b.value, [&](std::size_t d) { return a * b.slope[d]; });
+Dual<n> operator*(const Lanes& a, const Dual<n>& b) {
+  return Dual<n>::with(a * b.value, [&](std::size_t d) { return a * b.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator*(const DualIn<n>& a, const Lanes& b) {
+Dual<n> operator*(const Dual<n>& a, const Lanes& b) {
   return b * a;
 }
 template <std::size_t n>
-DualIn<n> operator+(const Lanes& a, const DualIn<n>& b) {
-  return DualIn<n>::with(a + b.value, [&](std::size_t d) { return b.slope[d]; });
+Dual<n> operator+(const Lanes& a, const Dual<n>& b) {
+  return Dual<n>::with(a + b.value, [&](std::size_t d) { return b.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator+(const DualIn<n>& a, const Lanes& b) {
+Dual<n> operator+(const Dual<n>& a, const Lanes& b) {
   return b + a;
 }
 template <std::size_t n>
-DualIn<n> operator-(const DualIn<n>& a, const Lanes& b) {
+Dual<n> operator-(const Dual<n>& a, const Lanes& b) {
   return -b + a;
 }
 template <std::size_t n>
-DualIn<n> operator-(const Lanes& a, const DualIn<n>& b) {
-  return DualIn<n>::with(a - b.value, [&](std::size_t d) { return -b.slope[d]; });
+Dual<n> operator-(const Lanes& a, const Dual<n>& b) {
+  return Dual<n>::with(a - b.value, [&](std::size_t d) { return -b.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator/(const DualIn<n>& a, const DualIn<n>& b) {
+Dual<n> operator/(const Dual<n>& a, const Dual<n>& b) {
   const Lanes inverse = 1.0 / b.value, quotient = a.value * inverse;
-  return DualIn<n>::with(quotient, [&](std::size_t d) { return inverse * (a.slope[d] - quotient * b.slope[d]); });
+  return Dual<n>::with(quotient, [&](std::size_t d) { return inverse * (a.slope[d] - quotient * b.slope[d]); });
 }
 template <std::size_t n>
-DualIn<n> operator/(const Lanes& a, const DualIn<n>& b) {
+Dual<n> operator/(const Lanes& a, const Dual<n>& b) {
   const Lanes inverse = 1.0 / b.value, quotient = a * inverse, turned = -(inverse * quotient);
-  return DualIn<n>::with(quotient, [&](std::size_t d) { return turned * b.slope[d]; });
+  return Dual<n>::with(quotient, [&](std::size_t d) { return turned * b.slope[d]; });
 }
 template <std::size_t n>
-DualIn<n> operator/(const DualIn<n>& a, const Lanes& b) {
+Dual<n> operator/(const Dual<n>& a, const Lanes& b) {
   return (1.0 / b) * a;
 }
 template <std::size_t n>
-DualIn<n> sqrt(const DualIn<n>& a) {
+Dual<n> sqrt(const Dual<n>& a) {
   const Lanes root = sqrt(a.value), half = 0.5 / root;
-  return DualIn<n>::with(root, [&](std::size_t d) { return half * a.slope[d]; });
+  return Dual<n>::with(root, [&](std::size_t d) { return half * a.slope[d]; });
 }
 
 inline const Lanes& value_of(const Lanes& a) { return a; }
 template <std::size_t n>
-const Lanes& value_of(const DualIn<n>& a) {
+const Lanes& value_of(const Dual<n>& a) {
   return a.value;
 }
 
