@@ -29,6 +29,9 @@ class TheoryCorrection {
   double speed() const { return speed_; }
   std::span<const LinearRod> rods() const { return rods_; }
 
+  // The last harmonic of the rods' stiffness, that of their first modes, above this part of the largest one.
+  [[nodiscard]] Eigen::Index stiffness_harmonics(double relative) const;
+
   // At q, whose harmonics the angles tell apart; dq without harmonics below a tenth of `tolerance`.
   [[nodiscard]] Corrections at(const CrankAngles& angles, const std::vector<FourierSeries>& q, double tolerance);
 
@@ -37,6 +40,9 @@ class TheoryCorrection {
   struct Compared {
     Eigen::MatrixXd M, B;
     FourierSeries C, h;
+    Eigen::MatrixXd C_there, h_there;  // at the angles asked for last, N x components
+
+    Eigen::MatrixXd residual(const Eigen::MatrixXd& q, const Eigen::MatrixXd& q1, const Eigen::MatrixXd& q2);
   };
 
   // The linear rod's answer to the load on q given by samples; empty at resonance.

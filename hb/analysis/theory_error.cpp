@@ -19,15 +19,16 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// Harmonics of q smaller than `negligible` of the largest are left out; products of three are looked at of those above
-// `cubed`, at least so many; `tolerance` is asked of the correction.
+// Harmonics of q smaller than `negligible` of the largest are left out; products are looked at of those above `cubed`
+// and of as many as the rods' varying stiffness has above `varying`, at least so many; `tolerance` is asked of the
+// correction.
 struct Accuracy {
-  double negligible, cubed, tolerance;
+  double negligible, cubed, varying, tolerance;
   Index least_cubed;
 };
-constexpr Accuracy of_theory_error{3e-6, 1e-4, 2e-4, 7};
+constexpr Accuracy of_theory_error{3e-6, 1e-2, 1e-3, 2e-4, 7};
 // Enough to see whether the second correction matters.
-constexpr Accuracy of_second_look{1e-3, 1e-2, 1e-2, 5};
+constexpr Accuracy of_second_look{1e-3, 1e-2, 1, 1e-2, 5};
 // Below the first, of the correction times the amplification next to the nearest resonance, one correction shows the
 // change to within a tenth (by random linkages); so it does where the second one differs by less than the other.
 constexpr double harmless = 0.015, most_second = 0.085;
@@ -48,9 +49,9 @@ std::vector<FourierSeries> cut_responses(std::span<const LinearRod> rods, double
   return q;
 }
 
-// Angles at which the harmonics of q are apart, and products of three do not fold onto them.
-Index num_samples(const std::vector<FourierSeries>& q, const Accuracy& accuracy) {
-  Index H = 0, cubed = accuracy.least_cubed;
+// Angles at which the harmonics of q are apart, and products of the large ones do not fold onto them.
+Index num_samples(const TheoryCorrection& correction, const std::vector<FourierSeries>& q, const Accuracy& accuracy) {
+  Index H = 0, cubed = std::max(accuracy.least_cubed, correction.stiffness_harmonics(accuracy.varying));
   for (const FourierSeries& series : q) {
     H = std::max(H, series.num_harmonics());
     cubed = std::max(cubed, fourier::significant_harmonics(series, accuracy.cubed));
@@ -66,7 +67,22 @@ MatrixXd over_the_turn(const FourierSeries& q, Index harmonics) {
 }
 constexpr double least_sampled = 0.7;
 
-double sampled_size(const FourierSeries& q) { return dense::largest(over_the_turn(q, q.num_harmonics())); }
+// The components that can have the largest |q_i|: its mean square is no larger than the square of the largest, and
+// that no larger than the square of the sum over all harmonics.
+FourierSeries leading_components(const FourierSeries& q) {
+  const MatrixXd squares = q.c.cwiseAbs2();
+  const Eigen::VectorXd mean_square = 2 * squares.rowwise().sum() - squares.col(0),
+                        most = 2 * squares.cwiseSqrt().rowwise().sum() - squares.col(0).cwiseSqrt();
+  const double least = mean_square.maxCoeff();
+  std::vector<Index> leading;
+  for (Index i = 0; i < q.num_components(); ++i)
+    if (!(most(i) * most(i) < least)) leading.push_back(i);
+  return FourierSeries(Eigen::MatrixXcd(q.c(leading, Eigen::all)));
+}
+
+double sampled_size(const FourierSeries& q) {
+  return dense::largest(over_the_turn(leading_components(q), q.num_harmonics()));
+}
 
 // Largest |q_i| over the turn, of components that can have it.
 double largest_value(const FourierSeries& q, const MatrixXd& samples) {
@@ -77,23 +93,37 @@ double largest_value(const FourierSeries& q, const MatrixXd& samples) {
   return value;
 }
 
-double size(const FourierSeries& q) { return largest_value(q, over_the_turn(q, q.num_harmonics())); }
+double size(const FourierSeries& q) {
+  const FourierSeries leading = leading_components(q);
+  return largest_value(leading, over_the_turn(leading, q.num_harmonics()));
+}
 
 // Largest |sum_i q_i sin(i pi x/l)| at the samples and at points of the rod. With s and a the sums of the odd i and of
-// the even ones, the larger of those at x and l - x is |s| + |a|.
+// the even ones, the larger of those at x and l - x is |s| + |a|. Angles at which sum_i |q_i| is no larger have less.
 double largest_deflection(const MatrixXd& samples) {
   const Index I = samples.rows(), points = 2 * I + 2;
-  const MatrixXd by_angle = samples.transpose();
-  Eigen::ArrayXd s(by_angle.rows()), a(by_angle.rows());
-  double largest = 0;
-  for (Index k = 1; k <= points; ++k) {
-    const std::complex<double> wave = std::polar(1.0, std::numbers::pi / 2 * double(k) / double(points));
+  MatrixXd sines(I, points);
+  for (Index k = 0; k < points; ++k) {
+    const std::complex<double> wave = std::polar(1.0, std::numbers::pi / 2 * double(k + 1) / double(points));
     std::complex<double> power = wave;
-    s.setZero();
-    a.setZero();
-    for (Index i = 0; i < I; ++i, power *= wave) (i % 2 == 0 ? s : a) += power.imag() * by_angle.col(i).array();
-    largest = std::max(largest, (s.abs() + a.abs()).maxCoeff());
+    for (Index i = 0; i < I; ++i, power *= wave) sines(i, k) = power.imag();
   }
+  const Eigen::VectorXd most = samples.cwiseAbs().colwise().sum();
+  double largest = 0;
+  const auto look = [&](Index angle) {
+    const double* q = &samples(0, angle);
+    for (Index k = 0; k < points; ++k) {
+      const double* sine = &sines(0, k);
+      double sum[2] = {0, 0};
+      for (Index i = 0; i < I; ++i) sum[i % 2] += q[i] * sine[i];
+      largest = std::max(largest, std::abs(sum[0]) + std::abs(sum[1]));
+    }
+  };
+  Index first = 0;
+  most.maxCoeff(&first);
+  look(first);
+  for (Index angle = 0; angle < most.size(); ++angle)
+    if (most(angle) > largest) look(angle);
   return largest;
 }
 
@@ -149,9 +179,13 @@ bool differs_by_more(const std::vector<FourierSeries>& from, const std::vector<F
 
 // (T1) at q + dq, roughly, where that changes dq by more than `most` of itself.
 std::optional<std::vector<FourierSeries>> second_correction(TheoryCorrection& correction,
+                                                            const CrankAngles& first_angles,
                                                             const std::vector<FourierSeries>& dq, double most) {
   const std::vector<FourierSeries> q = cut_responses(correction.rods(), of_second_look.negligible);
-  const CrankAngles angles(correction.model().linkage(), num_samples(q, of_second_look));
+  const Index N = num_samples(correction, q, of_second_look);
+  std::optional<CrankAngles> own;
+  if (N != first_angles.size()) own.emplace(correction.model().linkage(), N);
+  const CrankAngles& angles = own ? *own : first_angles;
   Corrections second = correction.at(angles, moved_by(q, dq, angles.size()), of_second_look.tolerance);
   if (second.breakdown || second.singular) return std::nullopt;
   if (!differs_by_more(dq, second.dq, most, difference(dq, second.dq, sampled_size))) return std::nullopt;
@@ -225,7 +259,7 @@ std::optional<std::vector<FourierSeries>> second_order(TheoryCorrection& correct
     return change;
   }
   const auto second =
-      second_correction(correction, dq, amplification * first_error > amplified ? most_amplified : most_second);
+      second_correction(correction, angles, dq, amplification * first_error > amplified ? most_amplified : most_second);
   if (!second) return std::nullopt;
   auto change = repeated_corrections(correction, angles, q, *second);
   return change ? change : change_by_newton(correction.model(), correction.speed(), q, first_error);
@@ -233,12 +267,11 @@ std::optional<std::vector<FourierSeries>> second_order(TheoryCorrection& correct
 
 }  // namespace
 
-// Points enough for 1e-3 of the error.
-ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_modes) {
+ExactModel theory_model(const Linkage& linkage, const std::vector<Index>& num_modes, Index points_beside_modes) {
   std::vector<ExactModel::Rod> rods;
   const std::vector<int> links = elastic_links(linkage);
   for (std::size_t r = 0; r < links.size(); ++r) rods.push_back({links[r], num_modes.at(r)});
-  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + 8);
+  return ExactModel(linkage, rods, *std::max_element(num_modes.begin(), num_modes.end()) + points_beside_modes);
 }
 
 TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,
@@ -251,8 +284,8 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
       return errors;
     }
   const std::vector<FourierSeries> q = cut_responses(rods, of_theory_error.negligible);
-  const CrankAngles angles(model.linkage(), num_samples(q, of_theory_error));
   TheoryCorrection correction(model, speed, rods, of_theory_error.tolerance);
+  const CrankAngles angles(model.linkage(), num_samples(correction, q, of_theory_error));
   Corrections first = correction.at(angles, q, of_theory_error.tolerance);
   if (first.breakdown) {
     errors.reason = describe(*first.breakdown, model.linkage());

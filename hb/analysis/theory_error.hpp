@@ -47,8 +47,9 @@ struct TheoryErrors {
   std::string reason;  // why there is no value: a rod folds, the bent linkage opens, no periodic solution
 };
 
-// The exact model of all elastic links with as many modes, with the points along the rods that a theory error needs.
-[[nodiscard]] ExactModel theory_model(const Linkage& linkage, const std::vector<Eigen::Index>& num_modes);
+// The exact model of all elastic links with as many modes; points along the rods enough for 1e-3 of the error.
+[[nodiscard]] ExactModel theory_model(const Linkage& linkage, const std::vector<Eigen::Index>& num_modes,
+                                      Eigen::Index points_beside_modes = 8);
 
 // `forces`: of the same linear answer, or nullptr.
 [[nodiscard]] TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,

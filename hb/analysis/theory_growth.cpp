@@ -22,6 +22,7 @@ constexpr Index most_growth_modes = 2;  // higher ones change the six-link mecha
 // the first look.
 constexpr double negligible = 1e-6, apart = 1e-4;
 constexpr Index fewest_angles = 24;
+constexpr Index points_beside_modes = 7;
 // What an answer may be off by.
 constexpr GrowthAccuracy growth_accuracy{.of_change = 0.02, .of_rate = 1e-7};
 // Twice the angles leave about the square of what they change, which may be this part of the answer.
@@ -40,8 +41,12 @@ PeriodicCoefficients first_modes_of(const HillSystem& system, double speed, Inde
   double power = 1 / (speed * speed);
   for (const FourierSeries& C : system.stiffness) {
     for (Index j = 0; j < kept && C.c.size() > 0; ++j)
-      part.alpha.c.block(kept * j, 0, kept, C.c.cols()) += (power * per_mass).lazyProduct(C.c.middleRows(n * j, kept));
+      part.alpha.c.block(kept * j, 0, kept, C.c.cols()) += power * C.c.middleRows(n * j, kept);
     power *= speed;
+  }
+  for (Index j = 0; j < kept; ++j) {
+    auto columns = part.alpha.c.middleRows(kept * j, kept);
+    columns = per_mass.lazyProduct(columns).eval();
   }
   part.beta.c.col(0).real() = (per_mass * system.damping.topLeftCorner(kept, kept) / speed).reshaped();
   return part;
@@ -62,7 +67,7 @@ std::optional<NormalForm> variations(const ExactModel& model, double speed, cons
   const auto crank_angle = [N](Index j) { return two_pi * double(j) / double(N); };
   const CrankAngles angles(model.linkage(), Eigen::VectorXd(Eigen::VectorXd::LinSpaced(count, crank_angle(first),
                                                                                        crank_angle(N - step + first))));
-  ExactResidual exact = model.residual(speed, angles, {at(all.q), at(all.q1), at(all.q2)}, true);
+  ExactResidual exact = model.linearised(speed, angles, {at(all.q), at(all.q1), at(all.q2)});
   if (exact.breakdown) return std::nullopt;
   return normal_form({speed, std::move(exact.by_q2), std::move(exact.by_q1), std::move(exact.by_q)});
 }
@@ -230,7 +235,7 @@ std::optional<double> growth_theory_error(const Linkage& linkage, double speed, 
     motion.emplace_back(
         Eigen::MatrixXcd(moved.c.topLeftCorner(kept, 1 + fourier::significant_harmonics(moved, negligible))));
   }
-  return Looks(theory_model(linkage, num_modes), speed, motion, linear).settled();
+  return Looks(theory_model(linkage, num_modes, points_beside_modes), speed, motion, linear).settled();
 }
 
 }  // namespace hb

@@ -1,4 +1,4 @@
-// Forward differentiation in four directions at once: numbers with their derivatives, at several crank angles.
+// Forward differentiation in several directions at once: numbers with their derivatives, at several crank angles.
 #pragma once
 
 #include <array>
@@ -8,9 +8,10 @@
 
 namespace hb {
 
+template <std::size_t n>
 struct Dual {
-  static constexpr std::size_t directions = 4;
-  using Slopes = std::array<Lanes, directions>;
+  static constexpr std::size_t directions = n;
+  using Slopes = std::array<Lanes, n>;
   Lanes value;
   Slopes slope;
 
@@ -21,51 +22,76 @@ struct Dual {
   template <class Slope>
   static Dual with(const Lanes& value, const Slope& slope) {
     Dual result(value);
-    for (std::size_t d = 0; d < directions; ++d) result.slope[d] = slope(d);
+    for (std::size_t d = 0; d < n; ++d) result.slope[d] = slope(d);
     return result;
   }
 };
 
-inline Dual operator-(const Dual& a) {
-  return Dual::with(-a.value, [&](std::size_t d) { return -a.slope[d]; });
+template <std::size_t n>
+Dual<n> operator-(const Dual<n>& a) {
+  return Dual<n>::with(-a.value, [&](std::size_t d) { return -a.slope[d]; });
 }
-inline Dual operator+(const Dual& a, const Dual& b) {
-  return Dual::with(a.value + b.value, [&](std::size_t d) { return a.slope[d] + b.slope[d]; });
+template <std::size_t n>
+Dual<n> operator+(const Dual<n>& a, const Dual<n>& b) {
+  return Dual<n>::with(a.value + b.value, [&](std::size_t d) { return a.slope[d] + b.slope[d]; });
 }
-inline Dual operator-(const Dual& a, const Dual& b) {
-  return Dual::with(a.value - b.value, [&](std::size_t d) { return a.slope[d] - b.slope[d]; });
+template <std::size_t n>
+Dual<n> operator-(const Dual<n>& a, const Dual<n>& b) {
+  return Dual<n>::with(a.value - b.value, [&](std::size_t d) { return a.slope[d] - b.slope[d]; });
 }
-inline Dual operator*(const Dual& a, const Dual& b) {
-  return Dual::with(a.value * b.value, [&](std::size_t d) { return a.value * b.slope[d] + b.value * a.slope[d]; });
+template <std::size_t n>
+Dual<n> operator*(const Dual<n>& a, const Dual<n>& b) {
+  return Dual<n>::with(a.value * b.value, [&](std::size_t d) { return a.value * b.slope[d] + b.value * a.slope[d]; });
 }
-inline Dual operator*(const Lanes& a, const Dual& b) {
-  return Dual::with(a * b.value, [&](std::size_t d) { return a * b.slope[d]; });
+template <std::size_t n>
+Dual<n> operator*(const Lanes& a, const Dual<n>& b) {
+  return Dual<n>::with(a * b.value, [&](std::size_t d) { return a * b.slope[d]; });
 }
-inline Dual operator*(const Dual& a, const Lanes& b) { return b * a; }
-inline Dual operator+(const Lanes& a, const Dual& b) {
-  return Dual::with(a + b.value, [&](std::size_t d) { return b.slope[d]; });
+template <std::size_t n>
+Dual<n> operator*(const Dual<n>& a, const Lanes& b) {
+  return b * a;
 }
-inline Dual operator+(const Dual& a, const Lanes& b) { return b + a; }
-inline Dual operator-(const Dual& a, const Lanes& b) { return -b + a; }
-inline Dual operator-(const Lanes& a, const Dual& b) {
-  return Dual::with(a - b.value, [&](std::size_t d) { return -b.slope[d]; });
+template <std::size_t n>
+Dual<n> operator+(const Lanes& a, const Dual<n>& b) {
+  return Dual<n>::with(a + b.value, [&](std::size_t d) { return b.slope[d]; });
 }
-inline Dual operator/(const Dual& a, const Dual& b) {
+template <std::size_t n>
+Dual<n> operator+(const Dual<n>& a, const Lanes& b) {
+  return b + a;
+}
+template <std::size_t n>
+Dual<n> operator-(const Dual<n>& a, const Lanes& b) {
+  return -b + a;
+}
+template <std::size_t n>
+Dual<n> operator-(const Lanes& a, const Dual<n>& b) {
+  return Dual<n>::with(a - b.value, [&](std::size_t d) { return -b.slope[d]; });
+}
+template <std::size_t n>
+Dual<n> operator/(const Dual<n>& a, const Dual<n>& b) {
   const Lanes inverse = 1.0 / b.value, quotient = a.value * inverse;
-  return Dual::with(quotient, [&](std::size_t d) { return inverse * (a.slope[d] - quotient * b.slope[d]); });
+  return Dual<n>::with(quotient, [&](std::size_t d) { return inverse * (a.slope[d] - quotient * b.slope[d]); });
 }
-inline Dual operator/(const Lanes& a, const Dual& b) {
+template <std::size_t n>
+Dual<n> operator/(const Lanes& a, const Dual<n>& b) {
   const Lanes inverse = 1.0 / b.value, quotient = a * inverse, turned = -(inverse * quotient);
-  return Dual::with(quotient, [&](std::size_t d) { return turned * b.slope[d]; });
+  return Dual<n>::with(quotient, [&](std::size_t d) { return turned * b.slope[d]; });
 }
-inline Dual operator/(const Dual& a, const Lanes& b) { return (1.0 / b) * a; }
-inline Dual sqrt(const Dual& a) {
+template <std::size_t n>
+Dual<n> operator/(const Dual<n>& a, const Lanes& b) {
+  return (1.0 / b) * a;
+}
+template <std::size_t n>
+Dual<n> sqrt(const Dual<n>& a) {
   const Lanes root = sqrt(a.value), half = 0.5 / root;
-  return Dual::with(root, [&](std::size_t d) { return half * a.slope[d]; });
+  return Dual<n>::with(root, [&](std::size_t d) { return half * a.slope[d]; });
 }
 
 inline const Lanes& value_of(const Lanes& a) { return a; }
-inline const Lanes& value_of(const Dual& a) { return a.value; }
+template <std::size_t n>
+const Lanes& value_of(const Dual<n>& a) {
+  return a.value;
+}
 
 // A vector of the plane as a complex number x + i y over any scalar (std::complex is for floating-point numbers only).
 template <class T>

@@ -9,6 +9,7 @@
 
 #include "lib/exact/bent_mechanism.hpp"
 #include "lib/exact/bent_rod.hpp"
+#include "lib/exact/chord_variation.hpp"
 #include "lib/exact/rod_quadrature.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -43,12 +44,13 @@ double in(const Lanes& lanes, Index lane) { return lanes.values()[static_cast<st
 
 std::complex<double> number(const Plane<Lanes>& z, Index lane) { return {in(z.x, lane), in(z.y, lane)}; }
 
-// Directions of Dual when a rod is varied: its chord with two rates; the speed.
+// Directions when a rod is varied: its chord with two rates; the speed.
 constexpr std::size_t chord_direction = 0, speed_direction = 3;
 
 // What the answers of rod r do when rod s is varied, and with the speed.
 struct Influence {
-  std::array<Dual::Slopes, 7> of_answer;  // base motion, in the order of BaseMotion, and X
+  using Slopes = std::array<Lanes, 4>;
+  std::array<Slopes, 7> of_answer;  // base motion, in the order of BaseMotion, and X
   std::array<Lanes, 3> of_load;  // X alone, by the load of s: along, across, moment
 };
 
@@ -59,7 +61,6 @@ class Block {
       : model_(model), angles_(angles), speed_(speed) {
     for (std::size_t r = 0; r < model.rods.size(); ++r) rods_.emplace_back(model.rules[r], model.constants[r]);
     mechanism_.rods.resize(rods_.size());
-    varied_.rods.resize(rods_.size());
     influence_.resize(rods_.size() * rods_.size());
   }
 
@@ -73,7 +74,10 @@ class Block {
       mechanism_.rods[r].chord = rods_[r].chord();
       mechanism_.rods[r].shape = rods_[r].shape();
     }
-    solve(Lanes(speed_), mechanism_);
+    const auto slider_forces = [&](Index dyad) { return slider_force(dyad); };
+    exact::move(model_.linkage, model_.rod_of, crank(), Lanes(speed_), mechanism_);
+    exact::load(model_.linkage, model_.rod_of, model_.constants, slider_forces, mechanism_);
+    exact::balance(model_.linkage, model_.rod_of, mechanism_);
   }
 
   // The rods in what the mechanism answers.
@@ -109,15 +113,18 @@ class Block {
   // Of rod r by rod s.
   const Influence& influence(std::size_t r, std::size_t s) const { return influence_[r * rods_.size() + s]; }
 
-  void influences() {
+  void influences(bool by_speed) {
     for (std::size_t s = 0; s < rods_.size(); ++s) {
-      vary_chord(s);
+      if (by_speed)
+        vary_chord(s, variation_with_speed_);
+      else
+        vary_chord(s, variation_);
       vary_load(s);
     }
   }
 
   void derivatives(ExactResidual& out) {
-    influences();
+    influences(out.by_speed.size() > 0);
     for (BentRod& rod : rods_) rod.differentiate();
     for (std::size_t s = 0; s < rods_.size(); ++s)
       for (std::size_t r = 0; r < rods_.size(); ++r) assemble(r, s, out);
@@ -135,40 +142,30 @@ class Block {
     return Lanes::of([&](Index lane) { return value(std::min(first_ + lane, angles_.size() - 1)); });
   }
 
-  template <class T>
-  void solve(const T& speed, exact::BentMechanism<T>& mechanism) const {
-    const Plane<Lanes> crank{at_angles([&](Index j) { return angles_.direction(j).real(); }),
-                             at_angles([&](Index j) { return angles_.direction(j).imag(); })};
-    const auto slider_forces = [&](Index dyad) {
-      return at_angles([&](Index j) { return angles_.slider_forces(dyad, j); });
+  Plane<Lanes> crank() const {
+    return {at_angles([&](Index j) { return angles_.direction(j).real(); }),
+            at_angles([&](Index j) { return angles_.direction(j).imag(); })};
+  }
+  Lanes slider_force(Index dyad) const {
+    return at_angles([&](Index j) { return angles_.slider_forces(dyad, j); });
+  }
+
+  template <bool by_speed>
+  void vary_chord(std::size_t s, exact::ChordVariation<by_speed>& variation) {
+    const auto slider_forces = [&](Index dyad) { return slider_force(dyad); };
+    variation.vary(model_.linkage, model_.rod_of, model_.constants, slider_forces, crank(), Lanes(speed_), mechanism_,
+                   s);
+    const auto slopes = [](const auto& dual) {
+      Influence::Slopes all;
+      std::copy(dual.slope.begin(), dual.slope.end(), all.begin());
+      return all;
     };
-    exact::move(model_.linkage, model_.rod_of, crank, speed, mechanism);
-    exact::load(model_.linkage, model_.rod_of, model_.constants, slider_forces, mechanism);
-    exact::balance(model_.linkage, model_.rod_of, mechanism);
-  }
-
-  static Dual varied(const Lanes& value, std::size_t direction) {
-    Dual dual(value);
-    dual.slope[direction] = 1;
-    return dual;
-  }
-
-  void vary_chord(std::size_t s) {
     for (std::size_t r = 0; r < rods_.size(); ++r) {
-      const exact::Chord<Lanes>& chord = rods_[r].chord();
-      varied_.rods[r].shape = rods_[r].shape();
-      if (r == s)
-        varied_.rods[r].chord = {varied(chord.c, chord_direction), varied(chord.c1, chord_direction + 1),
-                                 varied(chord.c2, chord_direction + 2)};
-      else
-        varied_.rods[r].chord = {chord.c, chord.c1, chord.c2};
-    }
-    solve(varied(speed_, speed_direction), varied_);
-    for (std::size_t r = 0; r < rods_.size(); ++r) {
-      const exact::RodState<Dual>& rod = varied_.rods[r];
-      const exact::BaseMotion<Dual>& b = rod.base;
-      influence_[r * rods_.size() + s].of_answer = {b.v_x.slope,  b.v_y.slope,  b.a_x.slope,          b.a_y.slope,
-                                                    b.phi1.slope, b.phi2.slope, rod.axial_force.slope};
+      const auto& rod = variation.rods()[r];
+      const auto& b = rod.base;
+      influence_[r * rods_.size() + s].of_answer = {slopes(b.v_x),          slopes(b.v_y),  slopes(b.a_x),
+                                                    slopes(b.a_y),          slopes(b.phi1), slopes(b.phi2),
+                                                    slopes(rod.axial_force)};
     }
   }
 
@@ -198,13 +195,13 @@ class Block {
     const std::array<MatrixXd*, 3> by = {&out.by_q, &out.by_q1, &out.by_q2};
     for (Index i = 0; i < I_r; ++i) {
       const RodDerivatives::Mode& effect = own.modes[static_cast<std::size_t>(i)];
-      Dual::Slopes on;  // of c, c', c'' and the speed on r_i
+      Influence::Slopes on;  // of c, c', c'' and the speed on r_i
       for (std::size_t d = 0; d < on.size(); ++d) {
         on[d] = effect.by_axial_force * through.of_answer[6][d];
         for (std::size_t k = 0; k < 6; ++k) on[d] += effect.by_base[k] * through.of_answer[k][d];
       }
       const Index row = model_.first[r] + i;
-      if (s == 0) put(on[speed_direction], out.by_speed, row);
+      if (s == 0 && out.by_speed.size() > 0) put(on[speed_direction], out.by_speed, row);
       for (Index j = 0; j < I_s; ++j) {
         const RodDerivatives::Mode& of = cause.modes[static_cast<std::size_t>(j)];
         const auto& [c, c1, c2] = of.chord;
@@ -226,7 +223,8 @@ class Block {
   Index first_ = 0;
   std::vector<BentRod> rods_;
   exact::BentMechanism<Lanes> mechanism_, unloaded_;
-  exact::BentMechanism<Dual> varied_;
+  exact::ChordVariation<false> variation_;
+  exact::ChordVariation<true> variation_with_speed_;
   std::vector<Influence> influence_;
 };
 
@@ -298,16 +296,36 @@ double ExactModel::driven_mass(std::size_t rod) const {
   double mass = 0;
   for (Index first = 0; first < num_angles; first += Lanes::width) {
     block.solve({zero, zero, zero}, first);
-    block.influences();
+    block.influences(false);
     for (const double driven : block.influence(rod, rod).of_answer[6][chord_direction + 2].values())
       mass = std::max(mass, std::abs(driven));
   }
   return mass;
 }
 
+namespace {
+
+// What has been sized of the result.
+ExactResidual evaluated(const ExactModel::Impl& model, double speed, const CrankAngles& angles,
+                        const RitzSamples& motion, ExactResidual result) {
+  check_shapes(model, angles, motion);
+  const bool derivatives = result.by_q.size() > 0;
+  Block block(model, angles, speed);
+  for (Index first = 0; first < angles.size(); first += Lanes::width) {
+    end_if_wished();
+    block.solve(motion, first);
+    if (const std::optional<ExactBreakdown> breakdown = block.breakdown()) return {.breakdown = breakdown};
+    block.surround();
+    if (result.r.size() > 0) block.residual(result.r);
+    if (derivatives) block.derivatives(result);
+  }
+  return result;
+}
+
+}  // namespace
+
 ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, const RitzSamples& motion,
                                    bool derivatives) const {
-  check_shapes(*impl_, angles, motion);
   const Index n = num_modes(), N = angles.size();
   ExactResidual result;
   result.r.resize(n, N);
@@ -315,16 +333,14 @@ ExactResidual ExactModel::residual(double speed, const CrankAngles& angles, cons
     result.by_speed.resize(n, N);
     for (MatrixXd* by : {&result.by_q, &result.by_q1, &result.by_q2}) by->resize(n * n, N);
   }
-  Block block(*impl_, angles, speed);
-  for (Index first = 0; first < N; first += Lanes::width) {
-    end_if_wished();
-    block.solve(motion, first);
-    if (const std::optional<ExactBreakdown> breakdown = block.breakdown()) return {.breakdown = breakdown};
-    block.surround();
-    block.residual(result.r);
-    if (derivatives) block.derivatives(result);
-  }
-  return result;
+  return evaluated(*impl_, speed, angles, motion, std::move(result));
+}
+
+ExactResidual ExactModel::linearised(double speed, const CrankAngles& angles, const RitzSamples& motion) const {
+  const Index n = num_modes(), N = angles.size();
+  ExactResidual result;
+  for (MatrixXd* by : {&result.by_q, &result.by_q1, &result.by_q2}) by->resize(n * n, N);
+  return evaluated(*impl_, speed, angles, motion, std::move(result));
 }
 
 ExactModel::Forces ExactModel::forces(double speed, const CrankAngles& angles, const RitzSamples& motion) const {

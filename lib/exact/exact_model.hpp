@@ -84,6 +84,8 @@ class ExactModel {
   // Speed in rad per unit time. Any periodic or other motion; it need not solve the equations.
   [[nodiscard]] ExactResidual residual(double speed, const CrankAngles& angles, const RitzSamples& motion,
                                        bool derivatives = false) const;
+  // The derivatives by q, q', q'' alone; r and by_speed are empty.
+  [[nodiscard]] ExactResidual linearised(double speed, const CrankAngles& angles, const RitzSamples& motion) const;
 
   // Forces at every angle that this motion needs, and the frames they are resolved in.
   struct Forces {

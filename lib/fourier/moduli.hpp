@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace hb::fourier {
 
@@ -12,7 +13,13 @@ namespace hb::fourier {
 template <class Numbers>
 double unit_of(const Numbers& numbers) {
   if (numbers.size() == 0) return 1;
-  const double part = std::max(numbers.real().cwiseAbs().maxCoeff(), numbers.imag().cwiseAbs().maxCoeff());
+  double part = 0;
+  if constexpr (std::is_same_v<Numbers, Eigen::MatrixXcd>) {
+    const auto* parts = reinterpret_cast<const double*>(numbers.data());
+    part = Eigen::Map<const Eigen::VectorXd>(parts, 2 * numbers.size()).cwiseAbs().maxCoeff();
+  } else {
+    part = std::max(numbers.real().cwiseAbs().maxCoeff(), numbers.imag().cwiseAbs().maxCoeff());
+  }
   constexpr int most = 1000;
   return part > 0 && std::isfinite(part) ? std::ldexp(1, std::min(most, -std::ilogb(part))) : 1;
 }

@@ -144,7 +144,7 @@ std::optional<GrowthChange> UncoupledSystems::growth(const NormalForm& change, c
   constexpr double most_mixed = 0.3;
   // Orders to come, each at most `geometric` of the one before, change the answer by less than this part of what is
   // allowed.
-  constexpr double settled = 0.05, geometric = 0.5;
+  constexpr double settled = 0.1, geometric = 0.5;
   if (!impl_->modes) return std::nullopt;
   const mode_lines::LoneModes& modes = *impl_->modes;
   const Index n = modes.num_modes(), M = modes.num_angles();

@@ -89,10 +89,14 @@ std::optional<FourierSeries> RoughSolver::solve(const FourierSeries& load, doubl
 
 double nearest_amplification(const HillSystem& system, double speed) {
   const Eigen::Index I = system.num_modes();
-  const FourierSeries C = stiffness_at(system, speed);
   double largest = 1;
   for (Eigen::Index i = 0; i < I; ++i) {
-    const double c = C.c(i + I * i, 0).real(), m = system.mass(i, i), b = system.damping(i, i);
+    double c = 0, power = 1;
+    for (const FourierSeries& C : system.stiffness) {
+      if (C.c.size() > 0) c += power * C.c(i + I * i, 0).real();
+      power *= speed;
+    }
+    const double m = system.mass(i, i), b = system.damping(i, i);
     const double nearest = std::round(std::sqrt(std::max(0.0, c / m)) / speed);
     for (const double n : {nearest - 1, nearest, nearest + 1}) {
       const double omega = n * speed, inertia = m * omega * omega, damping = std::abs(b * omega);
