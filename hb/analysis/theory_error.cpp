@@ -73,7 +73,7 @@ FourierSeries leading_components(const FourierSeries& q) {
   const MatrixXd squares = q.c.cwiseAbs2();
   const Eigen::VectorXd mean_square = 2 * squares.rowwise().sum() - squares.col(0),
                         most = 2 * squares.cwiseSqrt().rowwise().sum() - squares.col(0).cwiseSqrt();
-  const double least = mean_square.maxCoeff();
+  const double least = 0.9 * mean_square.maxCoeff();
   std::vector<Index> leading;
   for (Index i = 0; i < q.num_components(); ++i)
     if (!(most(i) * most(i) < least)) leading.push_back(i);

@@ -47,7 +47,8 @@ struct TheoryErrors {
   std::string reason;  // why there is no value: a rod folds, the bent linkage opens, no periodic solution
 };
 
-// The exact model of all elastic links with as many modes; points along the rods enough for 1e-3 of the error.
+// The exact model of all elastic links with as many modes; points along the rods enough for 1e-3 of errors above
+// 1e-5.
 [[nodiscard]] ExactModel theory_model(const Linkage& linkage, const std::vector<Eigen::Index>& num_modes,
                                       Eigen::Index points_beside_modes = 8);
 

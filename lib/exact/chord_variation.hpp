@@ -1,7 +1,6 @@
 // What the mechanism answers when the chord of one bent link is varied, and the speed. Used inside the library.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "lib/exact/bent_mechanism.hpp"

@@ -305,7 +305,7 @@ double ExactModel::driven_mass(std::size_t rod) const {
 
 namespace {
 
-// What has been sized of the result.
+// Of `result` what has a size.
 ExactResidual evaluated(const ExactModel::Impl& model, double speed, const CrankAngles& angles,
                         const RitzSamples& motion, ExactResidual result) {
   check_shapes(model, angles, motion);

@@ -103,17 +103,37 @@ TEST(PeriodicExponents, RefuseWhatIsNoSystem) {
   EXPECT_THROW((void)analyse_stability(system), std::invalid_argument);
 }
 
+// Some masses need rows exchanged, some do not, in every order of neighbouring angles.
 TEST(NormalForm, NeedsNoLargeEntryOnTheMassesDiagonal) {
-  constexpr Index n = 3, N = 4;
-  PeriodicSystem system{2, MatrixXd(n * n, N), MatrixXd::Random(n * n, N), MatrixXd::Random(n * n, N)};
+  constexpr Index n = 3;
   MatrixXd mass(n, n);
   mass << 0, 2, 1, 1, 0, 3, -2, 1, 0;
-  for (Index j = 0; j < N; ++j) system.mass.col(j) = (mass + 0.1 * double(j) * MatrixXd::Identity(n, n)).reshaped();
-  const NormalForm form = normal_form(system);
-  for (Index j = 0; j < N; ++j) {
-    const auto at = [j](const MatrixXd& samples) -> MatrixXd { return samples.col(j).reshaped(n, n); };
-    EXPECT_LT((4 * at(system.mass) * at(form.alpha) - at(system.stiffness)).cwiseAbs().maxCoeff(), 1e-14);
-    EXPECT_LT((2 * at(system.mass) * at(form.beta) - at(system.damping)).cwiseAbs().maxCoeff(), 1e-14);
+  for (const Index N : {1, 4, 8, 37, 64}) {
+    PeriodicSystem system{2, MatrixXd(n * n, N), MatrixXd::Random(n * n, N), MatrixXd::Random(n * n, N)};
+    for (Index j = 0; j < N; ++j) {
+      const double diagonal = j % 11 < 6 && j % 4 != 2 ? 5 : 0.1 * double(j % 4);
+      system.mass.col(j) = (mass + diagonal * MatrixXd::Identity(n, n)).reshaped();
+    }
+    const NormalForm form = normal_form(system);
+    for (Index j = 0; j < N; ++j) {
+      const auto at = [j](const MatrixXd& samples) -> MatrixXd { return samples.col(j).reshaped(n, n); };
+      EXPECT_LT((4 * at(system.mass) * at(form.alpha) - at(system.stiffness)).cwiseAbs().maxCoeff(), 1e-14);
+      EXPECT_LT((2 * at(system.mass) * at(form.beta) - at(system.damping)).cwiseAbs().maxCoeff(), 1e-14);
+    }
+  }
+}
+
+TEST(NormalForm, RefusesAMassThatIsSingularAtOneAngle) {
+  constexpr Index n = 3, N = 19;
+  for (const Index singular : {0, 5, 18}) {
+    PeriodicSystem system{2, MatrixXd(n * n, N), MatrixXd::Random(n * n, N), MatrixXd::Random(n * n, N)};
+    for (Index j = 0; j < N; ++j) system.mass.col(j) = MatrixXd::Identity(n, n).reshaped();
+    EXPECT_NO_THROW((void)normal_form(system));
+    system.mass.col(singular).setZero();
+    EXPECT_THROW((void)normal_form(system), std::invalid_argument);
+    system.mass.col(singular) = MatrixXd::Identity(n, n).reshaped();
+    system.mass(4, singular) = NAN;
+    EXPECT_THROW((void)normal_form(system), std::invalid_argument);
   }
 }
 

@@ -50,53 +50,65 @@ TEST(ScaledSystem, ErrorsOfGivenCoefficientsAreInThoseOfExponents) {
   }
 }
 
+struct Mode {
+  double modulation, stiffness = 3.3, damping = 0.31, mass = 2.7, load = 1;
+};
+
 // `count` times the same mode, none coupled to another.
-HillSystem equal_modes(Eigen::Index count, double modulation) {
+HillSystem equal_modes(Eigen::Index count, const Mode& mode) {
+  const auto [modulation, stiffness, damping, mass, load] = mode;
   HillSystem s;
-  s.mass = 2.7 * Eigen::MatrixXd::Identity(count, count);
-  s.damping = 0.31 * Eigen::MatrixXd::Identity(count, count);
+  s.mass = mass * Eigen::MatrixXd::Identity(count, count);
+  s.damping = damping * Eigen::MatrixXd::Identity(count, count);
   s.stiffness[0] = FourierSeries(count * count, 4);
   s.stiffness[1] = FourierSeries(count * count, 1);
   s.load[1] = FourierSeries(count, 2);
   for (Eigen::Index i = 0; i < count; ++i) {
     const Eigen::Index own = i * (count + 1);
-    s.stiffness[0].c(own, 0) = 3.3;
+    s.stiffness[0].c(own, 0) = stiffness;
     s.stiffness[0].c(own, 2) = {0.1 * modulation, 0.7 * modulation};
-    s.stiffness[0].c(own, 4) = 1e-18;  // below rounding
+    s.stiffness[0].c(own, 4) = 1e-18 * std::abs(stiffness);  // below rounding
     s.stiffness[1].c(own, 1) = {0.3 * modulation, 0};
-    s.load[1].c.row(i) << 0.2, std::complex<double>(3, 1), std::complex<double>(0, 1e-3);
+    s.load[1].c.row(i) << 0.2 * load, load * std::complex<double>(3, 1), std::complex<double>(0, 1e-3 * load);
   }
   return s;
 }
 
 // One mode alone is scaled by formulas of its own.
 TEST(ScaledSystem, OneModeIsScaledAsBesideAnother) {
-  const double speed = 1.3;
   const GivenErrors given{Eigen::MatrixXd::Constant(1, 1, 1e-9), Eigen::MatrixXd::Constant(1, 1, 1e-8)};
   const GivenErrors given_both{1e-9 * Eigen::Matrix2d::Identity(), 1e-8 * Eigen::Matrix2d::Identity()};
-  const ScaledSystem one = scale_system(equal_modes(1, 1), speed, given);
-  const ScaledSystem two = scale_system(equal_modes(2, 1), speed, given_both);
-  EXPECT_EQ(one.speed, two.speed);
-  EXPECT_DOUBLE_EQ(one.T(0, 0), two.T(0, 0));
-  EXPECT_DOUBLE_EQ(one.T_inverse(0, 0), two.T_inverse(0, 0));
-  EXPECT_DOUBLE_EQ(one.G(0, 0), two.G(0, 0));
-  EXPECT_DOUBLE_EQ(one.K_rounding(0, 0), two.K_rounding(0, 0));
-  EXPECT_DOUBLE_EQ(one.f_rounding(0), two.f_rounding(0));
-  EXPECT_DOUBLE_EQ(one.G_error(0, 0), two.G_error(0, 0));
-  EXPECT_DOUBLE_EQ(one.load_scale, two.load_scale);
-  EXPECT_EQ(one.diagonal_damping, two.diagonal_damping);
-  EXPECT_EQ(one.conservative(0), two.conservative(0));
-  ASSERT_EQ(one.K.c.cols(), 3);
-  ASSERT_EQ(two.K.c.cols(), 3);
-  EXPECT_LT((one.K.c.row(0) - two.K.c.row(0)).norm(), 1e-15 * one.K.c.norm());
-  ASSERT_EQ(one.f.c.cols(), two.f.c.cols());
-  EXPECT_LT((one.f.c.row(0) - two.f.c.row(0)).norm(), 1e-15 * one.f.c.norm());
+  for (const Mode& mode : {Mode{1}, Mode{0}, Mode{1, -3.3}, Mode{0.3, 0, -0.2}, Mode{1, 3.3, 0.31, 1},
+                           Mode{1e200, 3.3e200, 0.31e200, 2.7e200}, Mode{1e-200, 3.3e-200, 0.31e-200, 2.7e-200},
+                           Mode{1, 3.3, 0.31, 2.7, 1e200}, Mode{1, 3.3, 0.31, 2.7, 1e-200}})
+    for (const double speed : {1.3, 2.0}) {
+      SCOPED_TRACE(testing::Message() << mode.modulation << " " << mode.stiffness << " " << mode.load << " " << speed);
+      const ScaledSystem one = scale_system(equal_modes(1, mode), speed, given);
+      const ScaledSystem two = scale_system(equal_modes(2, mode), speed, given_both);
+      EXPECT_EQ(one.speed, two.speed);
+      EXPECT_DOUBLE_EQ(one.T(0, 0), two.T(0, 0));
+      EXPECT_DOUBLE_EQ(one.T_inverse(0, 0), two.T_inverse(0, 0));
+      EXPECT_DOUBLE_EQ(one.G(0, 0), two.G(0, 0));
+      EXPECT_DOUBLE_EQ(one.K_rounding(0, 0), two.K_rounding(0, 0));
+      EXPECT_DOUBLE_EQ(one.f_rounding(0), two.f_rounding(0));
+      EXPECT_DOUBLE_EQ(one.G_error(0, 0), two.G_error(0, 0));
+      EXPECT_DOUBLE_EQ(one.load_scale, two.load_scale);
+      EXPECT_EQ(one.diagonal_damping, two.diagonal_damping);
+      EXPECT_EQ(one.conservative(0), two.conservative(0));
+      ASSERT_EQ(one.K.c.cols(), two.K.c.cols());
+      EXPECT_LE((one.K.c.row(0) - two.K.c.row(0)).norm(), 1e-15 * one.K.c.norm());
+      ASSERT_EQ(one.f.c.cols(), two.f.c.cols());
+      EXPECT_LE((one.f.c.row(0) - two.f.c.row(0)).norm(), 1e-15 * one.f.c.norm());
+    }
 }
 
 TEST(ScaledSystem, OneModeHasItsMeanExponentsBesideAnother) {
-  for (const double modulation : {0.0, 0.01, 0.1, 10.0}) {
-    const auto one = mean_exponents(scale_system(equal_modes(1, modulation), 1.3));
-    const auto two = mean_exponents(scale_system(equal_modes(2, modulation), 1.3));
+  // Critical damping last.
+  for (const Mode& mode :
+       {Mode{0}, Mode{0.01}, Mode{0.1}, Mode{10}, Mode{0.1, -3.3}, Mode{0.1, 0.04, 3}, Mode{0.01, 1, 2, 1}}) {
+    SCOPED_TRACE(testing::Message() << mode.modulation << " " << mode.stiffness);
+    const auto one = mean_exponents(scale_system(equal_modes(1, mode), 1.3));
+    const auto two = mean_exponents(scale_system(equal_modes(2, mode), 1.3));
     ASSERT_EQ(one.size(), 2u);
     ASSERT_EQ(two.size(), 4u);
     for (std::size_t i = 0; i < one.size(); ++i) {

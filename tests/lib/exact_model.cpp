@@ -194,6 +194,26 @@ TEST(ExactModel, DerivativesAreThoseOfTheResidual) {
   }
 }
 
+// Without what is not asked for the same numbers.
+TEST(ExactModel, LinearisedHasTheDerivativesOfTheResidual) {
+  Random random(5);
+  const std::vector<RandomLinkage> all = linkages(30, 12);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    SCOPED_TRACE(label(all[k], k));
+    const double speed = all[k].speed;
+    const Bent rods = bent(all[k].linkage, random);
+    const CrankAngles angles(all[k].linkage, 15);
+    const RitzSamples motion = ritz_samples(rods.q(), speed, 15, 1);
+    const ExactResidual whole = rods.model.residual(speed, angles, motion, true),
+                        alone = rods.model.linearised(speed, angles, motion);
+    ASSERT_FALSE(whole.breakdown || alone.breakdown);
+    EXPECT_EQ(alone.r.size(), 0);
+    EXPECT_EQ(alone.by_speed.size(), 0);
+    for (MatrixXd ExactResidual::*by : {&ExactResidual::by_q, &ExactResidual::by_q1, &ExactResidual::by_q2})
+      EXPECT_LE((alone.*by - whole.*by).norm(), 1e-14 * (whole.*by).norm());
+  }
+}
+
 // The residual is a polynomial of degree two in the speed.
 TEST(ExactModel, DerivativeBySpeedIsThatOfTheResidual) {
   Random random(3);

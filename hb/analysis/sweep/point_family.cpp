@@ -67,8 +67,8 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
     doubt = max(doubt, abs(change));
     sum.store(solution.data() + first);
   }
-  if (std::ranges::max(doubt.values()) <= foretold * std::ranges::max(largest.values()))
-    start.solution = std::move(solution);
+  const bool near = std::ranges::max(doubt.values()) <= foretold * std::ranges::max(largest.values());
+  if (near && solution.allFinite()) start.solution = std::move(solution);
   return start;
 }
 

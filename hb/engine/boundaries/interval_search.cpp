@@ -229,7 +229,7 @@ class Search {
 
   // NaN: settled; otherwise where to look.
   double doubtful(Place& p, Place& q) {
-    const bool whole = p.x() == first_ && q.x() == last_;  // looked at before
+    const bool whole = p.x() == first_ && q.x() == last_;  // the search began because that does not settle it
     if (!whole && (p.unstable ? excludes_gaps(at_, p.sample, q.sample) : bounded(p.sample, q.sample))) return nan;
     for (const Apart what : {Apart::pair, Apart::alone})
       if (const std::vector<const Place*> places = apart_beside(places_, p, q, what); !places.empty())

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
+#include <type_traits>
 #include <vector>
 
 #include "lib/lanes.hpp"
@@ -18,96 +18,95 @@ namespace {
 
 Index root(Index squared) { return Index(std::lround(std::sqrt(double(squared)))); }
 
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+// M^-1 C/omega^2 and M^-1 B/omega at one angle (double), or at neighbouring ones side by side (Lanes), by Gauss'
+// elimination with row pivots.
+template <class Number>
+class Division {
+  static constexpr bool side_by_side = std::is_same_v<Number, Lanes>;
 
-// a <- a - factor b
-void subtract(Index count, double factor, const double* __restrict b, double* __restrict a) {
-  for (Index j = 0; j < count; ++j) a[j] -= factor * b[j];
-}
-
-// X becomes M^-1 X; M is used up. Gauss' elimination with row pivots.
-void divide(Rows& M, Rows& X) {
-  const Index n = M.rows(), width = X.cols();
-  for (Index k = 0; k < n; ++k) {
-    Index pivot = k;
-    for (Index i = k + 1; i < n; ++i)
-      if (std::abs(M(i, k)) > std::abs(M(pivot, k))) pivot = i;
-    if (pivot != k) {
-      M.row(k).swap(M.row(pivot));
-      X.row(k).swap(X.row(pivot));
-    }
-    M(k, k) = 1 / M(k, k);
-    for (Index i = k + 1; i < n; ++i) {
-      const double factor = M(i, k) * M(k, k);
-      for (Index j = k + 1; j < n; ++j) M(i, j) -= factor * M(k, j);
-      subtract(width, factor, &X(k, 0), &X(i, 0));
-    }
-  }
-  for (Index k = n - 1; k >= 0; --k) {
-    for (Index j = 0; j < width; ++j) X(k, j) *= M(k, k);
-    for (Index i = 0; i < k; ++i) subtract(width, M(i, k), &X(k, 0), &X(i, 0));
-  }
-}
-
-// The same for the systems of neighbouring angles, one in each lane.
-class SideBySide {
  public:
-  explicit SideBySide(Index num_modes) : n_(num_modes), mass_(std::size_t(n_ * n_)), both_(std::size_t(2 * n_ * n_)) {}
+  explicit Division(Index num_modes) : n_(num_modes), mass_(std::size_t(n_ * n_)), both_(std::size_t(2 * n_ * n_)) {}
 
-  // Columns j, j + 1, .. of the form; false where a system of theirs needs exchange of rows.
+  // Columns of the form from j on; false where angles side by side need exchange of rows.
   bool divide(const PeriodicSystem& system, Index j, NormalForm& form) {
     const double per_stiffness = 1 / (system.speed * system.speed), per_damping = 1 / system.speed;
     for (Index k = 0; k < n_; ++k)
       for (Index i = 0; i < n_; ++i) {
-        const auto at = [&](const MatrixXd& samples) {
-          return Lanes::of([&](Index lane) { return samples(i + n_ * k, j + lane); });
-        };
-        M(i, k) = at(system.mass);
-        X(i, k) = per_stiffness * at(system.stiffness);
-        X(i, n_ + k) = per_damping * at(system.damping);
+        const Index q = i + n_ * k;
+        M(i, k) = load(system.mass, q, j);
+        X(i, k) = per_stiffness * load(system.stiffness, q, j);
+        X(i, n_ + k) = per_damping * load(system.damping, q, j);
       }
     if (!eliminate()) return false;
     for (Index k = 0; k < n_; ++k)
       for (Index i = 0; i < n_; ++i) {
-        const Lanes::Values alpha = X(i, k).values(), beta = X(i, n_ + k).values();
-        for (Index lane = 0; lane < Lanes::width; ++lane) {
-          form.alpha(i + n_ * k, j + lane) = alpha[std::size_t(lane)];
-          form.beta(i + n_ * k, j + lane) = beta[std::size_t(lane)];
-        }
+        const Index q = i + n_ * k;
+        store(X(i, k), form.alpha, q, j);
+        store(X(i, n_ + k), form.beta, q, j);
       }
     return true;
   }
 
  private:
-  Lanes& M(Index i, Index k) { return mass_[std::size_t(n_ * i + k)]; }
-  Lanes& X(Index i, Index k) { return both_[std::size_t(2 * n_ * i + k)]; }
+  Number& M(Index i, Index k) { return mass_[std::size_t(n_ * i + k)]; }
+  Number& X(Index i, Index k) { return both_[std::size_t(2 * n_ * i + k)]; }
 
-  // X becomes M^-1 X; false where a pivot is not the largest of its column.
-  bool eliminate() {
-    const Index width = 2 * n_;
-    for (Index k = 0; k < n_; ++k) {
+  static Number load(const MatrixXd& samples, Index q, Index j) {
+    if constexpr (side_by_side)
+      return Lanes::of([&](Index lane) { return samples(q, j + lane); });
+    else
+      return samples(q, j);
+  }
+  static void store(const Number& value, MatrixXd& samples, Index q, Index j) {
+    if constexpr (side_by_side) {
+      const Lanes::Values values = value.values();
+      for (Index lane = 0; lane < Lanes::width; ++lane) samples(q, j + lane) = values[std::size_t(lane)];
+    } else {
+      samples(q, j) = value;
+    }
+  }
+
+  // The largest number of column k from row k on to row k.
+  bool pivot(Index k) {
+    if constexpr (side_by_side) {
       Lanes below = 0;
       for (Index i = k + 1; i < n_; ++i) below = max(abs(M(i, k)), below);
       const Lanes::Values largest = below.values(), own = abs(M(k, k)).values();
       for (std::size_t lane = 0; lane < own.size(); ++lane)
         if (!(own[lane] >= largest[lane])) return false;
-      M(k, k) = 1 / M(k, k);
+    } else {
+      Index from = k;
+      for (Index i = k + 1; i < n_; ++i)
+        if (std::abs(M(i, k)) > std::abs(M(from, k))) from = i;
+      if (from != k) {
+        std::swap_ranges(&M(k, 0), &M(k, 0) + n_, &M(from, 0));
+        std::swap_ranges(&X(k, 0), &X(k, 0) + 2 * n_, &X(from, 0));
+      }
+    }
+    return true;
+  }
+
+  // X becomes M^-1 X; M is used up.
+  bool eliminate() {
+    for (Index k = 0; k < n_; ++k) {
+      if (!pivot(k)) return false;
+      M(k, k) = 1.0 / M(k, k);
       for (Index i = k + 1; i < n_; ++i) {
-        const Lanes factor = M(i, k) * M(k, k);
+        const Number factor = M(i, k) * M(k, k);
         for (Index j = k + 1; j < n_; ++j) M(i, j) -= factor * M(k, j);
-        for (Index j = 0; j < width; ++j) X(i, j) -= factor * X(k, j);
+        for (Index j = 0; j < 2 * n_; ++j) X(i, j) -= factor * X(k, j);
       }
     }
     for (Index k = n_ - 1; k >= 0; --k) {
-      for (Index j = 0; j < width; ++j) X(k, j) *= M(k, k);
+      for (Index j = 0; j < 2 * n_; ++j) X(k, j) *= M(k, k);
       for (Index i = 0; i < k; ++i)
-        for (Index j = 0; j < width; ++j) X(i, j) -= M(i, k) * X(k, j);
+        for (Index j = 0; j < 2 * n_; ++j) X(i, j) -= M(i, k) * X(k, j);
     }
     return true;
   }
 
   Index n_;
-  std::vector<Lanes> mass_, both_;  // M; C/omega^2, B/omega
+  std::vector<Number> mass_, both_;  // M; C/omega^2, B/omega
 };
 
 }  // namespace
@@ -130,31 +129,18 @@ NormalForm normal_form(const PeriodicSystem& system) {
   if (!(system.speed > 0 && std::isfinite(system.speed)))
     throw std::invalid_argument("PeriodicSystem: speed must be positive and finite");
   NormalForm form{MatrixXd(n * n, N), MatrixXd(n * n, N)};
-  Rows mass(n, n), both(n, 2 * n);  // M; C/omega^2, B/omega
-  const double per_stiffness = 1 / (system.speed * system.speed), per_damping = 1 / system.speed;
-  SideBySide lanes(n);
+  Division<Lanes> several(n);
+  Division<double> one(n);
   Index exchanging = 0;  // angles up to here are done one by one
-  for (Index j = 0; j < N; ++j) {
+  for (Index j = 0; j < N;) {
     if (j >= exchanging && j + Lanes::width <= N) {
-      if (lanes.divide(system, j, form)) {
-        j += Lanes::width - 1;
+      if (several.divide(system, j, form)) {
+        j += Lanes::width;
         continue;
       }
       exchanging = j + Lanes::width;
     }
-    for (Index k = 0; k < n; ++k)
-      for (Index i = 0; i < n; ++i) {
-        const Index q = i + n * k;
-        mass(i, k) = system.mass(q, j);
-        both(i, k) = per_stiffness * system.stiffness(q, j);
-        both(i, n + k) = per_damping * system.damping(q, j);
-      }
-    divide(mass, both);
-    for (Index k = 0; k < n; ++k)
-      for (Index i = 0; i < n; ++i) {
-        form.alpha(i + n * k, j) = both(i, k);
-        form.beta(i + n * k, j) = both(i, n + k);
-      }
+    one.divide(system, j++, form);
   }
   if (!form.alpha.allFinite() || !form.beta.allFinite())
     throw std::invalid_argument("PeriodicSystem: the mass is singular, or an entry is not finite");

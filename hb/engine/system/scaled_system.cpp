@@ -77,6 +77,7 @@ FourierSeries cut(FourierSeries series, Eigen::Index num_harmonics) {
 // Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean; of a
 // mode whose own stiffness is small beside its couplings these count. Other modes' stiffnesses do not: they may be 1e20
 // times as large.
+constexpr double rounding_of_stiffness = 1e-17, least_of_couplings = 1e-8;
 FourierSeries without_rounding(FourierSeries K, Eigen::Index I) {
   Eigen::ArrayXXd square(I * I, K.c.cols());  // of every coefficient
   Eigen::ArrayXd most = Eigen::ArrayXd::Zero(I * I);
@@ -86,8 +87,9 @@ FourierSeries without_rounding(FourierSeries K, Eigen::Index I) {
   }
   const Eigen::MatrixXd largest = most.sqrt().reshaped(I, I);
   const Eigen::VectorXd couplings = largest.rowwise().maxCoeff().cwiseMax(largest.colwise().maxCoeff().transpose());
-  const Eigen::VectorXd scale = mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * 1e-8).cwiseSqrt();
-  const Eigen::ArrayXd rounding = (1e-17 * scale * scale.transpose()).reshaped();
+  const Eigen::VectorXd scale =
+      mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * least_of_couplings).cwiseSqrt();
+  const Eigen::ArrayXd rounding = (rounding_of_stiffness * scale * scale.transpose()).reshaped();
   Eigen::Index H = K.num_harmonics();
   while (H > 0 && (square.col(H).sqrt() <= rounding).all()) --H;
   return cut(std::move(K), H);
@@ -272,7 +274,8 @@ ScaledSystem one_mode(const HillSystem& system, double speed) {
   Eigen::Index H = scaled.K.num_harmonics();
   double largest = 0;
   for (Eigen::Index k = 0; k <= H; ++k) largest = std::max(largest, size(k));
-  const double rounding = 1e-17 * std::max(std::abs(scaled.K.c(0, 0).real()), 1e-8 * largest);
+  const double mean = std::abs(scaled.K.c(0, 0).real()),
+               rounding = rounding_of_stiffness * std::max(mean, least_of_couplings * largest);
   while (H > 0 && size(H) <= rounding) --H;
   scaled.K = cut(std::move(scaled.K), H);
   return scaled;
