@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lib/dense.hpp"
+#include "lib/parts.hpp"
 
 namespace hb {
 
@@ -18,7 +19,7 @@ FourierSeries at_speed(const std::array<FourierSeries, 3>& powers, Eigen::Index 
   double factor = 1;
   for (std::size_t p = 1; p < powers.size(); ++p) {
     factor *= speed;
-    if (powers[p].c.size() > 0) sum.c.leftCols(powers[p].c.cols()) += factor * powers[p].c;
+    if (powers[p].c.size() > 0) parts(sum.c).leftCols(powers[p].c.cols()) += factor * parts(powers[p].c);
   }
   return sum;
 }

@@ -7,6 +7,7 @@
 
 #include "lib/constants.hpp"
 #include "lib/fourier/waves.hpp"
+#include "lib/parts.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/rod/rod_functional.hpp"
 #include "lib/rod/rod_shapes.hpp"
@@ -50,8 +51,7 @@ struct Surface {
       const Complex e = 2.0 * next.next();
       waves.row(j) << e.real(), e.imag(), k * e.real(), k * e.imag(), k * k * e.real(), k * k * e.imag();
     }
-    const Eigen::Map<const Eigen::MatrixXd> parts(reinterpret_cast<const double*>(T.c.data()), 2 * n, H + 1);
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> sums = parts * waves;
+    const Eigen::Matrix<double, Eigen::Dynamic, 6> sums = parts(T.c).matrix() * waves;
     const Eigen::Map<const Eigen::Matrix<Complex, Eigen::Dynamic, 6>> z(reinterpret_cast<const Complex*>(sums.data()),
                                                                         n, 6);
     Eigen::Matrix<double, Eigen::Dynamic, 3> time(n, 3);  // T, T', T''

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <complex>
 #include <deque>
+#include <utility>
 
 #include "lib/fourier/transpose.hpp"
+#include "lib/parts.hpp"
 #include "lib/rod/shear.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -40,12 +42,12 @@ Eigen::Map<const Eigen::MatrixXcd> products_with(const FourierSeries& f, const F
 void drop_rounding(FourierSeries& T) {
   constexpr double rounding = 1e-16;
   const Eigen::Index n = T.num_components();
-  const Eigen::ArrayXXd parts =  // real and imaginary ones in turn
-      Eigen::Map<const Eigen::ArrayXXd>(reinterpret_cast<const double*>(T.c.data()), 2 * n, T.c.cols()).abs();
-  Eigen::ArrayXd floor = parts.rowwise().maxCoeff();
+  const Eigen::Map<const Eigen::ArrayXXd> numbers = parts(std::as_const(T.c));
+  Eigen::ArrayXd floor = Eigen::ArrayXd::Zero(2 * n);
+  for (Eigen::Index k = 0; k < numbers.cols(); ++k) floor = floor.max(numbers.col(k).abs());
   for (Eigen::Index i = 0; i < n; ++i) floor.segment<2>(2 * i) = rounding * floor.segment<2>(2 * i).maxCoeff();
   Eigen::Index H = T.num_harmonics();
-  while (H > 0 && (parts.col(H) <= floor).all()) --H;
+  while (H > 0 && (numbers.col(H).abs() <= floor).all()) --H;
   T.c.conservativeResize(Eigen::NoChange, H + 1);
 }
 
@@ -62,7 +64,7 @@ FourierSeries coefficients_at(const RodCoefficients& rod, double speed) {
   FourierSeries sum(5, H);
   double factor = 1;
   for (const FourierSeries& f : rod.f) {
-    if (f.c.size() > 0) sum.c.leftCols(f.c.cols()) += factor * f.c;
+    if (f.c.size() > 0) parts(sum.c).leftCols(f.c.cols()) += factor * parts(f.c);
     factor *= speed;
   }
   return sum;

@@ -1,7 +1,9 @@
 #include "hb/analysis/sweep/point_family.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "lib/lanes.hpp"
 
@@ -55,18 +57,27 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
   }
   Eigen::VectorXd solution(size);
   Lanes largest, doubt;
-  for (Eigen::Index i = 0; i < size; i += Lanes::width) {
-    const Eigen::Index first = std::min(i, size - Lanes::width);
-    Lanes sum, change;
+  // Sums of as many registers as there are k, from `first` on.
+  const auto sums = [&]<std::size_t... k>(std::index_sequence<k...>, Eigen::Index first) {
+    std::array<Lanes, sizeof...(k)> sum, change;
+    const auto add = [](const Lanes& w, const Lanes& d, const Lanes& x, Lanes& its_sum, Lanes& its_change) {
+      its_sum += w * x;
+      its_change += d * x;
+    };
     for (std::size_t j = 0; j < nodes.size(); ++j) {
-      const Lanes x = Lanes::load(nodes[j]->solution.data() + first);
-      sum += weights.w[j] * x;
-      change += weights.d[j] * x;
+      const double* numbers = nodes[j]->solution.data() + first;
+      (add(weights.w[j], weights.d[j], Lanes::load(numbers + Lanes::width * Eigen::Index(k)), sum[k], change[k]), ...);
     }
-    largest = max(largest, abs(sum));
-    doubt = max(doubt, abs(change));
-    sum.store(solution.data() + first);
-  }
+    ((largest = max(largest, abs(sum[k])), doubt = max(doubt, abs(change[k])),
+      sum[k].store(solution.data() + first + Lanes::width * Eigen::Index(k))),
+     ...);
+  };
+  constexpr Eigen::Index together = 4 * Lanes::width;
+  Eigen::Index first = 0;
+  for (; first + together <= size; first += together) sums(std::make_index_sequence<4>(), first);
+  // The last ones over what stands before them where fewer numbers are left.
+  for (; first < size; first += Lanes::width)
+    sums(std::make_index_sequence<1>(), std::min(first, size - Lanes::width));
   const bool near = std::ranges::max(doubt.values()) <= foretold * std::ranges::max(largest.values());
   if (near && solution.allFinite()) start.solution = std::move(solution);
   return start;

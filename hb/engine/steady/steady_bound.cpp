@@ -69,18 +69,16 @@ Passages::Passages(const Operator& A, Index R) : out(Eigen::VectorXd::Zero(A.num
   const WeightedSystem& s = A.system();
   const Index H = A.num_harmonics(), I = s.I, last = std::max(2 * H + 1, R);
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(I, last + 2);
-  for (Index m = last; m > 0; --m) {
-    c.col(m) = c.col(m + 1);
-    if (m > s.P) continue;
-    const Eigen::VectorXd size = moduli(s.K.col(m));
-    c.col(m) = c.col(m).cwiseMax(Eigen::Map<const Eigen::MatrixXd>(size.data(), I, I).rowwise().sum());
+  Eigen::MatrixXd size(I, I);
+  for (Index m = std::min(last, s.P); m > 0; --m) {
+    size.reshaped() = moduli(s.K.col(m));
+    c.col(m) = c.col(m + 1).cwiseMax(size.rowwise().sum());
   }
   for (Index i = 0; i < I; ++i) {
-    const double damping = s.G_off.row(i).cwiseAbs().sum();
     for (Index k = H + 1; k <= R; ++k) {
       const double size = modulus(s.D(i, k));
       out(i) += (c(i, k - H) + c(i, k)) / size;
-      among(i) = std::max(among(i), (s.coupling(i) + static_cast<double>(k) * damping) / size);
+      among(i) = std::max(among(i), (s.coupling(i) + static_cast<double>(k) * s.across(i)) / size);
     }
     for (Index k = 0; k <= H; ++k) back(i) += (c(i, H + 1 - k) + c(i, H + 1 + k)) / A.magnitude()(k, i);
   }

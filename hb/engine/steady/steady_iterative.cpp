@@ -14,8 +14,8 @@ using Index = Eigen::Index;
 
 constexpr int most_iterations = 60;
 
-Eigen::Map<Eigen::ArrayXd> parts(Spectrum& x) { return {reinterpret_cast<double*>(x.data()), 2 * x.size()}; }
-Eigen::Map<const Eigen::ArrayXd> parts(const Spectrum& x) {
+Eigen::Map<Eigen::ArrayXd> numbers(Spectrum& x) { return {reinterpret_cast<double*>(x.data()), 2 * x.size()}; }
+Eigen::Map<const Eigen::ArrayXd> numbers(const Spectrum& x) {
   return {reinterpret_cast<const double*>(x.data()), 2 * x.size()};
 }
 
@@ -78,7 +78,7 @@ bool IterativeInverse::reduce(const Spectrum& r, double aim, Spectrum& z) {
   Eigen::Map<Eigen::MatrixXd> both = directions.matrix(n, 2 * most_iterations + 1);
   auto V = both.leftCols(most_iterations + 1);
   auto X = both.rightCols(most_iterations);
-  V.col(0) = parts(r) * weight_;
+  V.col(0) = numbers(r) * weight_;
   const double size = V.col(0).norm();
   if (!(size > 0) || !std::isfinite(size)) return size == 0;
   V.col(0) /= size;
@@ -87,12 +87,12 @@ bool IterativeInverse::reduce(const Spectrum& r, double aim, Spectrum& z) {
   direction_.resize(H + 1, A_.num_modes());
   while (!reached && squares.columns() < most_iterations) {
     const int j = squares.columns();
-    parts(direction_) = V.col(j).array() * inverse_weight_;
+    numbers(direction_) = V.col(j).array() * inverse_weight_;
     factors_.solve_in_place(direction_);
-    X.col(j) = parts(direction_);
+    X.col(j) = numbers(direction_);
     A_.couple(direction_, H, product_);
     product_ += A_.D().cwiseProduct(direction_);
-    V.col(j + 1) = parts(product_) * weight_;
+    V.col(j + 1) = numbers(product_) * weight_;
     auto column = squares.next();
     for (int i = 0; i <= j; ++i) {
       column(i) = V.col(i).dot(V.col(j + 1));
@@ -105,7 +105,7 @@ bool IterativeInverse::reduce(const Spectrum& r, double aim, Spectrum& z) {
     if (!(rest > 0)) break;
     V.col(j + 1) /= rest;
   }
-  Eigen::Map<Eigen::VectorXd>(parts(z).data(), n).noalias() += X.leftCols(squares.columns()) * squares.solution();
+  Eigen::Map<Eigen::VectorXd>(numbers(z).data(), n).noalias() += X.leftCols(squares.columns()) * squares.solution();
   return reached;
 }
 
@@ -116,7 +116,7 @@ bool IterativeInverse::solve(const Spectrum& rhs, double relative, Spectrum& z) 
   constexpr double rounding = 8 * eps;
   Spectrum r = rhs.topRows(H + 1);
   z.setZero(H + 1, A_.num_modes());
-  const auto size = [&] { return (parts(r) * weight_).matrix().norm(); };
+  const auto size = [&] { return (numbers(r) * weight_).matrix().norm(); };
   const double load = size();
   if (!(load > 0)) return load == 0;
   double last = HUGE_VAL;

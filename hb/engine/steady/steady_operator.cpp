@@ -4,6 +4,7 @@
 
 #include "lib/constants.hpp"
 #include "lib/modulus.hpp"
+#include "lib/parts.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb::steady {
@@ -28,9 +29,8 @@ WeightedSystem weighted(const ScaledSystem& system) {
   s.weight.resize(I);
   for (Eigen::Index i = 0; i < I; ++i) s.weight(i) = power_of_two_near(system.T.col(i).cwiseAbs().maxCoeff());
   const Eigen::MatrixXd ratio = s.weight * s.weight.cwiseInverse().transpose();
-  const Eigen::VectorXd ratios = Eigen::Map<const Eigen::VectorXd>(ratio.data(), I * I);
   end_if_wished();
-  s.K = ratios.asDiagonal() * system.K.c;
+  s.K = with_rows_times(ratio, system.K.c);
   end_if_wished();
   s.K_rounding = Eigen::MatrixXd::Zero(I, I);
   s.f_rounding = Eigen::VectorXd::Zero(I);
@@ -43,10 +43,14 @@ WeightedSystem weighted(const ScaledSystem& system) {
   if (system.f_rounding.size() > 0) s.f_rounding = s.weight.cwiseProduct(system.f_rounding);
   if (system.load_scale != 0) s.f = (s.weight.asDiagonal() * system.f.c).transpose();
 
-  const Eigen::VectorXd norms = moduli(s.K.col(0)) + 2 * moduli(s.K.rightCols(s.P)).rowwise().sum();
+  const Eigen::VectorXd norms = sums_of_moduli(s.K, 0, 1) + 2 * sums_of_moduli(s.K, 1, s.P);
   Eigen::MatrixXd E = Eigen::Map<const Eigen::MatrixXd>(norms.data(), I, I);
   E.diagonal() -= s.mean.cwiseAbs();
   s.coupling = E.rowwise().sum();
+  s.across = s.G_off.cwiseAbs().rowwise().sum();
+  Eigen::MatrixXd mean = s.K.col(0).real().reshaped(I, I);
+  mean.diagonal().setZero();
+  s.within = mean.cwiseAbs().rowwise().sum();
   s.symmetric = true;
   for (Eigen::Index j = 0; j < I; ++j)
     for (Eigen::Index i = j + 1; i < I; ++i) s.symmetric = s.symmetric && s.K.row(i + I * j) == s.K.row(j + I * i);
@@ -62,12 +66,9 @@ Eigen::MatrixXcd WeightedSystem::block(Eigen::Index k) const {
 
 double WeightedSystem::coupled_within(Eigen::Index k) const {
   double largest = 0;
-  for (Eigen::Index i = 0; i < I; ++i) {
-    double sum = 0;
-    for (Eigen::Index j = 0; j < I; ++j)
-      if (j != i) sum += modulus({K(i + I * j, 0).real(), static_cast<double>(k) * G_off(i, j)});
-    if (sum > 0) largest = std::max(largest, sum / modulus(D(i, k)));
-  }
+  for (Eigen::Index i = 0; i < I; ++i)
+    if (const double sum = within(i) + static_cast<double>(k) * across(i); sum > 0)
+      largest = std::max(largest, sum / modulus(D(i, k)));
   return largest;
 }
 

@@ -45,7 +45,8 @@ struct WeightedSystem {
   }
   // B(k), what of A couples harmonic k to itself: D(k), K's mean off the diagonal, and i k G_off.
   [[nodiscard]] Eigen::MatrixXcd block(Eigen::Index k) const;
-  // Largest sum over j != i of |B_ij/B_ii|.
+  Eigen::VectorXd within, across;  // sums over j != i of |mean K_ij| and of |G_ij|
+  // Largest sum over j != i of |B_ij/B_ii|, at most.
   [[nodiscard]] double coupled_within(Eigen::Index k) const;
   // Size of |D_i(k)| away from resonance, smallest over k: for judging what is negligible.
   double smallest_diagonal(Eigen::Index i) const { return std::max(std::abs(mean(i)), 1.0); }

@@ -17,17 +17,17 @@ using Index = Eigen::Index;
 // where the recursion would grow (that is the core, not the tail).
 Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index most) {
   const Index I = system.I, P = system.P, F = system.f.rows() - 1;
+  const auto sizes = [&](Index m) { return system.K.col(m).real().cwiseAbs() + system.K.col(m).imag().cwiseAbs(); };
   // Harmonics of K that cannot matter are left out.
-  const Eigen::MatrixXd K = system.K.real().cwiseAbs() + system.K.imag().cwiseAbs();
   Eigen::VectorXd floor(I * I);
   for (Index j = 0; j < I; ++j)
     for (Index i = 0; i < I; ++i) floor(i + I * j) = 0.1 * tolerance * system.smallest_diagonal(i);
   Index P_cut = P;
-  while (P_cut > 0 && (K.col(P_cut).array() <= floor.array()).all()) --P_cut;
+  while (P_cut > 0 && (sizes(P_cut).array() <= floor.array()).all()) --P_cut;
 
   // For row i of (S4) all |K_m,ij| after each other, m = 1, 2, ..., as a_k-m,j stand in `a`: the last one first.
   Eigen::MatrixXd row_sums(I * P_cut, I);
-  for (Index m = 1; m <= P_cut; ++m) row_sums.middleRows(I * (m - 1), I) = K.col(m).reshaped(I, I).transpose();
+  for (Index m = 1; m <= P_cut; ++m) row_sums.middleRows(I * (m - 1), I) = sizes(m).reshaped(I, I).transpose();
   Index room = std::min(most, F + 4 * P_cut + 64) + 1;
   Eigen::VectorXd a(I * room), response(I);
   double largest = 0;

@@ -10,6 +10,7 @@
 #include "lib/dense.hpp"
 #include "lib/fourier/moduli.hpp"
 #include "lib/modulus.hpp"
+#include "lib/parts.hpp"
 #include "lib/stop_wish.hpp"
 
 namespace hb {
@@ -58,7 +59,7 @@ FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& 
   if (is_diagonal(left) && is_diagonal(right)) {
     const Eigen::MatrixXd factors = left.diagonal() * right.diagonal().transpose();
     end_if_wished();
-    return FourierSeries(factors.reshaped().asDiagonal() * matrices.c);
+    return FourierSeries(with_rows_times(factors, matrices.c));
   }
   FourierSeries result = matrices;
   for (Eigen::Index k = 0; k < matrices.c.cols(); ++k) {
@@ -79,34 +80,28 @@ FourierSeries cut(FourierSeries series, Eigen::Index num_harmonics) {
 // times as large.
 constexpr double rounding_of_stiffness = 1e-17, least_of_couplings = 1e-8;
 FourierSeries without_rounding(FourierSeries K, Eigen::Index I) {
-  Eigen::ArrayXXd square(I * I, K.c.cols());  // of every coefficient
-  Eigen::ArrayXd most = Eigen::ArrayXd::Zero(I * I);
-  for (Eigen::Index k = 0; k < K.c.cols(); ++k) {
-    square.col(k) = K.c.col(k).cwiseAbs2();
-    most = most.max(square.col(k));
-  }
-  const Eigen::MatrixXd largest = most.sqrt().reshaped(I, I);
+  Eigen::ArrayXd most = Eigen::ArrayXd::Zero(2 * I * I);  // of real and imaginary parts in turn
+  for (Eigen::Index k = 0; k < K.c.cols(); ++k) most = most.max(parts(K.c).col(k).abs());
+  const Eigen::MatrixXd largest = most.reshaped(2, I * I).matrix().colwise().norm().reshaped(I, I);
   const Eigen::VectorXd couplings = largest.rowwise().maxCoeff().cwiseMax(largest.colwise().maxCoeff().transpose());
   const Eigen::VectorXd scale =
       mean_of(K, I).diagonal().cwiseAbs().cwiseMax(couplings * least_of_couplings).cwiseSqrt();
   const Eigen::ArrayXd rounding = (rounding_of_stiffness * scale * scale.transpose()).reshaped();
   Eigen::Index H = K.num_harmonics();
-  while (H > 0 && (square.col(H).sqrt() <= rounding).all()) --H;
+  while (H > 0 && (moduli(K.c.col(H)).array() <= rounding).all()) --H;
   return cut(std::move(K), H);
 }
 
 // Sum over the powers of Omega and all harmonics of the size of every component: what rounding errors are relative to.
 Eigen::VectorXd sizes(const std::array<FourierSeries, 3>& powers, Eigen::Index num_components, double speed) {
-  Eigen::VectorXd parts = Eigen::VectorXd::Zero(2 * num_components);  // real and imaginary ones in turn
+  Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(2 * num_components);  // of real and imaginary parts in turn
   double factor = 2;
   for (const FourierSeries& part : powers) {
     end_if_wished();
-    const Eigen::Map<const Eigen::MatrixXd> c(reinterpret_cast<const double*>(part.c.data()), 2 * part.c.rows(),
-                                              part.c.cols());
-    for (Eigen::Index k = 0; k < c.cols(); ++k) parts += factor * c.col(k).cwiseAbs();
+    for (Eigen::Index k = 0; k < part.c.cols(); ++k) sums += factor * parts(part.c).col(k).abs();
     factor *= speed;
   }
-  return parts.reshaped(2, num_components).colwise().sum().transpose();
+  return sums.matrix().reshaped(2, num_components).colwise().sum().transpose();
 }
 
 // The part of the mean in half of that.
@@ -226,7 +221,7 @@ ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::Matr
   scaled.diagonal_damping = is_diagonal(scaled.G);
   scaled.K = transformed(C, L, T);
   end_if_wished();
-  scaled.K.c *= 1 / (speed * speed);
+  parts(scaled.K.c) *= 1 / (speed * speed);
   end_if_wished();
   scaled.K = without_rounding(std::move(scaled.K), I);
   return scaled;
