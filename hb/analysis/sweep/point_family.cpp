@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "lib/lanes.hpp"
@@ -10,8 +11,8 @@
 namespace hb {
 namespace {
 
-// Nodes of a block, every fourth point of a full one.
-constexpr std::size_t num_nodes = 8, most_points = 4 * (num_nodes - 1) + 1;
+// Nodes of a block, every fourth point of a full one, and those of them that are solved from nothing.
+constexpr std::size_t num_nodes = 8, num_coarse = 4, most_points = 4 * (num_nodes - 1) + 1;
 // Fewer points are all nodes.
 constexpr std::size_t fewest_points = 12;
 
@@ -42,10 +43,10 @@ Weights weights(const std::vector<double>& nodes, double x) {
   return weights;
 }
 
-// No solution where the nodes do not agree on the number of harmonics, or foretell too little: corrections with twice
-// the samples have to be few.
+// No solution where the nodes do not agree on the number of harmonics, or foretell nothing; a rough one where
+// corrections with twice the samples would not be few.
 SlavingStart interpolated(const Weights& weights, const std::vector<const SlavingStart*>& nodes) {
-  constexpr double foretold = 1e-4;
+  constexpr double near = 1e-4, rough = 0.1;
   const Eigen::Index size = nodes.front()->solution.size();
   SlavingStart start;
   start.modes = nodes.front()->modes;
@@ -76,10 +77,12 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
   Eigen::Index first = 0;
   for (; first + together <= size; first += together) sums(std::make_index_sequence<4>(), first);
   // The last ones over what stands before them where fewer numbers are left.
-  for (; first < size; first += Lanes::width)
-    sums(std::make_index_sequence<1>(), std::min(first, size - Lanes::width));
-  const bool near = std::ranges::max(doubt.values()) <= foretold * std::ranges::max(largest.values());
-  if (near && solution.allFinite()) start.solution = std::move(solution);
+  for (; first < size; first += Lanes::width) sums(std::make_index_sequence<1>(), std::min(first, size - Lanes::width));
+  const double off = std::ranges::max(doubt.values()), size_of_all = std::ranges::max(largest.values());
+  if (!(off <= rough * size_of_all && solution.allFinite())) return start;
+  start.rough = !(off <= near * size_of_all);
+  if (start.rough) start.change = 0;
+  start.solution = std::move(solution);
   return start;
 }
 
@@ -102,11 +105,16 @@ SweepPoint PointFamily::at(std::size_t k) {
   SweepPoint point;
   if (place != block->places.end()) {
     const auto n = static_cast<std::size_t>(place - block->places.begin());
-    solve(*block, n, 1);
+    const bool begun = std::ranges::find(block->coarse, n) == block->coarse.end();
+    if (begun) solve(*block, block->coarse, false);
+    solve(*block, std::span(&n, 1), begun);
     point = block->nodes[n].point;
   } else {
-    solve(*block, 0, block->nodes.size());
-    const PointSolution start = foretold(*block, values_[k]);
+    solve(*block, block->coarse, false);
+    solve(*block, block->fine, true);
+    std::vector<std::size_t> all(block->nodes.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    const PointSolution start = foretold(*block, all, values_[k]);
     point = analyse_point(scene_, values_[k], only_, {.start = &start});
   }
   const std::lock_guard lock(mutex_);
@@ -125,26 +133,34 @@ std::shared_ptr<PointFamily::Block> PointFamily::block_of(std::size_t k) {
   for (std::size_t j = 0; j < count; ++j)
     block->places.push_back(first + (count > 1 ? (j * (size - 1) + (count - 1) / 2) / (count - 1) : 0));
   block->nodes.resize(count);
+  for (std::size_t j = 0, next = 0; j < count; ++j) {
+    const bool coarse = count < num_nodes || j == (next * (count - 1) + num_coarse / 2) / (num_coarse - 1);
+    if (coarse) ++next;
+    (coarse ? block->coarse : block->fine).push_back(j);
+  }
   return block;
 }
 
-void PointFamily::solve(Block& block, std::size_t first, std::size_t count) {
+void PointFamily::solve(Block& block, std::span<const std::size_t> which, bool begun) {
   std::unique_lock lock(mutex_);
-  const auto begin = block.nodes.begin() + static_cast<std::ptrdiff_t>(first),
-             end = begin + static_cast<std::ptrdiff_t>(count);
+  const auto is = [&block](Node::State state) {
+    return [&block, state](std::size_t n) { return block.nodes[n].state == state; };
+  };
   for (;;) {
-    const auto node = std::find_if(begin, end, [](const Node& n) { return n.state == Node::State::untouched; });
-    if (node == end) {
-      if (std::all_of(begin, end, [](const Node& n) { return n.state == Node::State::there; })) return;
+    const auto next = std::ranges::find_if(which, is(Node::State::untouched));
+    if (next == which.end()) {
+      if (std::ranges::all_of(which, is(Node::State::there))) return;
       changed_.wait(lock);
       continue;
     }
+    Node* const node = &block.nodes[*next];
     node->state = Node::State::under_way;
-    const std::size_t k = block.places[static_cast<std::size_t>(node - block.nodes.begin())];
+    const double x = values_[block.places[*next]];
     lock.unlock();
     PointSolution solution;
     try {
-      node->point = analyse_point(scene_, values_[k], only_, {.solution = &solution});
+      const PointSolution start = begun ? foretold(block, block.coarse, x) : PointSolution();
+      node->point = analyse_point(scene_, x, only_, {.start = begun ? &start : nullptr, .solution = &solution});
     } catch (...) {
       lock.lock();
       node->state = Node::State::untouched;
@@ -158,22 +174,22 @@ void PointFamily::solve(Block& block, std::size_t first, std::size_t count) {
   }
 }
 
-PointSolution PointFamily::foretold(const Block& block, double x) const {
+PointSolution PointFamily::foretold(const Block& block, std::span<const std::size_t> by, double x) const {
   std::vector<double> places;
-  std::size_t rods = block.nodes.front().solution.size();
-  for (std::size_t j = 0; j < block.nodes.size(); ++j) {
+  std::size_t rods = block.nodes[by.front()].solution.size();
+  for (const std::size_t j : by) {
     places.push_back(values_[block.places[j]]);
     rods = std::min(rods, block.nodes[j].solution.size());
   }
-  const Weights by = weights(places, x);
+  const Weights weighted = weights(places, x);
   PointSolution start(rods);
   for (std::size_t r = 0; r < rods; ++r) {
-    std::size_t modes = block.nodes.front().solution[r].size();
-    for (const Node& node : block.nodes) modes = std::min(modes, node.solution[r].size());
+    std::size_t modes = block.nodes[by.front()].solution[r].size();
+    for (const std::size_t j : by) modes = std::min(modes, block.nodes[j].solution[r].size());
     for (std::size_t g = 0; g < modes; ++g) {
       std::vector<const SlavingStart*> nodes;
-      for (const Node& node : block.nodes) nodes.push_back(&node.solution[r][g]);
-      start[r].push_back(interpolated(by, nodes));
+      for (const std::size_t j : by) nodes.push_back(&block.nodes[j].solution[r][g]);
+      start[r].push_back(interpolated(weighted, nodes));
     }
   }
   return start;

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "hb/analysis/sweep/sweep_point.hpp"
@@ -34,13 +35,15 @@ class PointFamily {
   struct Block {
     std::vector<std::size_t> places;  // of the nodes among all values, ascending
     std::vector<Node> nodes;
+    std::vector<std::size_t> coarse, fine;  // nodes solved from nothing, and those that begin with what these foretell
     std::size_t left = 0;  // points that were not asked for yet
   };
 
   [[nodiscard]] std::shared_ptr<Block> block_of(std::size_t k);
-  // Has these nodes of the block solved, by this thread or by others.
-  void solve(Block& block, std::size_t first, std::size_t count);
-  [[nodiscard]] PointSolution foretold(const Block& block, double x) const;
+  // Has these nodes of the block solved, by this thread or by others; `begun`: after the coarse ones, from these.
+  void solve(Block& block, std::span<const std::size_t> which, bool begun);
+  // By these nodes.
+  [[nodiscard]] PointSolution foretold(const Block& block, std::span<const std::size_t> by, double x) const;
 
   const SweepScene& scene_;
   const Only only_;

@@ -130,8 +130,10 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   // A neighbour's solution is judged by more samples from the beginning; what needs more corrections gets them
   // with few samples.
   SlavingStart nearer;
-  const Index begun_judge = judging_samples(system, p, begun.solution, own);
-  if (begun.solution.size() > 0 && own <= 4 * start && begun_judge <= most_samples) {
+  const Index begun_judge = begun.rough ? own : judging_samples(system, p, begun.solution, own);
+  if (begun.rough) {
+    nearer = begun;
+  } else if (begun.solution.size() > 0 && own <= 4 * start && begun_judge <= most_samples) {
     constexpr int few_iterations = 2;
     Iteration judged(stiffness, p, begun_judge);
     judged.start_from(begun);
