@@ -36,7 +36,7 @@ MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
     }
   fourier::RealTransform& transform = fourier::thread_transform(N, Index(own.size()));
   auto spectrum = transform.spectrum();
-  spectrum.topRows(K.c.cols()) = K.c(own, Eigen::all).transpose();
+  for (Index q = 0; q < spectrum.cols(); ++q) spectrum.col(q).head(K.c.cols()) = K.c.row(own[std::size_t(q)]);
   spectrum.bottomRows(spectrum.rows() - K.c.cols()).setZero();
   transform.backward();
   MatrixXd samples(N, I * I);

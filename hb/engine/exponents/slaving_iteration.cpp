@@ -282,8 +282,6 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
       const double df = distance(f_, last_f_);
       if (kappa_ * df > 100 * eps * scale) secants[num_secants++ % few] = distance(x_, last_x_) / df;
     }
-    last_x_ = x_;
-    last_f_ = f_;
     // Rounding reached: nothing is left to gain.
     if (change <= goal || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
       for (const double secant : secants) amplification_ = std::max(amplification_, secant);
@@ -299,6 +297,8 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
       if (iteration > 2 * window && iteration + std::log(goal / best) / pace > most_iterations) return false;
     }
     earlier = best;
+    last_x_ = x_;
+    last_f_ = f_;
     if (iteration >= 3 && rho > 0.2) mixing = true;
     if (mixing)
       x_ = anderson.step(x_, f_);
