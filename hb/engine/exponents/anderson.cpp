@@ -48,7 +48,7 @@ Anderson::Weights Anderson::weights(Index kept, const Weights& right) const {
   return solution.cwiseProduct(scale);
 }
 
-VectorXd Anderson::step(const VectorXd& x, const VectorXd& f) {
+VectorXd Anderson::step(const Eigen::Ref<const VectorXd>& x, const Eigen::Ref<const VectorXd>& f) {
   if (last_x_.size() > 0) {
     if (taken_ == 0) {
       moved_.resize(x.size(), depth);

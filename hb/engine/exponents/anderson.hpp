@@ -9,7 +9,7 @@ namespace hb {
 class Anderson {
  public:
   // The next x, from x and f(x).
-  Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& f);
+  Eigen::VectorXd step(const Eigen::Ref<const Eigen::VectorXd>& x, const Eigen::Ref<const Eigen::VectorXd>& f);
 
  private:
   static constexpr Eigen::Index depth = 8;

@@ -79,12 +79,12 @@ bool spans(const ScaledSystem& system, MatrixXd states, double least) {
 // Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
 // what is allowed: ds = d alpha/(2 sqrt|w^2 - b^2/4|).
 double sufficient(const ScaledSystem& system, std::span<const Index> kept, double tolerance) {
-  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
   double smallest = 1;
   for (const Index s : kept) {
-    const cplx root = std::sqrt(cplx(b(s) * b(s) / 4 - w2(s), 0));
-    const double wanted = std::max(std::abs((-b(s) / 2 + root).real()), 0.01);
-    const double size = std::max(std::abs(w2(s)), 1e-4);
+    const double w2 = system.K.c(s * (system.num_modes() + 1), 0).real(), b = system.G(s, s);
+    const cplx root = std::sqrt(cplx(b * b / 4 - w2, 0));
+    const double wanted = std::max(std::abs((-b / 2 + root).real()), 0.01);
+    const double size = std::max(std::abs(w2), 1e-4);
     smallest = std::min(smallest, wanted * 2 * std::max(std::abs(root), 1e-3) / size);
   }
   return 1e-3 * tolerance * smallest;
@@ -224,6 +224,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
   const Index I = system.num_modes();
   if (I == 1) return search_single(system, tolerance, known);
   ExponentSearch search;
+  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
   std::vector<Index> together;
   std::vector<Exponents> alone(std::size_t(I), Exponents{});
   std::vector<MatrixXd> subspaces(std::size_t(I), MatrixXd{});  // states at the start of the turn, per mode alone
@@ -242,7 +243,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
     ReducedSystem reduced = slave_to(stiffness, one, sufficient(system, one, tolerance), false,
                                      begun ? starts[std::size_t(g)] : SlavingStart());
     if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
-    name_modes(alone[std::size_t(g)], system, {g});
+    hb::name_modes(alone[std::size_t(g)], w2, b, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty()) {
       subspaces[std::size_t(g)] = std::move(reduced.start);
       solved[std::size_t(g)] = std::move(reduced.solved);
@@ -256,7 +257,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
     if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1,
                                                begun ? starts.back() : SlavingStart())) {
       search.exponents = reduced_exponents(*reduced, tolerance);
-      name_modes(search.exponents, system, together);
+      hb::name_modes(search.exponents, w2, b, together);
       start_together = reduced->start;
       solved.back() = reduced->solved;
       solved.back().modes = together;
@@ -275,6 +276,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
                                   "the phase function, Hill's determinant or one turn's propagation");
     search.exponents.converged = true;
   }
+  search.exponents.reserve(std::size_t(2 * I));
   MatrixXd states(2 * I, 2 * I);
   states.leftCols(start_together.cols()) = start_together;
   Index filled = start_together.cols();

@@ -41,7 +41,9 @@ std::optional<Exponents> by_phase(const ReducedSystem& reduced, double tolerance
   const auto pair = phase_exponents(reduced.alpha, reduced.beta, reduced.alpha_error(0), reduced.beta_error(0), wanted);
   if (!pair) return std::nullopt;
   Exponents result;
-  for (int i : {0, 1}) result.add(pair->s[std::size_t(i)], pair->error[std::size_t(i)]);
+  result.s.assign(pair->s.begin(), pair->s.end());
+  result.error.assign(pair->error.begin(), pair->error.end());
+  result.imaginary_error = result.error;
   result.converged = true;
   return result;
 }

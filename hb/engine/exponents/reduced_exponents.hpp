@@ -25,6 +25,11 @@ struct Exponents {
     error.push_back(bar);
     imaginary_error.push_back(bar);
   }
+  void reserve(std::size_t count) {
+    for (auto* numbers : {&error, &imaginary_error, &frequency}) numbers->reserve(count);
+    s.reserve(count);
+    mode.reserve(count);
+  }
   void append(const Exponents& other) {
     s.insert(s.end(), other.s.begin(), other.s.end());
     error.insert(error.end(), other.error.begin(), other.error.end());

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include "hb/engine/exponents/slaving_iteration.hpp"
 #include "lib/constants.hpp"
 #include "lib/modulus.hpp"
+#include "lib/workspace.hpp"
 
 namespace hb {
 
@@ -25,6 +26,7 @@ namespace {
 MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
   std::vector<Index> own;  // components that are not those of the transposed place
   std::vector<Index> from(std::size_t(I * I));
+  own.reserve(from.size());
   for (Index j = 0; j < I; ++j)
     for (Index i = 0; i < I; ++i) {
       const Index here = i + I * j, transposed = j + I * i;
@@ -34,10 +36,12 @@ MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
     }
   fourier::RealTransform& transform = fourier::thread_transform(N, Index(own.size()));
   auto spectrum = transform.spectrum();
-  spectrum.topRows(K.c.cols()) = K.c(own, Eigen::all).transpose();
+  for (Index q = 0; q < spectrum.cols(); ++q) spectrum.col(q).head(K.c.cols()) = K.c.row(own[std::size_t(q)]);
   spectrum.bottomRows(spectrum.rows() - K.c.cols()).setZero();
   transform.backward();
-  return transform.samples()(Eigen::all, from);
+  MatrixXd samples(N, I * I);
+  for (Index q = 0; q < I * I; ++q) samples.col(q) = transform.samples().col(from[std::size_t(q)]);
+  return samples;
 }
 
 // Largest sum of harmonics of K_SF A and weight K_SF C that N angles do not tell apart, by what A and C are:
@@ -47,7 +51,11 @@ double folded_back(const ScaledSystem& system, const Partition& p, const VectorX
   const Index P = system.K.num_harmonics(), apart = (N - 1) / 2;
   if (P + H <= apart) return 0;
   // Of A and weight C, from each harmonic on.
-  MatrixXd from = MatrixXd::Zero(2 * nm, H + 2);
+  thread_local Workspace kept;
+  auto room = kept.matrix(2 * nm, H + 3);
+  auto from = room.leftCols(H + 2);
+  auto sum = room.col(H + 2);
+  from.col(H + 1).setZero();
   for (Index k = H; k >= 0; --k) {
     const auto re = solution.segment(4 * nm * k, 2 * nm).array(),
                im = solution.segment(4 * nm * k + 2 * nm, 2 * nm).array();
@@ -55,11 +63,12 @@ double folded_back(const ScaledSystem& system, const Partition& p, const VectorX
   }
   double largest = 0;
   for (const Index s : p.S) {
-    VectorXd sum = VectorXd::Zero(2 * nm);
+    sum.setZero();
     for (Index k = std::max<Index>(apart + 1 - H, 0); k <= P; ++k)
-      for (Index q = 0; q < 2 * nm; ++q)
-        sum(q) += modulus(system.K.c(s + system.num_modes() * p.F[std::size_t(q % n)], k)) *
-                  from(q, std::max<Index>(apart + 1 - k, 0));
+      for (Index j = 0; j < n; ++j) {
+        const double size = modulus(system.K.c(s + system.num_modes() * p.F[std::size_t(j)], k));
+        for (Index q = j; q < 2 * nm; q += n) sum(q) += size * from(q, std::max<Index>(apart + 1 - k, 0));
+      }
     largest = std::max(largest, sum.sum());
   }
   return 4 * largest;
@@ -83,12 +92,11 @@ ReducedSystem unreduced(const ScaledSystem& system) {
   all.others_below = -HUGE_VAL;
   all.start = MatrixXd::Identity(2 * I, 2 * I);
   all.num_modes = I;
-  all.alpha = system.K;
   all.beta = FourierSeries(I * I, 0);
   all.beta.c.col(0).real() = system.G.reshaped();
   all.alpha_error = slaving::given_rounding * system.K_rounding;
   all.beta_error = 2 * eps * system.G.cwiseAbs() + system.G_error;
-  slaving::drop_tail(all.alpha, all.alpha_error);
+  all.alpha = slaving::without_tail(system.K.c.transpose(), all.alpha_error);
   return all;
 }
 
@@ -144,15 +152,15 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
     nearer = judged.solved();
   }
   const auto solve = [&](const SlavingStart& from) {
-    const Index first = from.solution.size() > 0 ? own : start;
-    auto iteration = std::make_unique<Iteration>(stiffness, p, first);
+    Index N = from.solution.size() > 0 ? own : start;
+    std::optional<Iteration> iteration(std::in_place, stiffness, p, N);
     iteration->start_from(from);
-    for (Index N = first; N <= 4 * start && iteration->run(tolerance, reduced.iterations);) {
-      N = judging_samples(system, p, iteration->solved().solution, N);
+    while (N <= 4 * start && iteration->run(tolerance, reduced.iterations)) {
+      const SlavingStart coarse = iteration->solved();
+      N = judging_samples(system, p, coarse.solution, N);
       if (N > most_samples) break;
-      auto finer = std::make_unique<Iteration>(stiffness, p, N);
-      finer->start_from(*iteration);
-      iteration = std::move(finer);
+      iteration.emplace(stiffness, p, N);
+      iteration->refine(coarse);
       if (!iteration->solved_by_start(tolerance)) continue;
       finish(*iteration);
       return true;

@@ -11,15 +11,14 @@ namespace hb::slaving {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
-void Iteration::sample(const VectorXd& x) {
+void Iteration::sample() {
   const Index both = 2 * n_ * m_;
   auto re = back_.re(), im = back_.im();
   in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
     const Numbers<width> scale = at<width>(scale_.data() + q);
     for (Index k = 0; k <= H_; ++k) {
-      const double* from = x.data() + 2 * both * k + q;
+      const double* from = x_.data() + 2 * both * k + q;
       double *real = &re(q, k), *imaginary = &im(q, k);
       const Numbers<width> a = scale * at<width>(from), b = scale * at<width>(from + both);
       at<width>(real) = a;
@@ -111,22 +110,23 @@ void Iteration::sample_nothing() {
     }
 }
 
-void Iteration::correction(const VectorXd& x, VectorXd& f) {
+void Iteration::correction() {
   end_if_wished();
-  const bool from_nothing = x.isZero(0);
+  const bool from_nothing = x_.isZero(0);
   if (from_nothing)
     sample_nothing();
   else
-    sample(x);
+    sample();
   if (!reduce()) {
-    f.setConstant(HUGE_VAL);
+    f_.setConstant(HUGE_VAL);
+    residual_.setConstant(HUGE_VAL);
     return;
   }
   if (!from_nothing) {
     sample_residual();
     forward_.forward();
   }
-  push_through(f);
+  push_through();
 }
 
 void Iteration::sample_residual() {
@@ -163,7 +163,7 @@ void Iteration::sample_residual() {
     }
 }
 
-void Iteration::push_through(VectorXd& f) {
+void Iteration::push_through() {
   const Index nm = n_ * m_;
   const auto re = forward_.re(), im = forward_.im();
   in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
@@ -174,7 +174,7 @@ void Iteration::push_through(VectorXd& f) {
       const auto x = [&](Index column) { return at<width>(&re(nm * column + q, k)); };
       const auto y = [&](Index column) { return at<width>(&im(nm * column + q, k)); };
       const auto M = [&](Index entry) { return at<width>(&inverse_(nm * entry + q, k)); };
-      const auto to = [&](Index part) { return at<width>(&f(nm * (4 * k + part) + q)); };
+      const auto to = [&](Index part) { return at<width>(&f_(nm * (4 * k + part) + q)); };
       const V x1 = x(2) - n * y(0), y1 = y(2) + n * x(0), x2 = x(3) - n * y(1), y2 = y(3) + n * x(1);
       sum1 += signs * (x1.square() + y1.square()).sqrt();
       sum2 += signs * (x2.square() + y2.square()).sqrt();
@@ -183,8 +183,8 @@ void Iteration::push_through(VectorXd& f) {
       to(2) = M(0) * y1 + M(1) * x1 + M(2) * y2 + M(3) * x2;
       to(3) = M(4) * y1 + M(5) * x1 + M(6) * y2 + M(7) * x2;
     }
-    at<width>(&residual_(q, 0)) = sum1;
-    at<width>(&residual_(q, 1)) = sum2;
+    at<width>(&residual_(q)) = sum1;
+    at<width>(&residual_(nm + q)) = sum2;
   });
 }
 

@@ -1,13 +1,16 @@
 #include "hb/engine/exponents/slaving_iteration.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
 #include "hb/engine/exponents/neighbouring_numbers.hpp"
 #include "lib/constants.hpp"
-#include "lib/dense.hpp"
+#include "lib/modulus.hpp"
+#include "lib/workspace.hpp"
 
 namespace hb::slaving {
 
@@ -23,22 +26,39 @@ cplx root(double b, double w2) {
 
 Partition partition(Index I, std::span<const Index> slow) {
   Partition p{{slow.begin(), slow.end()}, {}};
+  p.F.reserve(std::size_t(I));
   for (Index i = 0; i < I; ++i)
     if (std::find(p.S.begin(), p.S.end(), i) == p.S.end()) p.F.push_back(i);
   return p;
 }
 
-void drop_tail(FourierSeries& series, MatrixXd& error) {
-  Index H = series.num_harmonics();
-  VectorXd sum = VectorXd::Zero(error.size()), more(error.size());
-  for (; H > 0; --H) {
-    more = sum + 2 * series.c.col(H).cwiseAbs2().cwiseSqrt();
-    if (!(more.array() <= 0.1 * error.reshaped().array()).all()) break;
-    sum.swap(more);
+FourierSeries without_tail(const Eigen::Ref<const Eigen::MatrixXcd>& harmonics, MatrixXd& error) {
+  const Index last = harmonics.rows() - 1;
+  Index H = 0;
+  for (Index i = 0; i < error.size(); ++i) {
+    Index k = last;
+    for (double sum = 0; k > H; --k) {
+      sum += 2 * modulus(harmonics(k, i));
+      if (!(sum <= 0.1 * error(i))) break;
+    }
+    H = std::max(H, k);
   }
-  series = fourier::resized(series, H);
-  error += sum.reshaped(error.rows(), error.cols());
+  for (Index i = 0; i < error.size(); ++i) {
+    double sum = 0;
+    for (Index k = last; k > H; --k) sum += 2 * modulus(harmonics(k, i));
+    error(i) += sum;
+  }
+  return FourierSeries(harmonics.topRows(H + 1).transpose());
 }
+
+namespace {
+
+Eigen::Map<MatrixXd> kept_room(Index rows, Index columns) {
+  thread_local Workspace kept;
+  return kept.matrix(rows, columns);
+}
+
+}  // namespace
 
 Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples& samples, const Partition& p,
                      Index num_samples)
@@ -55,8 +75,6 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       diagonal_damping_(system.diagonal_damping),
       I_(system.num_modes()),
       samples_(samples),
-      alpha_(N_, m_ * m_),
-      beta_(N_, m_ * m_),
       back_(N_, 4 * n_ * m_),
       forward_(N_, 4 * n_ * m_),
       A_(back_.samples().data(), N_, n_ * m_),
@@ -65,16 +83,38 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       C1_(A1_.data() + A_.size(), N_, n_ * m_),
       P_(forward_.samples().data(), N_, n_ * m_),
       R_(P_.data() + P_.size(), N_, n_ * m_),
-      x_(VectorXd::Zero(4 * n_ * m_ * (H_ + 1))),
-      changed_(x_.size()) {
+      room_(kept_room(2 * (H_ + 1), 13 * n_ * m_ + 2 * m_ * m_)),
+      alpha_(room_.data(), N_, m_ * m_),
+      beta_(alpha_.data() + alpha_.size(), N_, m_ * m_),
+      x_(beta_.data() + beta_.size(), 4 * n_ * m_ * (H_ + 1)),
+      f_(x_.data() + x_.size(), x_.size()),
+      last_x_(f_.data() + x_.size(), x_.size()),
+      last_f_(last_x_.data() + x_.size(), x_.size()),
+      changed_(x_.size()),
+      inverse_(last_f_.data() + x_.size(), 8 * n_ * m_, H_ + 1),
+      inverse_size_(inverse_.data() + inverse_.size(), 2 * n_ * m_, H_ + 1),
+      pairs_(2 * n_ * m_, 6),
+      weight_(&pairs_(0, 0), pairs_.rows()),
+      scale_(&pairs_(0, 1), pairs_.rows()),
+      gain_(&pairs_(0, 2), pairs_.rows()),
+      rate_(&pairs_(0, 3), pairs_.rows()),
+      residual_(&pairs_(0, 4), pairs_.rows()),
+      effect_(&pairs_(0, 5), pairs_.rows()) {
+  assert(N_ == 2 * (H_ + 1));
   if (!diagonal_damping_) {  // what alpha and beta, which depend on P and R, are found from first
     alpha_.setZero();
     beta_.setZero();
     P_.setZero();
     R_.setZero();
   }
-  const VectorXd w2 = system.mean_diagonal(), b = system.damping_diagonal();
-  for (const Index s : S_) weight_.push_back(std::max(1.0, std::abs(root(b(s), w2(s)))));
+  const Index nm = n_ * m_;
+  for (Index l = 0; l < m_; ++l) {
+    const double weight = std::max(1.0, std::abs(root(b(S_[l]), w2(S_[l]))));
+    weight_.segment(n_ * l, n_).setConstant(weight);
+    scale_.segment(n_ * l, n_).setConstant(1);
+    scale_.segment(nm + n_ * l, n_).setConstant(1 / weight);
+  }
+  weight_.tail(nm) = weight_.head(nm);
   // kappa: what an error of A does to alpha.
   for (Index s = 0; s < m_; ++s) {
     double sum = 0;
@@ -85,10 +125,7 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
   for (const std::vector<Index>* rows : {&S_, &F_})
     for (const Index i : *rows)
       for (const Index j : F_) K_F_.push_back(K(i, j).data());
-  residual_ = MatrixXd::Zero(n_ * m_, 2);
-  scale_ = Eigen::ArrayXd::Ones(2 * n_ * m_);
-  for (Index q = 0; q < n_ * m_; ++q) scale_(n_ * m_ + q) = 1 / weight_[std::size_t(q / n_)];
-  invert_constant_part(w2, b);
+  invert_constant_part();
   weigh_residuals();
 }
 
@@ -97,24 +134,24 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
 // for every harmonic k: in a and c
 //   a11 = wj - wg - k^2 + ik bj,   a12 = -wg ((bj - bg) + 2 ik),   a21 = (bj - bg) + 2 ik,
 //   a22 = wj - wg - k^2 - bg (bj - bg) + ik (bj - 2 bg).
-void Iteration::invert_constant_part(const VectorXd& w2, const VectorXd& b) {
+void Iteration::invert_constant_part() {
   const Index nm = n_ * m_;
-  Eigen::ArrayXXd numbers(nm, 5);
-  auto wg = numbers.col(0), bg = numbers.col(1), wj = numbers.col(2), bj = numbers.col(3), weight = numbers.col(4);
+  thread_local Workspace kept;
+  auto numbers = kept.matrix(nm, 4);
+  auto wg = numbers.col(0), bg = numbers.col(1), wj = numbers.col(2), bj = numbers.col(3);
   for (Index q = 0; q < nm; ++q) {
     const Index slow = S_[std::size_t(q / n_)], fast = F_[std::size_t(q % n_)];
     wg(q) = w2(slow), bg(q) = b(slow), wj(q) = w2(fast), bj(q) = b(fast);
-    weight(q) = weight_[std::size_t(q / n_)];
   }
-  inverse_.resize(8 * nm, H_ + 1);
-  inverse_size_.resize(2 * nm, H_ + 1);
+  gain_.setZero();
+  rate_.setZero();
   for (Index k = 0; k <= H_; ++k) {
     const double n = double(k);
     double *M = inverse_.col(k).data(), *size = inverse_size_.col(k).data();
     in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
       using V = Numbers<width>;
       const auto of = [q](const auto& column) { return at<width>(column.data() + q); };
-      const V apart = of(bj) - of(bg), near = of(wj) - of(wg) - n * n, v = of(weight);
+      const V apart = of(bj) - of(bg), near = of(wj) - of(wg) - n * n, v = of(weight_);
       const V y11 = n * of(bj), x12 = -of(wg) * apart, y12 = -2 * n * of(wg);
       const double y21 = 2 * n;
       const V x22 = near - of(bg) * apart, y22 = n * (of(bj) - 2 * of(bg));
@@ -127,11 +164,42 @@ void Iteration::invert_constant_part(const VectorXd& w2, const VectorXd& b) {
       const V M22 = v * (fx * near - fy * y11), N22 = v * (fx * y11 + fy * near);
       Index entry = 0;
       for (const V* part : {&M11, &N11, &M12, &N12, &M21, &N21, &M22, &N22}) at<width>(M + nm * entry++ + q) = *part;
-      at<width>(size + q) = (M11.square() + N11.square()).sqrt() + (M21.square() + N21.square()).sqrt();
-      at<width>(size + nm + q) = (M12.square() + N12.square()).sqrt() + (M22.square() + N22.square()).sqrt();
+      const auto add_size = [&](Index first, const V& M1, const V& N1, const V& M2, const V& N2) {
+        const V s = (M1.square() + N1.square()).sqrt() + (M2.square() + N2.square()).sqrt();
+        at<width>(size + first) = s;
+        at<width>(&gain_(first)) = at<width>(&gain_(first)).max(s);
+        at<width>(&rate_(first)) = at<width>(&rate_(first)).max(s * (n + v));
+      };
+      add_size(q, M11, N11, M21, N21);
+      add_size(nm + q, M12, N12, M22, N22);
     });
   }
 }
+
+namespace {
+
+// Solves A x = b of b >= 0 in place of both, where A has no positive entry off the diagonal; false unless A^-1 >= 0,
+// which is so if and only if all pivots of elimination without interchanges are > 0 (A. Berman, R. J. Plemmons,
+// Nonnegative Matrices in the Mathematical Sciences, theorem 6.2.3).
+template <class Matrix, class Vector>
+bool solve_nonnegative(Matrix& A, Vector& x) {
+  const Index n = A.rows();
+  for (Index k = 0; k < n; ++k) {
+    if (!(A(k, k) > 0)) return false;
+    for (Index i = k + 1; i < n; ++i) {
+      const double factor = A(i, k) / A(k, k);
+      for (Index j = k + 1; j < n; ++j) A(i, j) -= factor * A(k, j);
+      x(i) -= factor * x(k);
+    }
+  }
+  for (Index k = n; k-- > 0;) {
+    for (Index j = k + 1; j < n; ++j) x(k) -= A(k, j) * x(j);
+    x(k) /= A(k, k);
+  }
+  return true;
+}
+
+}  // namespace
 
 // What a residual of the invariance equations does to alpha, hb/engine/README.md (E7): with the constant part's
 // inverse M_k at its largest, whatever the harmonic that the residual is in, and the way through other fast modes,
@@ -139,54 +207,47 @@ void Iteration::invert_constant_part(const VectorXd& w2, const VectorXd& b) {
 // A residual in another harmonic than the resonant one is carried there by the modulation of the mode itself, so that
 // |M_k r_k| alone, which is what the iteration changes by, would be too small where M is large in one harmonic only.
 void Iteration::weigh_residuals() {
-  const Index nm = n_ * m_;
-  Eigen::ArrayXd weight(2 * nm);
-  for (Index q = 0; q < 2 * nm; ++q) weight(q) = weight_[std::size_t(q % nm / n_)];
-  // Of A, C and of their rates of change.
-  Eigen::ArrayXd gain = Eigen::ArrayXd::Zero(2 * nm), rate = gain;
-  for (Index k = 0; k <= H_; ++k) {
-    const auto size = inverse_size_.col(k).array();
-    gain = gain.max(size);
-    rate = rate.max(size * (double(k) + weight));
-  }
-  MatrixXd through = MatrixXd::Identity(n_, n_);  // 1 - g |K_FF| off the diagonal
-  VectorXd direct = VectorXd::Zero(n_), damped = VectorXd::Zero(n_);
+  thread_local Workspace kept;
+  auto room = kept.matrix(n_, n_ + 3);
+  auto through = room.leftCols(n_);  // (1 - g |K_FF|)^T
+  auto direct = room.col(n_), damped = room.col(n_ + 1), l = room.col(n_ + 2);
   for (Index j = 0; j < n_; ++j) {
     double largest = 0;
-    for (Index l = 0; l < m_; ++l) largest = std::max(largest, gain(j + n_ * l));
-    for (Index i = 0; i < n_; ++i)
-      if (i != j) through(j, i) = -largest * largest_K(F_[j], F_[i]);
+    for (Index s = 0; s < m_; ++s) largest = std::max(largest, gain_(j + n_ * s));
+    for (Index i = 0; i < n_; ++i) through(i, j) = i == j ? 1 : -largest * largest_K(F_[j], F_[i]);
+    direct(j) = damped(j) = 0;
     for (Index s = 0; s < m_; ++s) {
       direct(j) = std::max(direct(j), largest_K(S_[s], F_[j]));
       damped(j) = std::max(damped(j), std::abs(G_(S_[s], F_[j])));
     }
   }
-  VectorXd l = dense::Lu<double>(MatrixXd(through.transpose())).solve(direct);
-  if (!(l.minCoeff() >= 0 && l.allFinite())) l.setConstant(direct.maxCoeff());
+  l = direct;
+  if (!solve_nonnegative(through, l) || !l.allFinite()) l.setConstant(direct.maxCoeff());
   l = l.cwiseMax(direct);
-  effect_.resize(nm, 2);
-  for (Index q = 0; q < 2 * nm; ++q)
-    effect_(q % nm, q / nm) = (l(q % n_) * gain(q) + damped(q % n_) * rate(q)) * double(m_);
+  for (Index q = 0; q < effect_.size(); ++q)
+    effect_(q) = (l(q % n_) * gain_(q) + damped(q % n_) * rate_(q)) * double(m_);
 }
 
-void Iteration::start_from(const Iteration& coarse) {
-  amplification_ = coarse.amplification_;
-  change_ = coarse.change_;
-  changed_ = coarse.changed_;
-  x_.head(coarse.x_.size()) = coarse.x_;
+void Iteration::refine(const SlavingStart& coarse) {
+  amplification_ = coarse.amplification;
+  change_ = coarse.change;
+  changed_ = coarse.solution.size();
+  x_.head(changed_) = coarse.solution;
+  x_.tail(x_.size() - changed_).setZero();
 }
 
 void Iteration::start_from(const SlavingStart& start) {
-  if (start.solution.size() == 0) return;
+  const Index given = start.solution.size();
+  x_.head(given) = start.solution;
+  x_.tail(x_.size() - given).setZero();
+  if (given == 0) return;
   amplification_ = start.amplification;
   enough_ = 4 * start.change;
-  changed_ = start.solution.size();
-  x_.head(changed_) = start.solution;
+  changed_ = given;
 }
 
 bool Iteration::solved_by_start(double tolerance) {
-  VectorXd f(x_.size());
-  correction(x_, f);
+  correction();
   const double change = alpha_change(), scale = alpha_.cwiseAbs().maxCoeff() + 1;
   const bool solved = change <= std::max(std::max(1e-13, tolerance) * scale, 4 * change_);
   change_ = change;
@@ -196,20 +257,20 @@ bool Iteration::solved_by_start(double tolerance) {
 
 bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
   constexpr int window = 8;
-  VectorXd f(x_.size()), last_x, last_f;
-  VectorXd& x = x_;
+  constexpr std::size_t few = 6;
   Anderson anderson;
   bool mixing = false;
   double previous = HUGE_VAL, best = HUGE_VAL;
-  std::vector<double> secants, bests;  // of the last steps
-  secants.reserve(8);
-  bests.reserve(window + 1);
+  // Of the last steps, in turn.
+  std::array<double, few> secants{};
+  std::array<double, window> bests{};
+  std::size_t num_secants = 0;
   int stalled = 0;
   for (int iteration = 1; iteration <= most_iterations; ++iteration) {
     ++iterations;
-    correction(x, f);
-    if (!std::isfinite(f.sum())) return false;
-    f.tail(f.size() - changed_).setZero();
+    correction();
+    if (!std::isfinite(f_.sum())) return false;
+    f_.tail(f_.size() - changed_).setZero();
     const double change = alpha_change();
     const double scale = alpha_.cwiseAbs().maxCoeff() + 1;
     const double goal = std::max(std::max(2 * eps, tolerance) * scale, enough_);
@@ -217,13 +278,10 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
     stalled = change < 0.9 * best ? 0 : stalled + 1;
     best = std::min(best, change);
     // What a residual f means for x: |dx|/|df| of the last steps, as far as they stand above rounding.
-    if (last_x.size() > 0) {
-      const double df = distance(f, last_f);
-      if (kappa_ * df > 100 * eps * scale) secants.push_back(distance(x, last_x) / df);
-      if (secants.size() > 6) secants.erase(secants.begin());
+    if (iteration > 1) {
+      const double df = distance(f_, last_f_);
+      if (kappa_ * df > 100 * eps * scale) secants[num_secants++ % few] = distance(x_, last_x_) / df;
     }
-    last_x = x;
-    last_f = f;
     // Rounding reached: nothing is left to gain.
     if (change <= goal || (stalled >= 5 && change <= 4 * best && best <= 1e-11 * scale)) {
       for (const double secant : secants) amplification_ = std::max(amplification_, secant);
@@ -232,18 +290,20 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
     }
     if (!(change <= 1e3 * scale * weight_max() * weight_max()) || stalled > 15) return false;
     // At the pace of the last iterations it would not arrive; the first ones only show divergence.
-    bests.push_back(best);
-    if (bests.size() > window) {
-      const double pace = std::log(best / bests.front()) / window;
-      bests.erase(bests.begin());
+    double& earlier = bests[std::size_t(iteration % window)];
+    if (iteration > window) {
+      const double pace = std::log(best / earlier) / window;
       if (!(pace < -0.1)) return false;
       if (iteration > 2 * window && iteration + std::log(goal / best) / pace > most_iterations) return false;
     }
+    earlier = best;
+    last_x_ = x_;
+    last_f_ = f_;
     if (iteration >= 3 && rho > 0.2) mixing = true;
     if (mixing)
-      x = anderson.step(x, f);
+      x_ = anderson.step(x_, f_);
     else
-      x += f;
+      x_ += f_;
     previous = change;
   }
   return false;
@@ -253,24 +313,30 @@ ReducedSystem Iteration::result(bool bounds_others) {
   ReducedSystem reduced;
   reduced.converged = true;
   reduced.num_modes = m_;
-  reduced.alpha = fourier::analyse(alpha_.transpose());
-  reduced.beta = fourier::analyse(beta_.transpose());
+  fourier::RealTransform& transform = fourier::thread_transform(N_, m_ * m_);
+  const auto harmonics = transform.spectrum().topRows(H_ + 1);
+  const auto errors = [&](const Columns& samples, double iteration, double of_fast) {
+    MatrixXd error(m_, m_);
+    for (Index q = 0; q < error.size(); ++q)
+      error(q) = iteration + 2 * eps * (samples.col(q).cwiseAbs().maxCoeff() + kappa_ * of_fast);
+    return error;
+  };
+  transform.samples() = alpha_;
+  transform.forward();
   // Harmonic by harmonic where the bound of the iteration is more than rounding.
   const double rounding = 4 * eps * alpha_.cwiseAbs().maxCoeff();
-  const double iteration = amplification_ * (2 * change_ <= rounding ? 2 * change_ : carried_change(reduced.alpha));
-  reduced.alpha_error =
-      iteration +
-      2 * eps * (alpha_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * A_.cwiseAbs().maxCoeff()).reshaped(m_, m_);
-  reduced.beta_error =
-      iteration / weight_max() +
-      2 * eps * (beta_.cwiseAbs().colwise().maxCoeff().array() + kappa_ * C_.cwiseAbs().maxCoeff()).reshaped(m_, m_);
+  const double iteration = amplification_ * (2 * change_ <= rounding ? 2 * change_ : carried_change(harmonics));
+  reduced.alpha_error = errors(alpha_, iteration, A_.cwiseAbs().maxCoeff());
+  reduced.beta_error = errors(beta_, iteration / weight_max(), C_.cwiseAbs().maxCoeff());
   for (Index l = 0; l < m_; ++l)
     for (Index s = 0; s < m_; ++s) {
       reduced.alpha_error(s, l) += given_rounding * rounding_(S_[s], S_[l]);
       reduced.beta_error(s, l) += G_error_(S_[s], S_[l]);
     }
-  drop_tail(reduced.alpha, reduced.alpha_error);
-  drop_tail(reduced.beta, reduced.beta_error);
+  reduced.alpha = without_tail(harmonics, reduced.alpha_error);
+  transform.samples() = beta_;
+  transform.forward();
+  reduced.beta = without_tail(harmonics, reduced.beta_error);
   if (bounds_others) reduced.others_below = others_below();
   reduced.start = start();
   reduced.solved = solved();
@@ -312,7 +378,7 @@ MatrixXd Iteration::start() const {
   return states;
 }
 
-double Iteration::distance(const VectorXd& x, const VectorXd& y) const {
+double Iteration::distance(const Column& x, const Column& y) const {
   const Index nm = n_ * m_;
   double largest = 0;
   in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {

@@ -24,17 +24,19 @@ struct Partition {
 };
 Partition partition(Eigen::Index I, std::span<const Eigen::Index> slow);
 
-// Leaves out trailing harmonics that together matter less than the error of the others; adds what they are to it.
-void drop_tail(FourierSeries& series, Eigen::MatrixXd& error);
+// The series of harmonics 0.. (rows) of m*m components without trailing ones that together matter less than the error
+// of the others; what they are is added to it.
+FourierSeries without_tail(const Eigen::Ref<const Eigen::MatrixXcd>& harmonics, Eigen::MatrixXd& error);
 
-// One attempt with N samples of the turn; stiffness and partition have to stay.
+// One attempt with N samples of the turn; stiffness and partition have to stay. One per thread at a time, since its
+// numbers are in memory that the thread keeps.
 class Iteration {
  public:
   Iteration(SampledStiffness& stiffness, const Partition& p, Eigen::Index num_samples)
       : Iteration(stiffness.system(), stiffness.at(num_samples), p, num_samples) {}
 
-  // Starts from what fewer samples gave.
-  void start_from(const Iteration& coarse);
+  // Called first, this or start_from: starts from what fewer samples gave.
+  void refine(const SlavingStart& coarse);
 
   // Starts from a neighbour's solution, if there is one, of no more harmonics than these samples show, and changes no
   // more than that has: those beyond them judge it.
@@ -53,32 +55,40 @@ class Iteration {
   SlavingStart solved() const { return {x_.head(changed_), amplification_, change_}; }
 
  private:
+  using Column = Eigen::Map<Eigen::VectorXd>;
+  using Columns = Eigen::Map<Eigen::MatrixXd>;
+
   Iteration(const ScaledSystem& system, const SampledStiffness::Samples& samples, const Partition& p,
             Eigen::Index num_samples);
 
   // Samples of k_ij over the turn.
   auto K(Eigen::Index i, Eigen::Index j) const { return samples_.K.col(i + I_ * j).array(); }
   double largest_K(Eigen::Index i, Eigen::Index j) const { return samples_.largest(i + I_ * j); }
-  double weight_max() const { return *std::max_element(weight_.begin(), weight_.end()); }
+  // Means of K and G on the diagonal.
+  double w2(Eigen::Index i) const { return given_.c(i + I_ * i, 0).real(); }
+  double b(Eigen::Index i) const { return G_(i, i); }
+  double weight_max() const { return weight_.maxCoeff(); }
 
   void weigh_residuals();
   // Bound on what is wrong with alpha, to first order, but for the amplification by repeated passes.
   double alpha_change() const { return effect_.cwiseProduct(residual_).sum(); }
-  // The same in the end, harmonic by harmonic and with rounding as independent; hb/engine/README.md (E7).
-  double carried_change(const FourierSeries& alpha);
+  // The same in the end, harmonic by harmonic and with rounding as independent; hb/engine/README.md (E7). Harmonics of
+  // alpha by rows.
+  double carried_change(const Eigen::Ref<const Eigen::MatrixXcd>& alpha);
   double others_below() const;
   Eigen::MatrixXd start() const;
 
   // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k, of x - y.
-  double distance(const Eigen::VectorXd& x, const Eigen::VectorXd& y) const;
+  double distance(const Column& x, const Column& y) const;
 
   // Residual of the two invariance equations, pushed through the inverse of their constant part:
   //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
   //   x_F'  = P x_S + R x_S',             P = A' - C alpha,   R = A + C' - C beta
   //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
-  void correction(const Eigen::VectorXd& x, Eigen::VectorXd& f);
+  // x_ gives f_ and residual_.
+  void correction();
   // A, C, A', C' over the turn.
-  void sample(const Eigen::VectorXd& x);
+  void sample();
   // The same where they are zero, and the residuals' harmonics.
   void sample_nothing();
   // alpha, beta, P and R over the turn; false if they are not found.
@@ -87,9 +97,8 @@ class Iteration {
   void sample_rates();  // P, R
   // The residuals over the turn.
   void sample_residual();
-  void push_through(Eigen::VectorXd& f);
-  // From the means of K and G on the diagonal.
-  void invert_constant_part(const Eigen::VectorXd& w2, const Eigen::VectorXd& b);
+  void push_through();
+  void invert_constant_part();
 
   const std::vector<Eigen::Index>& S_;
   const std::vector<Eigen::Index>& F_;
@@ -101,20 +110,24 @@ class Iteration {
   const SampledStiffness::Samples& samples_;
   // Samples of K_ij at j + n i: i of all modes, the slow ones first, j of the fast ones.
   std::vector<const double*> K_F_;
-  Eigen::MatrixXd alpha_, beta_;  // N x m*m
   // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
   fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2
-  Eigen::Map<Eigen::MatrixXd> A_, C_, A1_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
+  Columns A_, C_, A1_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
+  Columns room_;  // of what follows
+  Columns alpha_, beta_;  // N x m*m
   // Of each harmonic k: real parts of A_k, of weight C_k, then the imaginary parts.
-  Eigen::VectorXd x_;  // 4 n*m (H+1)
+  Column x_, f_, last_x_, last_f_;  // 4 n*m (H+1)
   Eigen::Index changed_;  // so many of x_ are solved for
-  std::vector<double> weight_;
-  Eigen::ArrayXd scale_;  // 1 of A, 1/weight of C; 2 n*m
   // Inverse M of the constant part, per harmonic: M_11, M_12, weight M_21, weight M_22, of each the real parts, then
   // the imaginary ones.
-  Eigen::MatrixXd inverse_;  // 8 n*m x (H+1)
-  Eigen::MatrixXd inverse_size_;  // |M_1c| + weight |M_2c|, c = 1, then c = 2; 2 n*m x (H+1)
-  Eigen::MatrixXd residual_, effect_;  // n*m x 2: sum_k |r_k| of both invariance equations, and what each does to alpha
+  Columns inverse_;  // 8 n*m x (H+1)
+  Columns inverse_size_;  // |M_1c| + weight |M_2c|, c = 1, then c = 2; 2 n*m x (H+1)
+  // Of what follows, each 2 n*m: of A or the first invariance equation, then of C or the second.
+  Eigen::MatrixXd pairs_;
+  Column weight_;  // of the slow mode
+  Column scale_;  // 1 of A, 1/weight of C
+  Column gain_, rate_;  // largest inverse_size_, and so of the rate of change
+  Column residual_, effect_;  // sum_k |r_k|, and what each does to alpha
   double kappa_ = 0, change_ = 0, amplification_ = 1;
   double enough_ = 0;  // of change_: what the start's own solution came to
 };
