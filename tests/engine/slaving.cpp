@@ -105,6 +105,32 @@ TEST(Slaving, RoundingCountsWhereItReachesTheResonantHarmonic) {
   }
 }
 
+// In fewer corrections if it is any good.
+TEST(Slaving, ARoughStartLeadsWhereZeroLeads) {
+  const HillSystem system =
+      two_modes(0.02, Eigen::Vector2d(2, 90).asDiagonal(), Eigen::Matrix2d{{0.3, 0.5}, {0.5, 2.0}});
+  const ScaledSystem here = scale_system(system, 1), beside = scale_system(system, 1.02);
+  SampledStiffness stiffness(here), stiffness_beside(beside);
+  constexpr std::array<Eigen::Index, 1> slow{0};
+  const ReducedSystem zero = slave_to(stiffness, slow, 0, false);
+  SlavingStart start = slave_to(stiffness_beside, slow, 0, false).solved;
+  start.rough = true;
+  const auto compare = [&] {
+    const ReducedSystem begun = slave_to(stiffness, slow, 0, false, start);
+    EXPECT_TRUE(begun.converged);
+    const FourierSeries apart = fourier::difference(begun.alpha, zero.alpha);
+    EXPECT_LE(fourier::wiener_norm(apart, 0), begun.alpha_error(0, 0) + zero.alpha_error(0, 0));
+    EXPECT_LE(begun.alpha_error(0, 0), 4 * zero.alpha_error(0, 0));
+    return begun.iterations;
+  };
+  ASSERT_TRUE(zero.converged);
+  EXPECT_LT(compare(), zero.iterations);
+  start.solution *= 100;
+  compare();
+  start.solution.setConstant(HUGE_VAL);
+  compare();
+}
+
 TEST(Slaving, ConstantCoefficientsReduceToOneModesCharacteristicEquation) {
   // Two coupled modes without modulation: the slow one alone has the roots of the whole that belong to it.
   const HillSystem system = two_modes(0.1, (Eigen::Matrix2d() << 1, 0.3, 0.3, 9).finished(), Eigen::Matrix2d::Zero());

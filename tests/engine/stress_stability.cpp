@@ -114,6 +114,8 @@ void run_begun_trial(stress::Family family, std::uint64_t seed, int trial, Tally
   for (SlavingStart& start : starts)
     for (double& number : start.solution) number += random(-0.1, 0.1);
   look("with noise");
+  for (SlavingStart& start : starts) start.rough = true;
+  look("roughly");
 }
 
 void run_begun(stress::Family family, int trials) {

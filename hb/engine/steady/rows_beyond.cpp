@@ -58,7 +58,9 @@ double stiffness(const WeightedSystem& s, Index i, Index k) {
 // Largest c_i/|D_i(k)| over k >= first, c_i all that couples row k of mode i to others.
 double largest_answer(const WeightedSystem& s, Index i, Index first) {
   const Index k = std::max(below_resonance(s, i), first);
-  const auto answer = [&](Index n) { return (s.coupling(i) + static_cast<double>(n) * s.across(i)) / stiffness(s, i, n); };
+  const auto answer = [&](Index n) {
+    return (s.coupling(i) + static_cast<double>(n) * s.across(i)) / stiffness(s, i, n);
+  };
   return std::max(answer(k), answer(k + 1));
 }
 
