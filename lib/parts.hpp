@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cassert>
 #include <cmath>
 
 namespace hb {
@@ -16,6 +17,7 @@ inline Eigen::Map<const Eigen::ArrayXXd> parts(const Eigen::MatrixXcd& z) {
 
 // Row i of z times the real factor i.
 inline Eigen::MatrixXcd with_rows_times(const Eigen::MatrixXd& factors, const Eigen::MatrixXcd& z) {
+  assert(factors.size() == z.rows());
   Eigen::ArrayXd of_parts(2 * z.rows());
   for (Eigen::Index i = 0; i < z.rows(); ++i) of_parts.segment<2>(2 * i).setConstant(factors(i));
   Eigen::MatrixXcd products(z.rows(), z.cols());
@@ -28,7 +30,7 @@ inline Eigen::VectorXd sums_of_moduli(const Eigen::MatrixXcd& z, Eigen::Index fi
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(z.rows());
   double* const sum = sums.data();
   for (Eigen::Index j = first; j < first + count; ++j) {
-    const double* const of = reinterpret_cast<const double*>(z.data()) + 2 * z.rows() * j;
+    const double* const of = parts(z).col(j).data();
     for (Eigen::Index i = 0; i < z.rows(); ++i)
       sum[i] += std::sqrt(of[2 * i] * of[2 * i] + of[2 * i + 1] * of[2 * i + 1]);
   }

@@ -78,6 +78,21 @@ TEST(PointFamily, ExponentsAreThoseOfEachPlaceAlone) {
   }
 }
 
+// A range of few roundings has points that coincide, some with the last node: none was read beyond it.
+TEST(PointFamily, PointsThatCoincideAreAnsweredAlike) {
+  const SweepScene scene = scene_along("tests/scenes/six_link.toml", 400, 400 * (1 + 4e-16), 29);
+  PointFamily family(scene, scene.settings().only);
+  const SweepPoint first = family.at(0);
+  for (std::size_t k = 1; k < 29; ++k) {
+    const SweepPoint point = family.at(k);
+    for (std::size_t r = 0; r < point.rods.size(); ++r) {
+      const Stability &a = first.rods[r].stability->stability, &b = point.rods[r].stability->stability;
+      EXPECT_EQ(a.verdict, b.verdict);
+      EXPECT_LE(std::abs(a.growth_rate - b.growth_rate), a.growth_error + b.growth_error);
+    }
+  }
+}
+
 // Where a band of AB ends, the sign of its growth rate is not pursued; that of CD is.
 TEST(SweepPoint, AtTheEndOfABandTheRodThatEndsItHasOneMethod) {
   const SweepScene scene = scene_along("tests/scenes/six_link.toml", 1600, 1700, 2);

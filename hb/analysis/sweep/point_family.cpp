@@ -39,6 +39,7 @@ Weights weights(const std::vector<double>& nodes, double x) {
   const std::size_t farthest = std::abs(x - nodes.front()) > std::abs(x - nodes.back()) ? 0 : nodes.size() - 1;
   Weights weights{lagrange(nodes, x, nodes.size()), lagrange(nodes, x, farthest),
                   static_cast<std::size_t>(std::ranges::upper_bound(nodes, x) - nodes.begin())};
+  weights.above = std::clamp<std::size_t>(weights.above, 1, nodes.size() - 1);
   for (std::size_t j = 0; j < nodes.size(); ++j) weights.d[j] = weights.w[j] - weights.d[j];
   return weights;
 }
@@ -83,6 +84,17 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
   start.rough = !(off <= near * size_of_all);
   if (start.rough) start.change = 0;
   start.solution = std::move(solution);
+  return start;
+}
+
+// What others are measured by is solved for, however near its start, and where the coarse ones diverge, too.
+PointSolution roughly(PointSolution start) {
+  for (auto& rod : start)
+    for (SlavingStart& mode : rod) {
+      mode.rough = true;
+      mode.change = 0;
+      mode.diverges = false;
+    }
   return start;
 }
 
@@ -159,7 +171,8 @@ void PointFamily::solve(Block& block, std::span<const std::size_t> which, bool b
     lock.unlock();
     PointSolution solution;
     try {
-      const PointSolution start = begun ? foretold(block, block.coarse, x) : PointSolution();
+      PointSolution start;
+      if (begun) start = roughly(foretold(block, block.coarse, x));
       node->point = analyse_point(scene_, x, only_, {.start = begun ? &start : nullptr, .solution = &solution});
     } catch (...) {
       lock.lock();

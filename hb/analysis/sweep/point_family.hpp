@@ -1,6 +1,6 @@
-// Neighbouring points of a sweep share work: a few of each block of points are solved from nothing, the others begin
-// with what polynomials through these foretell. Each point depends on the sweep's values alone, so that neither threads
-// nor the order in which points are asked for matter.
+// Neighbouring points of a sweep share work: a few of each block of points are solved from nothing, a few more begin
+// roughly with what polynomials through these foretell, all others with what those through both do. Each point depends
+// on the sweep's values alone, so that neither threads nor the order in which points are asked for matter.
 #pragma once
 
 #include <condition_variable>

@@ -139,9 +139,10 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   // with few samples.
   SlavingStart nearer;
   const Index begun_judge = begun.rough ? own : judging_samples(system, p, begun.solution, own);
-  if (begun.rough) {
+  const bool may_begin = begun.solution.size() > 0 && own <= 4 * start && begun_judge <= most_samples;
+  if (may_begin && begun.rough) {
     nearer = begun;
-  } else if (begun.solution.size() > 0 && own <= 4 * start && begun_judge <= most_samples) {
+  } else if (may_begin) {
     constexpr int few_iterations = 2;
     Iteration judged(stiffness, p, begun_judge);
     judged.start_from(begun);

@@ -60,8 +60,8 @@ class SampledStiffness {
 // Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
 // the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
 // changes by less than `tolerance` relative to its largest value, or to rounding. `bounds_others`: others_below is
-// looked for. `start` decides how many corrections that takes; unless it is rough, a change of 1e-13, or four times what
-// the neighbours came to, is then enough.
+// looked for. `start` decides how many corrections that takes; unless it is rough, a change of 1e-13, or four times
+// what the neighbours came to, is then enough.
 [[nodiscard]] ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Eigen::Index> slow, double tolerance,
                                      bool bounds_others, const SlavingStart& start = {});
 [[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow,

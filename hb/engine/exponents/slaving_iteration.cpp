@@ -178,25 +178,21 @@ void Iteration::invert_constant_part() {
 
 namespace {
 
-// Solves A x = b of b >= 0 in place of both, where A has no positive entry off the diagonal; false unless A^-1 >= 0,
-// which is so if and only if all pivots of elimination without interchanges are > 0 (A. Berman, R. J. Plemmons,
-// Nonnegative Matrices in the Mathematical Sciences, theorem 6.2.3).
+// Solves A x = b in place of both, without interchanges: where A has no positive entry off the diagonal and A^-1 >= 0
+// all pivots are > 0 (A. Berman, R. J. Plemmons, Nonnegative Matrices in the Mathematical Sciences, theorem 6.2.3).
 template <class Matrix, class Vector>
-bool solve_nonnegative(Matrix& A, Vector& x) {
+void eliminate_in_place(Matrix& A, Vector& x) {
   const Index n = A.rows();
-  for (Index k = 0; k < n; ++k) {
-    if (!(A(k, k) > 0)) return false;
+  for (Index k = 0; k < n; ++k)
     for (Index i = k + 1; i < n; ++i) {
       const double factor = A(i, k) / A(k, k);
       for (Index j = k + 1; j < n; ++j) A(i, j) -= factor * A(k, j);
       x(i) -= factor * x(k);
     }
-  }
   for (Index k = n; k-- > 0;) {
     for (Index j = k + 1; j < n; ++j) x(k) -= A(k, j) * x(j);
     x(k) /= A(k, k);
   }
-  return true;
 }
 
 }  // namespace
@@ -222,7 +218,8 @@ void Iteration::weigh_residuals() {
     }
   }
   l = direct;
-  if (!solve_nonnegative(through, l) || !l.allFinite()) l.setConstant(direct.maxCoeff());
+  eliminate_in_place(through, l);
+  if (!(l.minCoeff() >= 0 && l.allFinite())) l.setConstant(direct.maxCoeff());
   l = l.cwiseMax(direct);
   for (Index q = 0; q < effect_.size(); ++q)
     effect_(q) = (l(q % n_) * gain_(q) + damped(q % n_) * rate_(q)) * double(m_);
@@ -243,7 +240,7 @@ void Iteration::start_from(const SlavingStart& start) {
   if (given == 0) return;
   amplification_ = start.amplification;
   enough_ = 4 * start.change;
-  changed_ = given;
+  changed_ = start.rough ? x_.size() : given;
 }
 
 bool Iteration::solved_by_start(double tolerance) {

@@ -1,8 +1,6 @@
 // The invariance equations of slaving (hb/engine/README.md (E5)-(E7)) on samples of the turn, solved by iteration.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <complex>
 #include <span>
 #include <vector>
@@ -34,12 +32,14 @@ class Iteration {
  public:
   Iteration(SampledStiffness& stiffness, const Partition& p, Eigen::Index num_samples)
       : Iteration(stiffness.system(), stiffness.at(num_samples), p, num_samples) {}
+  Iteration(const Iteration&) = delete;
+  Iteration& operator=(const Iteration&) = delete;
 
   // Called first, this or start_from: starts from what fewer samples gave.
   void refine(const SlavingStart& coarse);
 
-  // Starts from a neighbour's solution, if there is one, of no more harmonics than these samples show, and changes no
-  // more than that has: those beyond them judge it.
+  // Starts from a neighbour's solution, if there is one, of no more harmonics than these samples show, and unless it is
+  // rough changes no more than that has: those beyond them judge it.
   void start_from(const SlavingStart& start);
 
   // Whether the start solves the equations with these samples, more than it was found with: then nothing was

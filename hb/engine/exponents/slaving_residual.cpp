@@ -11,7 +11,6 @@
 namespace hb::slaving {
 
 using Eigen::Index;
-using Eigen::VectorXd;
 
 namespace {
 

@@ -69,10 +69,10 @@ Passages::Passages(const Operator& A, Index R) : out(Eigen::VectorXd::Zero(A.num
   const WeightedSystem& s = A.system();
   const Index H = A.num_harmonics(), I = s.I, last = std::max(2 * H + 1, R);
   Eigen::MatrixXd c = Eigen::MatrixXd::Zero(I, last + 2);
-  Eigen::MatrixXd size(I, I);
+  Eigen::MatrixXd sizes(I, I);
   for (Index m = std::min(last, s.P); m > 0; --m) {
-    size.reshaped() = moduli(s.K.col(m));
-    c.col(m) = c.col(m + 1).cwiseMax(size.rowwise().sum());
+    sizes.reshaped() = moduli(s.K.col(m));
+    c.col(m) = c.col(m + 1).cwiseMax(sizes.rowwise().sum());
   }
   for (Index i = 0; i < I; ++i) {
     for (Index k = H + 1; k <= R; ++k) {

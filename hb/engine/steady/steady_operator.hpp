@@ -32,6 +32,7 @@ struct WeightedSystem {
   Eigen::MatrixXd K_rounding;  // sum over harmonics of |error| of K, entry by entry
   Eigen::VectorXd f_rounding;  // the same of f
   Eigen::VectorXd coupling;  // upper bound of sum_k max_tau |E_ik|, the largest part of row i
+  Eigen::VectorXd within, across;  // sums over j != i of |mean K_ij| and of |G_ij|
 
   std::complex<double> D(Eigen::Index i, Eigen::Index k) const {
     const double n = static_cast<double>(k);
@@ -45,8 +46,7 @@ struct WeightedSystem {
   }
   // B(k), what of A couples harmonic k to itself: D(k), K's mean off the diagonal, and i k G_off.
   [[nodiscard]] Eigen::MatrixXcd block(Eigen::Index k) const;
-  Eigen::VectorXd within, across;  // sums over j != i of |mean K_ij| and of |G_ij|
-  // Largest sum over j != i of |B_ij/B_ii|, at most.
+  // Upper bound of the largest sum over j != i of |B_ij/B_ii|.
   [[nodiscard]] double coupled_within(Eigen::Index k) const;
   // Size of |D_i(k)| away from resonance, smallest over k: for judging what is negligible.
   double smallest_diagonal(Eigen::Index i) const { return std::max(std::abs(mean(i)), 1.0); }

@@ -76,8 +76,8 @@ FourierSeries cut(FourierSeries series, Eigen::Index num_harmonics) {
 }
 
 // Drops trailing harmonics that are below rounding in every component, relative to sqrt(k_ii k_kk) of the mean; of a
-// mode whose own stiffness is small beside its couplings these count. Other modes' stiffnesses do not: they may be 1e20
-// times as large.
+// mode whose own stiffness is small beside its couplings these, at most sqrt(2) times too large, count. Other modes'
+// stiffnesses do not: they may be 1e20 times as large.
 constexpr double rounding_of_stiffness = 1e-17, least_of_couplings = 1e-8;
 FourierSeries without_rounding(FourierSeries K, Eigen::Index I) {
   Eigen::ArrayXd most = Eigen::ArrayXd::Zero(2 * I * I);  // of real and imaginary parts in turn
