@@ -213,8 +213,7 @@ std::vector<MeanExponent> mean_exponents(const ScaledSystem& system) {
   std::vector<MeanExponent> result(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) result[static_cast<std::size_t>(i)].value = modes.mu(i);
   if (H == 0) return result;
-  const MatrixXd sizes =
-      sums_of_moduli(system.K.c, 1, H).reshaped(system.num_modes(), system.num_modes());
+  const MatrixXd sizes = sums_of_moduli(system.K.c, 1, H).reshaped(system.num_modes(), system.num_modes());
   // All ways of all orders: C + C C/delta + ... = C (1 - C/delta)^-1, which is positive where the sum converges.
   const MatrixXd C = modes.Y * sizes * modes.X;
   const MatrixXd ways = dense::inverse(MatrixXd(MatrixXd::Identity(n, n) - C / least_detuning));
