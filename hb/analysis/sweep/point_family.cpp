@@ -82,7 +82,6 @@ SlavingStart interpolated(const Weights& weights, const std::vector<const Slavin
   const double off = std::ranges::max(doubt.values()), size_of_all = std::ranges::max(largest.values());
   if (!(off <= rough * size_of_all && solution.allFinite())) return start;
   start.rough = !(off <= near * size_of_all);
-  if (start.rough) start.change = 0;
   start.solution = std::move(solution);
   return start;
 }
@@ -92,7 +91,6 @@ PointSolution roughly(PointSolution start) {
   for (auto& rod : start)
     for (SlavingStart& mode : rod) {
       mode.rough = true;
-      mode.change = 0;
       mode.diverges = false;
     }
   return start;

@@ -239,8 +239,9 @@ void Iteration::start_from(const SlavingStart& start) {
   x_.tail(x_.size() - given).setZero();
   if (given == 0) return;
   amplification_ = start.amplification;
+  if (start.rough) return;
   enough_ = 4 * start.change;
-  changed_ = start.rough ? x_.size() : given;
+  changed_ = given;
 }
 
 bool Iteration::solved_by_start(double tolerance) {
