@@ -55,27 +55,70 @@ ModeFactors::ModeFactors(const Operator& A) : H_(A.num_harmonics()) {
   unknowns_.resize(std::size_t(H_ + 1 + most));
 }
 
+// Of a mode's column a vector holds the numbers of `together` harmonics, those of all lanes make a square.
+template <class To>
+void ModeFactors::gather(const Spectrum& x, const Band& band, const To& to) const {
+  constexpr Index together = width / 2;
+  std::array<const double*, std::size_t(width)> columns;
+  for (Index c = 0; c < width; ++c)
+    columns[std::size_t(c)] = reinterpret_cast<const double*>(x.col(band.mode(c)).data());
+  Index k = 0;
+  for (; k + together <= H_ + 1; k += together) {
+    Lanes numbers[width];
+    for (Index c = 0; c < width; ++c) numbers[c] = Lanes::load(columns[std::size_t(c)] + 2 * k);
+    transpose(numbers);
+    for (Index j = 0; j < together; ++j) to(k + j, Complex{numbers[2 * j], numbers[2 * j + 1]});
+  }
+  for (; k <= H_; ++k)
+    to(k, Complex{Lanes::of([&](Index c) { return columns[std::size_t(c)][2 * k]; }),
+                  Lanes::of([&](Index c) { return columns[std::size_t(c)][2 * k + 1]; })});
+}
+
+template <class From>
+void ModeFactors::scatter(const From& from, const Band& band, Spectrum& x) const {
+  constexpr Index together = width / 2;
+  std::array<double*, std::size_t(width)> columns;
+  for (Index c = 0; c < width; ++c) columns[std::size_t(c)] = reinterpret_cast<double*>(x.col(band.mode(c)).data());
+  Index k = 0;
+  for (; k + together <= H_ + 1; k += together) {
+    Lanes numbers[width];
+    for (Index j = 0; j < together; ++j) {
+      numbers[2 * j] = from(k + j).re;
+      numbers[2 * j + 1] = from(k + j).im;
+    }
+    transpose(numbers);
+    for (Index c = 0; c < band.count; ++c) numbers[c].store(columns[std::size_t(c)] + 2 * k);
+  }
+  for (; k <= H_; ++k) {
+    const Lanes::Values re = from(k).re.values(), im = from(k).im.values();
+    for (std::size_t c = 0; c < std::size_t(band.count); ++c) {
+      columns[c][2 * k] = re[c];
+      columns[c][2 * k + 1] = im[c];
+    }
+  }
+}
+
 void ModeFactors::assemble(const Operator& A, Band& band) const {
   const WeightedSystem& s = A.system();
   const Index p = band.p;
   band.rows = std::make_unique_for_overwrite<Complex[]>(std::size_t((H_ + 1 + p) * (2 * p + 1)));
   std::vector<Complex> E(std::size_t(2 * p + 1));
-  // value(mode) of each.
-  const auto of_modes = [&](const auto& value) {
-    return Complex{Lanes::of([&](Index c) { return value(band.mode(c)).real(); }),
-                   Lanes::of([&](Index c) { return value(band.mode(c)).imag(); })};
-  };
   for (Index m = 1; m <= p; ++m) {
-    const Complex here = of_modes([&](Index i) { return s.K(i * (s.I + 1), m); });
+    const auto K = [&](Index c) { return s.K(band.mode(c) * (s.I + 1), m); };
+    const Complex here{Lanes::of([&](Index c) { return K(c).real(); }),
+                       Lanes::of([&](Index c) { return K(c).imag(); })};
     E[std::size_t(p + m)] = here;
     E[std::size_t(p - m)] = {here.re, -here.im};
   }
-  for (Index k = H_; k >= -p; --k) {
-    Complex* row = band.row(H_, k);
+  const auto put = [&](Index k, const Complex& D) {
+    Complex* const row = band.row(H_, k);
     std::copy(E.begin(), E.end(), row - p);
-    *row = of_modes([&](Index i) { return A.D()(std::abs(k), i); });
-    if (k < 0) row->im = -row->im;
-  }
+    *row = D;
+  };
+  gather(A.D(), band, [&](Index k, const Complex& D) {
+    put(k, D);
+    if (k > 0 && k <= p) put(-k, {D.re, -D.im});
+  });
 }
 
 // What is no larger than smallest(lane) makes place for that.
@@ -150,18 +193,12 @@ void ModeFactors::substitute(const Band& band) {
 }
 
 void ModeFactors::solve_in_place(Spectrum& x) {
+  Complex* const unknowns = &unknowns_[std::size_t(H_)];
   for (const Band& band : bands_) {
-    std::array<std::complex<double>*, std::size_t(Lanes::width)> columns;
-    for (Index c = 0; c < Lanes::width; ++c) columns[std::size_t(c)] = x.col(band.mode(c)).data();
-    for (Index k = 0; k <= H_; ++k)
-      unknowns_[std::size_t(H_ - k)] = {Lanes::of([&](Index c) { return columns[std::size_t(c)][k].real(); }),
-                                        Lanes::of([&](Index c) { return columns[std::size_t(c)][k].imag(); })};
+    gather(x, band, [&](Index k, const Complex& rhs) { unknowns[-k] = rhs; });
     substitute(band);
-    for (Index k = 0; k <= H_; ++k) {
-      const Complex& unknown = unknowns_[std::size_t(H_ - k)];
-      const Lanes::Values re = unknown.re.values(), im = unknown.im.values();
-      for (std::size_t c = 0; c < std::size_t(band.count); ++c) columns[c][k] = {re[c], k > 0 ? im[c] : 0};
-    }
+    unknowns[0].im = 0;
+    scatter([&](Index k) -> const Complex& { return unknowns[-k]; }, band, x);
   }
 }
 

@@ -18,6 +18,7 @@ class ModeFactors {
   void solve_in_place(Spectrum& x);  // x <- M^-1 x
 
  private:
+  static constexpr Eigen::Index width = Lanes::width;
   // Modes side by side, as many as the machine's vectors hold numbers; lanes that are left repeat the last one.
   struct Complex {
     Lanes re, im;
@@ -31,6 +32,12 @@ class ModeFactors {
     Complex* row(Eigen::Index H, Eigen::Index k) const { return &rows[std::size_t((H - k) * (2 * p + 1) + p)]; }
     Eigen::Index mode(Eigen::Index lane) const { return first + std::min(lane, count - 1); }
   };
+  // to(k, x_k of the band's modes), k = 0..H.
+  template <class To>
+  void gather(const Spectrum& x, const Band& band, const To& to) const;
+  // The other way: from(k).
+  template <class From>
+  void scatter(const From& from, const Band& band, Spectrum& x) const;
   template <class Smallest>
   static Complex regular(const Complex& pivot, const Smallest& smallest);
   void assemble(const Operator& A, Band& band) const;
