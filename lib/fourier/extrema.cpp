@@ -9,6 +9,7 @@
 
 #include "lib/constants.hpp"
 #include "lib/fourier/fourier.hpp"
+#include "lib/fourier/waves.hpp"
 #include "lib/workspace.hpp"
 
 namespace hb::fourier {
@@ -53,27 +54,17 @@ class Components {
   double mean(Index i) const { return a_(i); }
 
   Jet at(Index i, double tau) const {
-    using Lanes = Eigen::Array<double, lanes, 1>;
-    constexpr Index afresh = 16;  // blocks: powers by multiplication lose an eps at each
-    const std::complex<double> e1 = std::polar(1.0, tau), e2 = e1 * e1, e3 = e2 * e1, e4 = e2 * e2;
-    const Lanes c0(e1.real(), e2.real(), e3.real(), e4.real()), s0(e1.imag(), e2.imag(), e3.imag(), e4.imag());
-    Lanes c = c0, s = s0, n(1, 2, 3, 4), f = Lanes::Zero(), f1 = f, f2 = f, f3 = f;
-    for (Index first = 0; first < parts_.rows(); first += lanes) {
-      if (first > 0 && first % (afresh * lanes) == 0) {
-        const std::complex<double> e = std::polar(1.0, static_cast<double>(first) * tau);
-        c = e.real() * c0 - e.imag() * s0;
-        s = e.real() * s0 + e.imag() * c0;
-      }
-      const Lanes re = Lanes::Map(&parts_(first, 2 * i)), im = Lanes::Map(&parts_(first, 2 * i + 1));
-      const Lanes x = re * c - im * s, y = n * (re * s + im * c), z = n * n;
+    using Four = WavesOfFour::Four;
+    Four f = Four::Zero(), f1 = f, f2 = f, f3 = f;
+    WavesOfFour waves(tau, true);
+    for (Index first = 0; first < parts_.rows(); first += lanes, waves.advance()) {
+      const Four &c = waves.cosines(), &s = waves.sines(), &n = waves.k();
+      const Four re = Four::Map(&parts_(first, 2 * i)), im = Four::Map(&parts_(first, 2 * i + 1));
+      const Four x = re * c - im * s, y = n * (re * s + im * c), z = n * n;
       f += x;
       f1 -= y;
       f2 -= z * x;
       f3 += z * y;
-      const Lanes turned = e4.real() * c - e4.imag() * s;
-      s = e4.real() * s + e4.imag() * c;
-      c = turned;
-      n += static_cast<double>(lanes);
     }
     return {a_(i) + f.sum(), f1.sum(), f2.sum(), f3.sum()};
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lib/constants.hpp"
+#include "lib/fourier/transpose.hpp"
 #include "lib/fourier/waves.hpp"
 #include "lib/parts.hpp"
 #include "lib/rod/rod.hpp"
@@ -25,10 +26,24 @@ using rod_terms::Angles;
 
 constexpr Eigen::Index samples_per_wave = 8;
 
+using fourier::WavesOfFour;
+
+// What the harmonics of T are at an angle: Re and Im of each function side by side, the harmonics down, as many as
+// `WavesOfFour` take, of the mean a half.
+Eigen::MatrixXd harmonics_down(const FourierSeries& T, Eigen::Index H) {
+  constexpr Eigen::Index together = WavesOfFour::Four::SizeAtCompileTime;
+  const Eigen::Index count = H + 1;
+  Eigen::MatrixXd down((count + together - 1) / together * together, 2 * T.num_components());
+  fourier::transpose(parts(T.c).matrix().leftCols(count), down.topRows(count));
+  down.bottomRows(down.rows() - count).setZero();
+  down.row(0) *= 0.5;
+  return down;
+}
+
 // sign * F and its derivatives over (s = x/l, tau), F = d^order w/dx^order.
 struct Surface {
   const RodShapes& shapes;
-  const FourierSeries& T;
+  const Eigen::MatrixXd& T;  // harmonics_down
   double l;
   int order;
   double sign;
@@ -39,27 +54,37 @@ struct Surface {
     Eigen::Matrix2d hessian;
   };
 
-  // With e^{ik tau} = c + i s and T_k = a + i b the terms of k are
+  // With e^{ik tau} = c + i s and a + i b = sum of the functions' T_k times their shapes the terms of k are
   //     2 (a c - b s),   -2 k (a s + b c),   -2 k^2 (a c - b s).
   Jet at(double s, double tau) const {
-    const Eigen::Index n = T.num_components(), H = T.num_harmonics();
-    Eigen::Matrix<double, Eigen::Dynamic, 6> waves(H + 1, 6);  // 2 c, 2 s, times 1, k, k^2
-    waves.row(0) << 1, 0, 0, 0, 0, 0;
-    fourier::Waves next(tau);
-    for (Eigen::Index j = 1; j <= H; ++j) {
-      const double k = static_cast<double>(j);
-      const Complex e = 2.0 * next.next();
-      waves.row(j) << e.real(), e.imag(), k * e.real(), k * e.imag(), k * k * e.real(), k * k * e.imag();
+    using Four = WavesOfFour::Four;
+    const Eigen::MatrixXd shape = shapes.values(s * l, order, 3);
+    Four F = Four::Zero(), F_tau = F, F_tautau = F, F_s = F, F_stau = F, F_ss = F;
+    WavesOfFour waves(tau, false);
+    for (Eigen::Index first = 0; first < T.rows(); first += F.size(), waves.advance()) {
+      Four a0 = Four::Zero(), b0 = a0, a1 = a0, b1 = a0, a2 = a0, b2 = a0;  // with the shapes' derivatives 0 to 2
+      for (Eigen::Index i = 0; i < shape.cols(); ++i) {
+        const Four re = Four::Map(&T(first, 2 * i)), im = Four::Map(&T(first, 2 * i + 1));
+        a0 += shape(0, i) * re;
+        b0 += shape(0, i) * im;
+        a1 += shape(1, i) * re;
+        b1 += shape(1, i) * im;
+        a2 += shape(2, i) * re;
+        b2 += shape(2, i) * im;
+      }
+      const Four &cosine = waves.cosines(), &sine = waves.sines(), &k = waves.k();
+      const Four here = a0 * cosine - b0 * sine;
+      F += here;
+      F_tau -= k * (a0 * sine + b0 * cosine);
+      F_tautau -= k * k * here;
+      F_s += a1 * cosine - b1 * sine;
+      F_stau -= k * (a1 * sine + b1 * cosine);
+      F_ss += a2 * cosine - b2 * sine;
     }
-    const Eigen::Matrix<double, Eigen::Dynamic, 6> sums = parts(T.c).matrix() * waves;
-    const Eigen::Map<const Eigen::Matrix<Complex, Eigen::Dynamic, 6>> z(reinterpret_cast<const Complex*>(sums.data()),
-                                                                        n, 6);
-    Eigen::Matrix<double, Eigen::Dynamic, 3> time(n, 3);  // T, T', T''
-    time << z.col(0).real() - z.col(1).imag(), -(z.col(3).real() + z.col(2).imag()), z.col(5).imag() - z.col(4).real();
-    const Eigen::Matrix3d values = sign * shapes.values(s * l, order, 3) * time;
-    const Eigen::RowVector3d F = values.row(0), F_s = l * values.row(1), F_ss = l * l * values.row(2);
-    Jet jet{F(0), {F_s(0), F(1)}, {}};
-    jet.hessian << F_ss(0), F_s(1), F_s(1), F(2);
+    const double unit = 2 * sign;
+    Jet jet{unit * F.sum(), {unit * l * F_s.sum(), unit * F_tau.sum()}, {}};
+    jet.hessian << l * l * F_ss.sum(), l * F_stau.sum(), l * F_stau.sum(), F_tautau.sum();
+    jet.hessian *= unit;
     return jet;
   }
 };
@@ -200,7 +225,7 @@ RodPeak peak(const rod_terms::ShapeTable& table, const FourierSeries& T, int ord
     end_if_wished();
     const double top = grid.highest.maxCoeff();
     if (!(top > 0)) return {};
-    const FourierSeries telling = fourier::resized(T, harmonics_above(size, eps / 2 * top));
+    const Eigen::MatrixXd telling = harmonics_down(T, harmonics_above(size, eps / 2 * top));
     RodPeak best;
     double curvature = 0;
     for (const Candidate& c : candidates_of(grid, 0.9 * top - size.tail(size.size() - H).sum())) {
