@@ -13,18 +13,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 void Iteration::sample() {
-  const Index both = 2 * n_ * m_;
   auto re = back_.re(), im = back_.im();
-  in_groups(both, [&]<int width>(std::integral_constant<int, width>, Index q) {
-    const Numbers<width> scale = at<width>(scale_.data() + q);
-    for (Index k = 0; k <= H_; ++k) {
-      const double* from = x_.data() + 2 * both * k + q;
-      double *real = &re(q, k), *imaginary = &im(q, k);
-      const Numbers<width> a = scale * at<width>(from), b = scale * at<width>(from + both);
-      at<width>(real) = a;
-      at<width>(imaginary) = b;
-      at<width>(real + both) = -double(k) * b;
-      at<width>(imaginary + both) = double(k) * a;
+  in_groups(n_ * m_, [&]<int width>(std::integral_constant<int, width>, Index q) {
+    const Index nm = n_ * m_, last = H_;  // in registers
+    const Numbers<width> scale = at<width>(scale_.data() + nm + q);
+    for (Index k = 0; k <= last; ++k) {
+      const double n = double(k);
+      const double* const from = x_.data() + 4 * nm * k + q;
+      double* const real = &re(q, k);
+      double* const imaginary = &im(q, k);
+      const Numbers<width> c = scale * at<width>(from + nm), d = scale * at<width>(from + 3 * nm);
+      at<width>(real) = at<width>(from);
+      at<width>(imaginary) = at<width>(from + 2 * nm);
+      at<width>(real + nm) = c;
+      at<width>(imaginary + nm) = d;
+      at<width>(real + 2 * nm) = -n * d;
+      at<width>(imaginary + 2 * nm) = n * c;
+      if (diagonal_damping_) continue;
+      at<width>(real + 3 * nm) = -n * at<width>(from + 2 * nm);
+      at<width>(imaginary + 3 * nm) = n * at<width>(from);
     }
   });
   re.rightCols(N_ / 2 - H_).setZero();
@@ -78,11 +85,13 @@ void Iteration::sample_rates() {
   for (Index l = 0; l < m_; ++l)
     for (Index j = 0; j < n_; ++j) {
       const Index own = j + n_ * l;
-      const double *A = A_.col(own).data(), *A1 = A1_.col(own).data(), *C1 = C1_.col(own).data(), *C = C_.col(j).data(),
+      const double* const A1 = diagonal_damping_ ? nullptr : A1_.col(own).data();
+      const double *A = A_.col(own).data(), *C1 = C1_.col(own).data(), *C = C_.col(j).data(),
                    *alpha = alpha_.col(m_ * l).data(), *beta = beta_.col(m_ * l).data();
       double *to_P = P_.col(own).data(), *to_R = R_.col(own).data();
       in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
-        Numbers<width> P = at<width>(A1 + t), R = at<width>(A + t) + at<width>(C1 + t);
+        Numbers<width> P = Numbers<width>::Zero(), R = at<width>(A + t) + at<width>(C1 + t);
+        if (A1 != nullptr) P = at<width>(A1 + t);
         for (Index s = 0; s < m_; ++s) {
           const Numbers<width> C_js = at<width>(C + N_ * n_ * s + t);
           P -= C_js * at<width>(alpha + N_ * s + t);
@@ -129,19 +138,19 @@ void Iteration::correction() {
   push_through();
 }
 
+// But for what is linear in P and R of the same mode.
 void Iteration::sample_residual() {
   double *out1 = forward_.samples().col(2 * n_ * m_).data(), *out2 = forward_.samples().col(3 * n_ * m_).data();
   for (Index l = 0; l < m_; ++l)
     for (Index j = 0; j < n_; ++j, out1 += N_, out2 += N_) {
-      const double own = G_(F_[j], F_[j]), across = G_(F_[j], S_[l]);
+      const double across = G_(F_[j], S_[l]);
       const double *alone = K(F_[j], S_[l]).data(), *A = A_.col(n_ * l).data(), *C = C_.col(n_ * l).data(),
                    *P = P_.col(n_ * l).data(), *R = R_.col(n_ * l).data(), *R_j = R_.col(j).data(),
                    *alpha = alpha_.col(m_ * l).data(), *beta = beta_.col(m_ * l).data();
       const double* const* K_j = K_F_.data() + n_ * (m_ + j);
       in_groups(N_, [&]<int width>(std::integral_constant<int, width>, Index t) {
         using V = Numbers<width>;
-        const V P_jl = at<width>(P + N_ * j + t), R_jl = at<width>(R + N_ * j + t);
-        V r1 = at<width>(alone + t) + own * P_jl, r2 = P_jl + across + own * R_jl;
+        V r1 = at<width>(alone + t), r2 = V::Constant(across);
         for (Index s = 0; s < m_; ++s) {
           const V R_js = at<width>(R_j + N_ * n_ * s + t);
           r1 -= R_js * at<width>(alpha + N_ * s + t);
@@ -163,19 +172,30 @@ void Iteration::sample_residual() {
     }
 }
 
+// Of harmonic k, with what samples leave out, r1 = r1 + (G_jj + ik) P, r2 = r2 + P + (G_jj + ik) R, P = P + ik A.
 void Iteration::push_through() {
-  const Index nm = n_ * m_;
-  const auto re = forward_.re(), im = forward_.im();
-  in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
+  auto re = forward_.re(), im = forward_.im();
+  in_groups(n_ * m_, [&]<int width>(std::integral_constant<int, width>, Index q) {
     using V = Numbers<width>;
+    const Index nm = n_ * m_, last = H_;  // in registers
+    const V own = at<width>(&damping_(q));
     V sum1 = V::Zero(), sum2 = V::Zero();
-    for (Index k = 0; k <= H_; ++k) {
-      const double n = double(k), signs = k > 0 ? 2 : 1;
-      const auto x = [&](Index column) { return at<width>(&re(nm * column + q, k)); };
-      const auto y = [&](Index column) { return at<width>(&im(nm * column + q, k)); };
-      const auto M = [&](Index entry) { return at<width>(&inverse_(nm * entry + q, k)); };
-      const auto to = [&](Index part) { return at<width>(&f_(nm * (4 * k + part) + q)); };
-      const V x1 = x(2) - n * y(0), y1 = y(2) + n * x(0), x2 = x(3) - n * y(1), y2 = y(3) + n * x(1);
+    for (Index k = 0; k <= last; ++k) {
+      const double n = double(k), signs = k > 0 ? 2 : 1, left_out = diagonal_damping_ ? n : 0;
+      double* const re_k = re.col(k).data() + q;
+      double* const im_k = im.col(k).data() + q;
+      double* const f_k = f_.data() + 4 * nm * k + q;
+      const double* const x_k = x_.data() + 4 * nm * k + q;
+      const double* const M_k = inverse_.col(k).data() + q;
+      const auto x = [&](Index column) { return at<width>(re_k + nm * column); };
+      const auto y = [&](Index column) { return at<width>(im_k + nm * column); };
+      const auto A = [&](Index part) { return at<width>(x_k + nm * part); };
+      const auto M = [&](Index entry) { return at<width>(M_k + nm * entry); };
+      const auto to = [&](Index part) { return at<width>(f_k + nm * part); };
+      const V px = x(0) - left_out * A(2), py = y(0) + left_out * A(0);
+      const V x1 = x(2) + own * px - n * py, y1 = y(2) + own * py + n * px;
+      const V x2 = x(3) + px + own * x(1) - n * y(1), y2 = y(3) + py + own * y(1) + n * x(1);
+      x(2) = x1, y(2) = y1, x(3) = x2, y(3) = y2;
       sum1 += signs * (x1.square() + y1.square()).sqrt();
       sum2 += signs * (x2.square() + y2.square()).sqrt();
       to(0) = M(0) * x1 - M(1) * y1 + M(2) * x2 - M(3) * y2;

@@ -75,12 +75,12 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       diagonal_damping_(system.diagonal_damping),
       I_(system.num_modes()),
       samples_(samples),
-      back_(N_, 4 * n_ * m_),
+      back_(N_, (diagonal_damping_ ? 3 : 4) * n_ * m_),
       forward_(N_, 4 * n_ * m_),
       A_(back_.samples().data(), N_, n_ * m_),
       C_(A_.data() + A_.size(), N_, n_ * m_),
-      A1_(C_.data() + A_.size(), N_, n_ * m_),
-      C1_(A1_.data() + A_.size(), N_, n_ * m_),
+      C1_(C_.data() + A_.size(), N_, n_ * m_),
+      A1_(diagonal_damping_ ? nullptr : C1_.data() + A_.size(), diagonal_damping_ ? 0 : N_, n_ * m_),
       P_(forward_.samples().data(), N_, n_ * m_),
       R_(P_.data() + P_.size(), N_, n_ * m_),
       room_(kept_room(2 * (H_ + 1), 13 * n_ * m_ + 2 * m_ * m_)),
@@ -93,13 +93,14 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       changed_(x_.size()),
       inverse_(last_f_.data() + x_.size(), 8 * n_ * m_, H_ + 1),
       inverse_size_(inverse_.data() + inverse_.size(), 2 * n_ * m_, H_ + 1),
-      pairs_(2 * n_ * m_, 6),
+      pairs_(2 * n_ * m_, 7),
       weight_(&pairs_(0, 0), pairs_.rows()),
       scale_(&pairs_(0, 1), pairs_.rows()),
       gain_(&pairs_(0, 2), pairs_.rows()),
       rate_(&pairs_(0, 3), pairs_.rows()),
       residual_(&pairs_(0, 4), pairs_.rows()),
-      effect_(&pairs_(0, 5), pairs_.rows()) {
+      effect_(&pairs_(0, 5), pairs_.rows()),
+      damping_(&pairs_(0, 6), pairs_.rows()) {
   assert(N_ == 2 * (H_ + 1));
   if (!diagonal_damping_) {  // what alpha and beta, which depend on P and R, are found from first
     alpha_.setZero();
@@ -115,6 +116,7 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
     scale_.segment(nm + n_ * l, n_).setConstant(1 / weight);
   }
   weight_.tail(nm) = weight_.head(nm);
+  for (Index q = 0; q < 2 * nm; ++q) damping_(q) = b(F_[std::size_t(q % n_)]);
   // kappa: what an error of A does to alpha.
   for (Index s = 0; s < m_; ++s) {
     double sum = 0;
@@ -363,13 +365,18 @@ double Iteration::others_below() const {
 // At tau = 0: x_F = A x_S + C x_S', x_F' = P x_S + R x_S'.
 MatrixXd Iteration::start() const {
   MatrixXd states = MatrixXd::Zero(2 * I_, 2 * m_);
+  const auto left_out = [&](Index q) {  // A'
+    double sum = 0;
+    for (Index k = 1; k <= H_ && diagonal_damping_; ++k) sum -= 2 * double(k) * x_(n_ * m_ * (4 * k + 2) + q);
+    return sum;
+  };
   for (Index l = 0; l < m_; ++l) {
     states(S_[l], l) = 1;
     states(I_ + S_[l], m_ + l) = 1;
     for (Index j = 0; j < n_; ++j) {
       states(F_[j], l) = A_(0, j + n_ * l);
       states(F_[j], m_ + l) = C_(0, j + n_ * l);
-      states(I_ + F_[j], l) = P_(0, j + n_ * l);
+      states(I_ + F_[j], l) = P_(0, j + n_ * l) + left_out(j + n_ * l);
       states(I_ + F_[j], m_ + l) = R_(0, j + n_ * l);
     }
   }

@@ -87,14 +87,14 @@ class Iteration {
   //   0 = P' - R alpha + G_FF P + K_FS + K_FF A,   0 = P + R' - R beta + G_FS + G_FF R + K_FF C
   // x_ gives f_ and residual_.
   void correction();
-  // A, C, A', C' over the turn.
+  // A, C, C' over the turn; A' where damping couples: elsewhere the equations are linear in it.
   void sample();
   // The same where they are zero, and the residuals' harmonics.
   void sample_nothing();
   // alpha, beta, P and R over the turn; false if they are not found.
   bool reduce();
   void sample_slow();  // alpha, beta
-  void sample_rates();  // P, R
+  void sample_rates();  // P, R; without A' where damping is diagonal
   // The residuals over the turn.
   void sample_residual();
   void push_through();
@@ -111,8 +111,8 @@ class Iteration {
   // Samples of K_ij at j + n i: i of all modes, the slow ones first, j of the fast ones.
   std::vector<const double*> K_F_;
   // Pairs q = j + n l of a fast mode j and a slow one l lie side by side in all that is told by harmonics.
-  fourier::SplitTransform back_, forward_;  // columns A, C, A', C'; P, R and the rest of r1, r2
-  Columns A_, C_, A1_, C1_, P_, R_;  // N x n*m samples; A1 = A', C1 = C'
+  fourier::SplitTransform back_, forward_;  // columns A, C, C', A'; P, R and the rest of r1, r2, in the end r1, r2
+  Columns A_, C_, C1_, A1_, P_, R_;  // N x n*m samples; C1 = C', A1 = A'
   Columns room_;  // of what follows
   Columns alpha_, beta_;  // N x m*m
   // Of each harmonic k: real parts of A_k, of weight C_k, then the imaginary parts.
@@ -128,6 +128,7 @@ class Iteration {
   Column scale_;  // 1 of A, 1/weight of C
   Column gain_, rate_;  // largest inverse_size_, and so of the rate of change
   Column residual_, effect_;  // sum_k |r_k|, and what each does to alpha
+  Column damping_;  // G of the fast mode
   double kappa_ = 0, change_ = 0, amplification_ = 1;
   double enough_ = 0;  // of change_: what the start's own solution came to
 };

@@ -84,7 +84,7 @@ double Iteration::carried_change(const Eigen::Ref<const Eigen::MatrixXcd>& alpha
       for (const Index first : {q, nm + q}) {
         for (Index k = 0; k < count; ++k) {
           const double n = double(k), rate = diagonal_damping_ ? 1 : n + weight;
-          r(k) = modulus({re(2 * nm + first, k) - n * im(first, k), im(2 * nm + first, k) + n * re(first, k)});
+          r(k) = modulus({re(2 * nm + first, k), im(2 * nm + first, k)});
           size(k) = rate * inverse_size_(first, k);
         }
         const double largest = size.maxCoeff(), least = least_carried * largest, by = effect_(first) / largest;
