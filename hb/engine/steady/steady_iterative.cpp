@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lib/constants.hpp"
+#include "lib/lanes.hpp"
 #include "lib/workspace.hpp"
 
 namespace hb::steady {
@@ -17,6 +18,27 @@ constexpr int most_iterations = 60;
 Eigen::Map<Eigen::ArrayXd> numbers(Spectrum& x) { return {reinterpret_cast<double*>(x.data()), 2 * x.size()}; }
 Eigen::Map<const Eigen::ArrayXd> numbers(const Spectrum& x) {
   return {reinterpret_cast<const double*>(x.data()), 2 * x.size()};
+}
+
+// w <- w - factor v, and what is left times `next`, which may be w itself: in one pass through the numbers.
+double taken_away(double factor, const double* v, const double* next, double* w, Index count) {
+  constexpr Index width = Lanes::width, together = 4;
+  Lanes sums[together];
+  Index n = 0;
+  for (; n + together * width <= count; n += together * width)
+    for (Index i = 0; i < together; ++i) {
+      const Index at = n + i * width;
+      const Lanes left = Lanes::load(w + at) - factor * Lanes::load(v + at);
+      left.store(w + at);
+      sums[i] += left * Lanes::load(next + at);
+    }
+  double product = 0;
+  for (const double part : ((sums[0] + sums[1]) + (sums[2] + sums[3])).values()) product += part;
+  for (; n < count; ++n) {
+    w[n] -= factor * v[n];
+    product += w[n] * next[n];
+  }
+  return product;
 }
 
 // Least squares |b - R_j y| of GMRES, R_j of j + 1 rows and j columns: turned column by column to a triangle, b to g.
@@ -94,11 +116,13 @@ bool IterativeInverse::reduce(const Spectrum& r, double aim, Spectrum& z) {
     product_ += A_.D().cwiseProduct(direction_);
     V.col(j + 1) = numbers(product_) * weight_;
     auto column = squares.next();
+    double* const w = V.col(j + 1).data();
+    double product = V.col(0).dot(V.col(j + 1));
     for (int i = 0; i <= j; ++i) {
-      column(i) = V.col(i).dot(V.col(j + 1));
-      V.col(j + 1) -= column(i) * V.col(i);
+      column(i) = product;
+      product = taken_away(product, V.col(i).data(), V.col(i + 1).data(), w, n);
     }
-    const double rest = column(j + 1) = V.col(j + 1).norm();
+    const double rest = column(j + 1) = std::sqrt(product);
     if (!std::isfinite(rest)) return false;
     if (!squares.add()) break;
     reached = squares.rest() <= aim;
