@@ -131,7 +131,7 @@ template class Lu<double>;
 template class Lu<std::complex<double>>;
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) {
-  if (A.rows() == 1) return A.cwiseInverse();
+  if (A.isDiagonal(0)) return A.diagonal().cwiseInverse().asDiagonal();
   return A.inverse();
 }
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A) { return A.inverse(); }

@@ -48,11 +48,6 @@ Eigen::MatrixXd between(const Eigen::MatrixXd& L, const Eigen::MatrixXd& A, cons
   return L * A * T;
 }
 
-Eigen::MatrixXd inverse(const Eigen::MatrixXd& T) {
-  if (is_diagonal(T)) return T.diagonal().cwiseInverse().asDiagonal();
-  return dense::inverse(T);
-}
-
 // Every matrix coefficient c_k becomes left * c_k * right.
 FourierSeries transformed(const FourierSeries& matrices, const Eigen::MatrixXd& left, const Eigen::MatrixXd& right) {
   const Eigen::Index I = left.rows();
@@ -216,7 +211,7 @@ ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::Matr
   ScaledSystem scaled;
   scaled.speed = speed;
   scaled.T = T;
-  scaled.T_inverse = inverse(T);
+  scaled.T_inverse = dense::inverse(T);
   scaled.G = between(L, system.damping, T) / speed;
   scaled.diagonal_damping = is_diagonal(scaled.G);
   scaled.K = transformed(C, L, T);
