@@ -82,7 +82,9 @@ Eigen::MatrixXd RodShapes::values(double x, int first, int count) const {
     for (Eigen::Index j = 0; j < num_static(); ++j)
       rows(r, I_ + j) = factor * static_[static_cast<std::size_t>(j)][static_cast<std::size_t>(first + r)].at(
                                      s, wave[static_cast<std::size_t>(j < 2 ? 0 : (j - 2) % I_ + 1)]);
-  rows.rightCols(num_static()) -= rows.leftCols(I_).lazyProduct(tail_);
+  for (Eigen::Index j = 0; j < num_static(); ++j)
+    for (Eigen::Index i = 0; i < I_; ++i)
+      for (int r = 0; r < count; ++r) rows(r, I_ + j) -= tail_(i, j) * rows(r, i);
   return rows;
 }
 
