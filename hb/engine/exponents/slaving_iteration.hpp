@@ -95,7 +95,7 @@ class Iteration {
   bool reduce();
   void sample_slow();  // alpha, beta
   void sample_rates();  // P, R; without A' where damping is diagonal
-  // The residuals over the turn.
+  // The residuals over the turn, but for what is linear in P and R of the same mode: push_through adds that.
   void sample_residual();
   void push_through();
   void invert_constant_part();
