@@ -27,10 +27,10 @@ std::vector<LinkResponse> changes(const std::vector<LinkResponse>& responses, co
 }
 
 // Forces are linear in the deflections.
-LargestForces change(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
+LargestForces change(const InfluenceTable& influence, double speed, const std::vector<LinkResponse>& responses,
                      const std::vector<LinkResponse>& better) {
   constexpr double digits = 1e-5;  // enough of an estimate
-  const JointForces added = deflection_forces(linkage, speed, changes(responses, better), digits);
+  const JointForces added = deflection_forces(influence, speed, changes(responses, better), digits);
   LargestForces largest{0, bound(added.torque)};
   for (const JointForce& joint : added.joints) largest.force = std::max(largest.force, bound(joint.elastic));
   return largest;
@@ -73,21 +73,22 @@ LargestForces largest_of(const JointForces& forces) {
   return largest;
 }
 
-ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces, const LargestForces& largest,
-                         double response_error, const std::vector<LinkResponse>& responses,
-                         const std::vector<LinkResponse>& more_harmonics, const std::vector<LinkResponse>& more_modes) {
+ForceErrors force_errors(const InfluenceTable& influence, double speed, const JointForces& forces,
+                         const LargestForces& largest, double response_error,
+                         const std::vector<LinkResponse>& responses, const std::vector<LinkResponse>& more_harmonics,
+                         const std::vector<LinkResponse>& more_modes) {
   // A difference of two answers nearly as accurate as each other is about the error of the worse one.
   constexpr double safety = 2;
   const LargestForces elastic = elastic_part(forces);
   const double error = response_error * (more_harmonics.empty() ? safety * weight_beyond(responses) : 1);
   ForceErrors errors{forces.force_error + error * elastic.force, forces.torque_error + error * elastic.torque, 0, 0};
   if (!more_harmonics.empty()) {
-    const LargestForces more = change(linkage, speed, responses, more_harmonics);
+    const LargestForces more = change(influence, speed, responses, more_harmonics);
     errors.force += safety * more.force;
     errors.torque += safety * more.torque;
   }
   if (!more_modes.empty()) {
-    const LargestForces more = change(linkage, speed, responses, more_modes);
+    const LargestForces more = change(influence, speed, responses, more_modes);
     errors.force_cut = safety * more.force;
     errors.torque_cut = safety * more.torque;
   }

@@ -23,7 +23,7 @@ struct LargestForces {
 // `largest` of `forces`, which belong to `responses`, whose relative error is `response_error`; `more_harmonics` and
 // `more_modes` are better ones of the same rods; without the former the error of q is taken to stand in
 // harmonics beyond it, without the latter their part is left out.
-[[nodiscard]] ForceErrors force_errors(const Linkage& linkage, double speed, const JointForces& forces,
+[[nodiscard]] ForceErrors force_errors(const InfluenceTable& influence, double speed, const JointForces& forces,
                                        const LargestForces& largest, double response_error,
                                        const std::vector<LinkResponse>& responses,
                                        const std::vector<LinkResponse>& more_harmonics,

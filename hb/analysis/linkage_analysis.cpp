@@ -224,14 +224,14 @@ void add_forces(const SceneModel& model, double speed, const Settings& settings,
     more_modes.push_back({rod.link, rod.more_modes.c.size() > 0 ? rod.more_modes : rod.steady->q});
     response_error = std::max(response_error, rod.steady->error_bound);
   }
-  result.forces = joint_forces(*model.linkage(), speed, responses);
+  result.forces = joint_forces(*model.influence, speed, responses);
   stages.push_back({"joint forces", watch.seconds(), ""});
   Stopwatch error_watch;
   std::vector<LinkResponse> more_harmonics;
   for (std::size_t r = 0; r < model.rods.size(); ++r)
     more_harmonics.push_back(
         {result.rods[r].link, with_more_harmonics(model, model.rods[r], speed, settings, result.rods[r])});
-  result.force_errors = force_errors(*model.linkage(), speed, *result.forces, largest_of(*result.forces),
+  result.force_errors = force_errors(*model.influence, speed, *result.forces, largest_of(*result.forces),
                                      response_error, responses, more_harmonics, more_modes);
   stages.push_back({"error of the joint forces", error_watch.seconds(), ""});
 }
@@ -350,6 +350,7 @@ SceneModel make_model(Scene scene, const Settings& settings, bool compares_modes
     if (!all_needed) std::erase_if(model.rods, [](const RodModel& rod) { return !rod.reported; });
   }
 
+  if (const Linkage* linkage = model.linkage()) model.influence = std::make_shared<const InfluenceTable>(*linkage);
   if (const Linkage* linkage = model.linkage(); linkage && !model.rods.empty()) {
     model.coefficients = linkage_coefficients(*linkage);
     require_resolved(model.scene, model.coefficients);

@@ -14,6 +14,7 @@
 #include "hb/analysis/theory_error.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "hb/engine/steady/steady_state.hpp"
+#include "lib/linkage/influence.hpp"
 #include "lib/linkage/joint_forces.hpp"
 #include "lib/rod/rod.hpp"
 #include "lib/scene/scene.hpp"
@@ -44,6 +45,7 @@ struct SceneModel {
   std::vector<RodModel> rods;
   // Of the same rods and modes, for the theory error; null where q is not asked for and for a [hill] scene.
   std::shared_ptr<const ExactModel> exact;
+  std::shared_ptr<const InfluenceTable> influence;  // null for a [hill] scene
   std::vector<Stage> stages;
 
   const Linkage* linkage() const { return std::get_if<Linkage>(&scene.model); }

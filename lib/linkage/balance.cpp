@@ -55,12 +55,8 @@ void rigid_loads(const Linkage& linkage, const std::vector<BodyMotion>& motion,
 
 std::array<std::vector<BodyLoad>, 3> rigid_loads(const Linkage& linkage, const std::vector<BodyMotion>& motion,
                                                  double crank_angle) {
-  Eigen::VectorXd slider_forces = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(linkage.dyads.size()));
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d)
-    if (const FourierSeries* force = slider_force(linkage.dyads[d]))
-      slider_forces(static_cast<Eigen::Index>(d)) = fourier::evaluate(*force, crank_angle)(0);
   std::array<std::vector<BodyLoad>, 3> loads;
-  rigid_loads(linkage, motion, slider_forces, loads);
+  rigid_loads(linkage, motion, slider_forces_at(linkage, crank_angle), loads);
   return loads;
 }
 
@@ -118,24 +114,24 @@ Eigen::Vector2d integrals_of_mode(double l, Eigen::Index i) {
 
 }  // namespace
 
-BodyLoad deflection_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
-                         const DeflectionIntegrals& at) {
-  const Body& body = *body_at(linkage, link);
-  const BodyMotion& m = motion[static_cast<std::size_t>(link)];
-  const double mu = body.mass / body.length, Omega = speed;
-  const double c_x = body.elastic->damping_x, c_y = body.elastic->damping_y;
+RodMotion rod_motion(const BodyMotion& m) { return {m.phi1, m.phi2, m.e.imag(), dot(m.e, m.z1), dot(m.e, m.z2)}; }
+
+Eigen::Vector3d deflection_load(const Body& link, double gravity, const RodMotion& motion, double speed,
+                                const Eigen::Ref<const DeflectionIntegrals>& at) {
+  const double mu = link.mass / link.length, Omega = speed;
+  const double c_x = link.elastic->damping_x, c_y = link.elastic->damping_y;
   const double w = at(0), w_t = Omega * at(2), w_tt = Omega * Omega * at(4);
   const double xw = at(1), xw_t = Omega * at(3), xw_tt = Omega * Omega * at(5);
-  const double phi_t = Omega * m.phi1, phi_tt = Omega * Omega * m.phi2;
+  const double phi_t = Omega * motion.phi1, phi_tt = Omega * Omega * motion.phi2;
 
   const double along = mu * (-2 * phi_t * w_t - phi_tt * w) - c_x * phi_t * w;
   const double across = mu * (w_tt - phi_t * phi_t * w) + c_y * w_t;
   // int x p_y dx - int w p_x dx with the rigid axial density p_x = mu (g sin phi + a0x - phi_t^2 x) + c_x v0x; the
   // rotary inertia of w integrates to rho J [w_tt]_0^l = 0.
-  const double a0x = Omega * Omega * dot(m.e, m.z2), v0x = Omega * dot(m.e, m.z1);
-  const double p_x0 = mu * (linkage.gravity * m.e.imag() + a0x) + c_x * v0x;
+  const double a0x = Omega * Omega * motion.along2, v0x = Omega * motion.along1;
+  const double p_x0 = mu * (gravity * motion.sine + a0x) + c_x * v0x;
   const double moment = mu * (xw_tt - phi_t * phi_t * xw) + c_y * xw_t - (p_x0 * w - mu * phi_t * phi_t * xw);
-  return {m.e * Complex(along, across), moment};
+  return {along, across, moment};
 }
 
 BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link, double speed,
@@ -149,26 +145,31 @@ BodyLoad elastic_load(const Linkage& linkage, const std::vector<BodyMotion>& mot
     sum.segment<2>(2) += of_mode * q1(i - 1);
     sum.segment<2>(4) += of_mode * q2(i - 1);
   }
-  return deflection_load(linkage, motion, link, speed, sum);
+  const BodyMotion& m = motion[static_cast<std::size_t>(link)];
+  const Eigen::Vector3d load = deflection_load(*body_at(linkage, link), linkage.gravity, rod_motion(m), speed, sum);
+  return {m.e * Complex(load(0), load(1)), load(2)};
 }
 
-std::vector<DeflectionSamples> deflection_samples(const Linkage& linkage, const std::vector<LinkResponse>& responses,
-                                                  Eigen::Index num_samples) {
-  std::vector<DeflectionSamples> samples;
-  for (const LinkResponse& response : responses) {
-    const double l = body_at(linkage, response.link)->length;
-    const FourierSeries& q = response.q;
-    Eigen::Matrix2Xd of_modes(2, q.num_components());
-    for (Eigen::Index i = 1; i <= q.num_components(); ++i) of_modes.col(i - 1) = integrals_of_mode(l, i);
-    const Eigen::Matrix2Xcd sums = of_modes * q.c;
-    FourierSeries integrals(6, q.num_harmonics());
-    for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k) {
-      const double n = static_cast<double>(k);
-      integrals.c.col(k) << sums.col(k), Complex(0, n) * sums.col(k), -n * n * sums.col(k);
-    }
-    samples.push_back({response.link, fourier::synthesise(integrals, num_samples)});
+Eigen::MatrixXd deflection_samples(const Linkage& linkage, const LinkResponse& response, Eigen::Index num_samples) {
+  const double l = body_at(linkage, response.link)->length;
+  const FourierSeries& q = response.q;
+  Eigen::Matrix2Xd of_modes(2, q.num_components());
+  for (Eigen::Index i = 1; i <= q.num_components(); ++i) of_modes.col(i - 1) = integrals_of_mode(l, i);
+  const Eigen::Matrix2Xcd sums = of_modes * q.c;
+  FourierSeries integrals(6, q.num_harmonics());
+  for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k) {
+    const double n = static_cast<double>(k);
+    integrals.c.col(k) << sums.col(k), Complex(0, n) * sums.col(k), -n * n * sums.col(k);
   }
-  return samples;
+  return fourier::synthesise(integrals, num_samples);
+}
+
+Eigen::VectorXd slider_forces_at(const Linkage& linkage, double crank_angle) {
+  Eigen::VectorXd forces = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(linkage.dyads.size()));
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d)
+    if (const FourierSeries* force = slider_force(linkage.dyads[d]))
+      forces(static_cast<Eigen::Index>(d)) = fourier::evaluate(*force, crank_angle)(0);
+  return forces;
 }
 
 Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples) {

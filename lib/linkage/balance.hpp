@@ -23,21 +23,26 @@ void balance(const Linkage& linkage, const std::vector<BodyMotion>& motion, std:
 // int w dx, int x w dx over an elastic link, then their first and their second derivatives over the crank angle.
 using DeflectionIntegrals = Eigen::Matrix<double, 6, 1>;
 
-// As elastic_load.
-[[nodiscard]] BodyLoad deflection_load(const Linkage& linkage, const std::vector<BodyMotion>& motion, int link,
-                                       double speed, const DeflectionIntegrals& integrals);
-
-// Of one elastic link, a column per tau_j = 2 pi j / num_samples.
-struct DeflectionSamples {
-  int link = 0;
-  Eigen::MatrixXd integrals;  // 6 x num_samples
+// What bending feels of the motion of a rod's frame; ' = d/dtau.
+struct RodMotion {
+  double phi1 = 0, phi2 = 0;  // phi', phi''
+  double sine = 0;  // of phi
+  double along1 = 0, along2 = 0;  // z', z'' along the rod
 };
-// Of all responses; needs num_samples > 2 num_harmonics.
-[[nodiscard]] std::vector<DeflectionSamples> deflection_samples(const Linkage& linkage,
-                                                                const std::vector<LinkResponse>& responses,
-                                                                Eigen::Index num_samples);
+[[nodiscard]] RodMotion rod_motion(const BodyMotion& motion);
 
-// Applied slider forces, dyads x num_samples, at tau_j = 2 pi j / num_samples; needs
+// As elastic_load: force along and across the rod, moment.
+[[nodiscard]] Eigen::Vector3d deflection_load(const Body& link, double gravity, const RodMotion& motion, double speed,
+                                              const Eigen::Ref<const DeflectionIntegrals>& integrals);
+
+// Of one elastic link, a column per tau_j = 2 pi j / num_samples: 6 x num_samples, DeflectionIntegrals of each; needs
+// num_samples > 2 num_harmonics.
+[[nodiscard]] Eigen::MatrixXd deflection_samples(const Linkage& linkage, const LinkResponse& response,
+                                                 Eigen::Index num_samples);
+
+// Applied force of each dyad's slider, 0 for a rocker.
+[[nodiscard]] Eigen::VectorXd slider_forces_at(const Linkage& linkage, double crank_angle);
+// The same, dyads x num_samples, at tau_j = 2 pi j / num_samples; needs
 // num_samples > 2 slider_force_harmonics.
 [[nodiscard]] Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples);
 [[nodiscard]] Eigen::Index slider_force_harmonics(const Linkage& linkage);

@@ -90,9 +90,15 @@ struct JointForces {
 [[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                                        double tolerance = 1e-13);
 
+// What is the same at every speed and for every response of a linkage: made once where many are asked for. Defined in
+// lib/linkage/influence.hpp.
+class InfluenceTable;
+[[nodiscard]] JointForces joint_forces(const InfluenceTable& table, double speed,
+                                       const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
+
 // What the deflections alone add, in the same way: `elastic` and `torque` less the rigid ones, which are empty. Linear
 // in the responses. Without errors and `frame`.
-[[nodiscard]] JointForces deflection_forces(const Linkage& linkage, double speed,
+[[nodiscard]] JointForces deflection_forces(const InfluenceTable& table, double speed,
                                             const std::vector<LinkResponse>& responses, double tolerance = 1e-13);
 
 }  // namespace hb

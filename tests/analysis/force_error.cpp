@@ -89,7 +89,7 @@ TEST_P(OfTheModesKept, CoversTheTrueOneFromTheErrorOfQAlone) {
     }
     const JointForces forces = joint_forces(*model.linkage(), speed, responses);
     const ForceErrors told =
-        force_errors(*model.linkage(), speed, forces, largest_of(forces), response_error, responses, {}, {});
+        force_errors(*model.influence, speed, forces, largest_of(forces), response_error, responses, {}, {});
     const Relative error = difference(forces, truth);
     EXPECT_LE(error.force, told.force) << tolerance;
     EXPECT_LE(error.torque, told.torque) << tolerance;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "lib/linkage/influence.hpp"
 #include "lib/rod/rod.hpp"
 #include "tests/support/dense_steady_state.hpp"
 #include "tests/support/six_link.hpp"
@@ -97,7 +98,7 @@ TEST(JointForces, ThoseOfTheDeflectionsAreWhatElasticOnesHaveMoreThanRigidOnes) 
     responses.push_back({link, q});
   }
   const JointForces all = joint_forces(linkage, Omega, responses);
-  const JointForces added = deflection_forces(linkage, Omega, responses);
+  const JointForces added = deflection_forces(InfluenceTable(linkage), Omega, responses);
   const auto samples = [](const FourierSeries& series) { return fourier::synthesise(series, 1024); };
   ASSERT_EQ(added.joints.size(), all.joints.size());
   for (std::size_t j = 0; j < all.joints.size(); ++j) {

@@ -154,7 +154,7 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
     compared = compared && solved[r].cut.has_value();
     response_error = std::max(response_error, point.rods[r].error_bound);
   }
-  JointForces forces = joint_forces(*model.linkage(), point.speed, responses);
+  JointForces forces = joint_forces(*model.influence, point.speed, responses);
   LargestForces largest;
   for (const JointForce& joint : forces.joints) {
     for (const TurnRange& range : turn_ranges(joint.elastic)) {
@@ -166,7 +166,7 @@ JointForces add_forces(SweepPoint& point, const SceneModel& model, const std::ve
   point.torque = turn_ranges(forces.torque).front();
   point.torque_rigid = turn_ranges(forces.torque_rigid).front();
   largest.torque = size_of(*point.torque);
-  point.force_errors = compared || solved.empty() ? force_errors(*model.linkage(), point.speed, forces, largest,
+  point.force_errors = compared || solved.empty() ? force_errors(*model.influence, point.speed, forces, largest,
                                                                  response_error, responses, {}, more_modes)
                                                   : ForceErrors{HUGE_VAL, HUGE_VAL, 0, 0};
   point.machine = machine_point(

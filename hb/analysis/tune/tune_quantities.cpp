@@ -69,7 +69,7 @@ double stress_factor(const SceneModel& model, const RodModel& rod, const Section
 JointForces forces_of(const SceneModel& model, double speed, const std::vector<FourierSeries>& q, double tolerance) {
   std::vector<LinkResponse> responses;
   for (std::size_t r = 0; r < q.size(); ++r) responses.push_back({model.rods[r].link, q[r]});
-  return joint_forces(*model.linkage(), speed, responses, tolerance);
+  return joint_forces(*model.influence, speed, responses, tolerance);
 }
 
 JointQuantities joint_quantities(const JointForces& forces) {
