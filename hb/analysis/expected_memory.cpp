@@ -22,6 +22,15 @@ double bytes_of_stiffness(const HillSystem& system, double n) {
   return static_cast<double>(sizeof(std::complex<double>)) * static_cast<double>(columns) * n * n;
 }
 
+// The table of influence coefficients at as many crank angles as the geometry needs: at most five joints a dyad and one
+// of the crank, two components each, torque and three of the frame, for three powers of the speed and three loads a
+// rod.
+double bytes_of_influence(const SceneModel& model) {
+  const auto dyads = static_cast<double>(model.linkage()->dyads.size()), rods = static_cast<double>(model.rods.size());
+  const double quantities = 2 * (5 * dyads + 1) + 4;
+  return sizeof(double) * quantities * 3 * (1 + rods) * static_cast<double>(model.coefficients.num_samples);
+}
+
 }  // namespace
 
 double bytes_of(const SceneModel& model) {
@@ -48,6 +57,7 @@ double expected_bytes(const SceneModel& model, const Settings& settings) {
     if (only.shape && rod.reported) bytes += for_shape * static_cast<double>(model.coefficients.num_samples) * finer;
     most = std::max(most, bytes);
   }
+  if (only.reactions) most += bytes_of_influence(model);
   return most;
 }
 

@@ -5,9 +5,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <tuple>
 
 #include "lib/linkage/influence.hpp"
 #include "lib/rod/rod.hpp"
+#include "lib/scene/scene.hpp"
 #include "tests/support/dense_steady_state.hpp"
 #include "tests/support/six_link.hpp"
 
@@ -109,6 +111,51 @@ TEST(JointForces, ThoseOfTheDeflectionsAreWhatElasticOnesHaveMoreThanRigidOnes) 
   }
   const Eigen::MatrixXd torque = samples(all.torque) - samples(all.torque_rigid);
   EXPECT_LE((samples(added.torque) - torque).cwiseAbs().maxCoeff(), 1e-11 * samples(all.torque).cwiseAbs().maxCoeff());
+}
+
+TEST(JointForces, OfOneTableAtEverySpeedAreThoseOfTheirOwn) {
+  const Linkage linkage = std::get<Linkage>(read_scene(HB_SOURCE_DIR "/tests/scenes/eight_link.toml").model);
+  const InfluenceTable table(linkage);
+  for (const double Omega : {3.0, 70.0, -20.0}) {
+    std::vector<LinkResponse> responses;
+    for (const int link : elastic_links(linkage)) {
+      FourierSeries q(2, Omega > 50 ? 90 : 4);  // more angles for the second speed than for the others
+      for (Eigen::Index k = 0; k <= q.num_harmonics(); ++k)
+        for (Eigen::Index i = 0; i < 2; ++i)
+          q.c(i, k) = k == 0 ? 0.1 : std::polar(std::exp2(-k), double(k * (i + link)));
+      responses.push_back({link, q});
+    }
+    const JointForces shared = joint_forces(table, Omega, responses), own = joint_forces(linkage, Omega, responses);
+    for (std::size_t j = 0; j < own.joints.size(); ++j) {
+      EXPECT_EQ(shared.joints[j].elastic.c, own.joints[j].elastic.c) << own.joints[j].name;
+      EXPECT_EQ(shared.joints[j].rigid.c, own.joints[j].rigid.c) << own.joints[j].name;
+    }
+    EXPECT_EQ(shared.torque.c, own.torque.c);
+    EXPECT_EQ(shared.frame.elastic.c, own.frame.elastic.c);
+  }
+}
+
+// Threads ask in any order.
+TEST(JointForces, InfluenceCoefficientsDoNotDependOnWhichAnglesAreAskedForFirst) {
+  const Linkage linkage = std::get<Linkage>(read_scene(HB_SOURCE_DIR "/tests/scenes/eight_link.toml").model);
+  const InfluenceTable grown(linkage), made(linkage);
+  ASSERT_EQ(grown.at(64)->num_samples(), 64);
+  ASSERT_EQ(grown.at(256)->num_samples(), 256);
+  const auto some = grown.at(128), all = made.at(256);
+  EXPECT_EQ(some->num_samples(), 256);
+  for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ(some->rigid[p], all->rigid[p]);
+  ASSERT_EQ(some->rods.size(), elastic_links(linkage).size());
+  for (std::size_t r = 0; r < all->rods.size(); ++r) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(some->rods[r].unit[c], all->rods[r].unit[c]);
+      EXPECT_GT(all->rods[r].unit[c].cwiseAbs().maxCoeff(), 0);
+    }
+    for (std::size_t j = 0; j < 256; ++j) {
+      const RodMotion &a = some->rods[r].motion[j], &b = all->rods[r].motion[j];
+      EXPECT_EQ(std::tie(a.phi1, a.phi2, a.sine, a.along1, a.along2),
+                std::tie(b.phi1, b.phi2, b.sine, b.along1, b.along2));
+    }
+  }
 }
 
 // Beside responses of 1e14 times their size rigid forces counted as rounding, and were 0.
