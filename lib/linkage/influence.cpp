@@ -13,24 +13,21 @@ using Complex = std::complex<double>;
 // Joints cancel in the sum over all bodies: what they ask of pivots, guides and motor is
 //     G = sum of load,   M = sum of load.moment + (z - O) x load.force,
 // a slider's applied force F, taken off its load there, being given back to the frame:  -(G + F),  -(M + (z - O) x F).
+Eigen::Vector3d on_frame(const Linkage& linkage, const BodyMotion& motion, const BodyLoad& load) {
+  const double moment = load.moment + (std::conj(motion.z - linkage.crank.pivot) * load.force).imag();
+  return {-load.force.real(), -load.force.imag(), -moment};
+}
+
 Eigen::Vector3d on_frame(const Linkage& linkage, const std::vector<BodyMotion>& motion,
                          const std::vector<BodyLoad>& loads, const Eigen::VectorXd& slider_forces) {
-  Complex force = 0;
-  double moment = 0;
-  const auto add = [&](std::size_t body, Complex its) {
-    force += its;
-    moment += (std::conj(motion[body].z - linkage.crank.pivot) * its).imag();
-  };
-  for (std::size_t b = 0; b < loads.size(); ++b) {
-    add(b, loads[b].force);
-    moment += loads[b].moment;
-  }
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t b = 0; b < loads.size(); ++b) sum += on_frame(linkage, motion[b], loads[b]);
   for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
     const std::size_t body = at(closing_index(static_cast<int>(d)));
     if (std::holds_alternative<Slider>(linkage.dyads[d].closing))
-      add(body, slider_forces(static_cast<Eigen::Index>(d)) * motion[body].e);
+      sum += on_frame(linkage, motion[body], {slider_forces(static_cast<Eigen::Index>(d)) * motion[body].e, 0});
   }
-  return {-force.real(), -force.imag(), -moment};
+  return sum;
 }
 
 // One crank angle after the other.
@@ -48,25 +45,28 @@ class Turn {
     motion_at(linkage_, tau, motion_);
     const Eigen::VectorXd slider_forces = slider_forces_at(linkage_, tau);
     rigid_loads(linkage_, motion_, slider_forces, powers_);
-    for (std::size_t p = 0; p < powers_.size(); ++p)
-      answer(powers_[p], p == 0 ? slider_forces : no_slider_forces_, table.rigid[p].col(j));
+    for (std::size_t p = 0; p < powers_.size(); ++p) {
+      auto quantities = table.rigid[p].col(j);
+      quantities.tail<3>() = on_frame(linkage_, motion_, powers_[p], p == 0 ? slider_forces : no_slider_forces_);
+      balance_joints(powers_[p], quantities);
+    }
     for (Influence::Rod& rod : table.rods) {
-      const Complex e = motion_[at(rod.link)].e;
-      rod.motion[static_cast<std::size_t>(j)] = rod_motion(motion_[at(rod.link)]);
-      const BodyLoad of_one[] = {{e, 0}, {Complex(0, 1) * e, 0}, {0, 1}};
+      const BodyMotion& motion = motion_[at(rod.link)];
+      rod.motion[static_cast<std::size_t>(j)] = rod_motion(motion);
+      const BodyLoad of_one[] = {{motion.e, 0}, {Complex(0, 1) * motion.e, 0}, {0, 1}};
       for (std::size_t c = 0; c < rod.unit.size(); ++c) {
-        std::vector<BodyLoad> loads(motion_.size());
-        loads[at(rod.link)] = of_one[c];
-        answer(loads, no_slider_forces_, rod.unit[c].col(j));
+        auto quantities = rod.unit[c].col(j);
+        quantities.tail<3>() = on_frame(linkage_, motion, of_one[c]);
+        loads_.assign(motion_.size(), {});
+        loads_[at(rod.link)] = of_one[c];
+        balance_joints(loads_, quantities);
       }
     }
   }
 
  private:
-  // Uses up `loads`.
-  void answer(std::vector<BodyLoad>& loads, const Eigen::VectorXd& slider_forces,
-              Eigen::Ref<Eigen::VectorXd> quantities) {
-    quantities.tail<3>() = on_frame(linkage_, motion_, loads, slider_forces);
+  // All but those of the frame. Uses up `loads`.
+  void balance_joints(std::vector<BodyLoad>& loads, Eigen::Ref<Eigen::VectorXd> quantities) {
     balance(linkage_, motion_, loads, forces_);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const Complex f = resolved(rows_[i], forces_, motion_);
@@ -80,6 +80,7 @@ class Turn {
   Eigen::VectorXd no_slider_forces_;
   std::vector<BodyMotion> motion_;
   std::array<std::vector<BodyLoad>, 3> powers_;
+  std::vector<BodyLoad> loads_;
   MechanismForces forces_;
 };
 
