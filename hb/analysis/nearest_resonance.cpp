@@ -5,6 +5,7 @@
 
 #include "hb/engine/system/scaled_system.hpp"
 #include "lib/dense.hpp"
+#include "lib/positive_definite.hpp"
 
 namespace hb {
 namespace {
@@ -27,6 +28,56 @@ std::optional<NearestResonance> resonance_of(const HillSystem& system, double sp
     Omega = next;
   }
   return std::nullopt;
+}
+
+// N x components.
+Eigen::MatrixXd sampled(const Eigen::MatrixXcd& harmonics, Index N) {
+  fourier::RealTransform& transform = fourier::thread_transform(N, harmonics.rows());
+  auto spectrum = transform.spectrum();
+  spectrum.topRows(harmonics.cols()) = harmonics.transpose();
+  spectrum.bottomRows(spectrum.rows() - harmonics.cols()).setZero();
+  transform.backward();
+  return transform.samples();
+}
+
+// u at N angles, N x I; empty unless C is symmetric and positive definite at all of them.
+std::optional<Eigen::MatrixXd> by_definite(const FourierSeries& C, const FourierSeries& h, Index N) {
+  const Index I = h.num_components();
+  std::vector<Index> lower;
+  for (Index j = 0; j < I; ++j)
+    for (Index i = j; i < I; ++i) {
+      if (C.c.row(i + I * j) != C.c.row(j + I * i)) return std::nullopt;
+      lower.push_back(i + I * j);
+    }
+  const Eigen::MatrixXd matrices = sampled(C.c(lower, Eigen::all), N);
+  Eigen::MatrixXd motion = sampled(h.c, N);
+  std::vector<Lanes> A(static_cast<std::size_t>(I * I)), u(static_cast<std::size_t>(I));
+  for (Index first = 0; first < N; first += Lanes::width) {
+    for (std::size_t e = 0; e < lower.size(); ++e)
+      A[static_cast<std::size_t>(lower[e])] = Lanes::load(&matrices(first, static_cast<Index>(e)));
+    for (Index i = 0; i < I; ++i) u[static_cast<std::size_t>(i)] = Lanes::load(&motion(first, i));
+    if (!solve_positive_definite(I, A.data(), u.data())) return std::nullopt;
+    for (Index i = 0; i < I; ++i) u[static_cast<std::size_t>(i)].store(&motion(first, i));
+  }
+  return motion;
+}
+
+// The same where the determinant keeps its sign over the turn; else C is singular between two angles.
+std::optional<Eigen::MatrixXd> by_elimination(const FourierSeries& C, const FourierSeries& h, Index N) {
+  const Index I = h.num_components();
+  const Eigen::MatrixXd matrices = fourier::synthesise(C, N), loads = fourier::synthesise(h, N);
+  Eigen::MatrixXd motion(N, I);
+  dense::Lu<double> lu;
+  int sign = 0;
+  for (Index j = 0; j < N; ++j) {
+    lu.compute(Eigen::Map<const Eigen::MatrixXd>(matrices.col(j).data(), I, I));
+    const Eigen::VectorXd pivots = lu.pivots();
+    const int now = lu.sign() * (((pivots.array() < 0).count() % 2 == 0) ? 1 : -1);
+    if (!(pivots.cwiseAbs().minCoeff() > 0) || (j > 0 && now != sign)) return std::nullopt;
+    sign = now;
+    motion.row(j) = lu.solve(Eigen::VectorXd(loads.col(j))).transpose();
+  }
+  return motion;
 }
 
 }  // namespace
@@ -67,23 +118,12 @@ std::optional<Eigen::MatrixXd> quasi_static_motion(const HillSystem& system, Ind
   if (h.c.size() == 0) return std::nullopt;
   const Index H = std::max(C.num_harmonics(), h.num_harmonics());
   const Index N = fourier::fast_length(std::max<Index>(4 * H + 2, 32));
-  const Eigen::MatrixXd matrices = fourier::synthesise(C, N), loads = fourier::synthesise(h, N);
-  Eigen::MatrixXd motion(num_modes, N);
-  dense::Lu<double> lu;
-  int sign = 0;
-  for (Index j = 0; j < N; ++j) {
-    lu.compute(Eigen::Map<const Eigen::MatrixXd>(matrices.col(j).data(), I, I));
-    const Eigen::VectorXd pivots = lu.pivots();
-    // The determinant keeps its sign over the turn, or C is singular between two angles.
-    const int now = lu.sign() * (((pivots.array() < 0).count() % 2 == 0) ? 1 : -1);
-    if (!(pivots.cwiseAbs().minCoeff() > 0) || (j > 0 && now != sign)) return std::nullopt;
-    sign = now;
-    const Eigen::VectorXd u = lu.solve(Eigen::VectorXd(loads.col(j)));
-    motion.col(j) = u.head(num_modes);
-    if (I == 2 * num_modes) motion.col(j) += u.tail(num_modes);
-  }
-  if (!motion.allFinite()) return std::nullopt;
-  return motion;
+  std::optional<Eigen::MatrixXd> u = by_definite(C, h, N);
+  if (!u) u = by_elimination(C, h, N);
+  if (!u || !u->allFinite()) return std::nullopt;
+  Eigen::MatrixXd motion = u->leftCols(num_modes);
+  if (I == 2 * num_modes) motion += u->rightCols(num_modes);
+  return motion.transpose();
 }
 
 std::optional<double> quasi_static_response(const HillSystem& system, Index num_modes, double speed) {
