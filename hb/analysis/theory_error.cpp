@@ -326,13 +326,18 @@ TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<cons
   return errors;
 }
 
-double axial_share(const ExactModel& model, std::size_t rod) {
-  const Body& body = *body_at(model.linkage(), model.rods()[rod].link);
-  const Elastic& elastic = *body.elastic;
-  const double l = body.length, E = elastic.youngs_modulus;
-  const double bending = std::pow(std::numbers::pi / l, 4) * E * elastic.second_moment / (body.mass / l);
-  const double axial = E * elastic.area / l / (body.mass / 3 + model.driven_mass(rod));
-  return 4 * bending / axial;
+std::vector<double> axial_shares(const ExactModel& model) {
+  const std::vector<double> driven = model.driven_masses();
+  std::vector<double> shares;
+  for (std::size_t r = 0; r < driven.size(); ++r) {
+    const Body& body = *body_at(model.linkage(), model.rods()[r].link);
+    const Elastic& elastic = *body.elastic;
+    const double l = body.length, E = elastic.youngs_modulus;
+    const double bending = std::pow(std::numbers::pi / l, 4) * E * elastic.second_moment / (body.mass / l);
+    const double axial = E * elastic.area / l / (body.mass / 3 + driven[r]);
+    shares.push_back(4 * bending / axial);
+  }
+  return shares;
 }
 
 }  // namespace hb

@@ -32,7 +32,7 @@ struct TheoryErrors {
     std::optional<double> q;
     std::optional<double> deflection;  // max over x and t of |dw| over max |w|, of the modes kept
     FourierSeries correction;  // dq
-    std::optional<double> axial_share;  // where asked for: axial_share() of this rod
+    std::optional<double> axial_share;  // where asked for: axial_shares() of this rod
   };
   std::vector<Rod> rods;
   // Largest change over the turn of any joint force's component, and of the driving torque, over the largest of each;
@@ -56,9 +56,9 @@ struct TheoryErrors {
 [[nodiscard]] TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,
                                          const JointForces* forces = nullptr);
 
-// Of the change that bending makes, the share that a rod's axial elasticity would take from it, which the exact model
-// leaves out: (2 omega_1/omega_axial)^2 with omega_1 the rod's first bending frequency and omega_axial that of EA/l
+// Of the change that bending makes, for each rod the share that its axial elasticity would take from it, which the exact
+// model leaves out: (2 omega_1/omega_axial)^2 with omega_1 the rod's first bending frequency and omega_axial that of EA/l
 // against a third of its own mass and the mass it drives along itself, the largest over the turn. An estimate.
-[[nodiscard]] double axial_share(const ExactModel& model, std::size_t rod);
+[[nodiscard]] std::vector<double> axial_shares(const ExactModel& model);
 
 }  // namespace hb

@@ -288,19 +288,21 @@ double ExactModel::force_per_residual(std::size_t rod) const {
   return impl_->constants[rod].bending * impl_->constants[rod].length / 2;
 }
 
-double ExactModel::driven_mass(std::size_t rod) const {
+std::vector<double> ExactModel::driven_masses() const {
   constexpr Index num_angles = 64;
   const CrankAngles angles(linkage(), num_angles);
   const MatrixXd zero = MatrixXd::Zero(num_modes(), num_angles);
+  const RitzSamples straight{zero, zero, zero};
   Block block(*impl_, angles, 1);
-  double mass = 0;
+  std::vector<double> masses(rods().size(), 0);
   for (Index first = 0; first < num_angles; first += Lanes::width) {
-    block.solve({zero, zero, zero}, first);
+    block.solve(straight, first);
     block.influences(false);
-    for (const double driven : block.influence(rod, rod).of_answer[6][chord_direction + 2].values())
-      mass = std::max(mass, std::abs(driven));
+    for (std::size_t rod = 0; rod < masses.size(); ++rod)
+      for (const double driven : block.influence(rod, rod).of_answer[6][chord_direction + 2].values())
+        masses[rod] = std::max(masses[rod], std::abs(driven));
   }
-  return mass;
+  return masses;
 }
 
 namespace {

@@ -78,8 +78,8 @@ class ExactModel {
   // r_i EJ l/2 of rod r is a generalised force: work per q_i.
   double force_per_residual(std::size_t rod) const;
 
-  // Largest |dX/dc''| over the turn with straight rods: the mass that a rod drives along itself.
-  double driven_mass(std::size_t rod) const;
+  // Of each rod the largest |dX/dc''| over the turn with straight rods: the mass that it drives along itself.
+  std::vector<double> driven_masses() const;
 
   // Speed in rad per unit time. Any periodic or other motion; it need not solve the equations.
   [[nodiscard]] ExactResidual residual(double speed, const CrankAngles& angles, const RitzSamples& motion,
