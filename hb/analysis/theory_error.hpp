@@ -56,9 +56,9 @@ struct TheoryErrors {
 [[nodiscard]] TheoryErrors theory_errors(const ExactModel& model, double speed, std::span<const LinearRod> rods,
                                          const JointForces* forces = nullptr);
 
-// Of the change that bending makes, for each rod the share that its axial elasticity would take from it, which the exact
-// model leaves out: (2 omega_1/omega_axial)^2 with omega_1 the rod's first bending frequency and omega_axial that of EA/l
-// against a third of its own mass and the mass it drives along itself, the largest over the turn. An estimate.
+// Of the change that bending makes, for each rod the share that its axial elasticity would take from it, which the
+// exact model leaves out: (2 omega_1/omega_axial)^2 with omega_1 the rod's first bending frequency and omega_axial that
+// of EA/l against a third of its own mass and the mass it drives along itself, the largest over the turn. An estimate.
 [[nodiscard]] std::vector<double> axial_shares(const ExactModel& model);
 
 }  // namespace hb
