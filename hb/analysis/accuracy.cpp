@@ -17,6 +17,10 @@ SteadyOptions response_options(const Settings& settings) {
   return options;
 }
 
+SteadyOptions pole_options(const Settings& settings) {
+  return {.tolerance = 1e-5, .method = settings.steady_method, .without_bound = true};
+}
+
 StabilityOptions exponent_options(const Settings& settings) {
   StabilityOptions options;
   options.method = settings.stability_method;

@@ -2,6 +2,7 @@
 // the tolerance (Settings::tolerance, 1e-10 by default) and [a, b] for "at least a, at most b":
 //
 //   response q at one speed        T; max(T/20, 1e-14) where the number of modes is sought: their difference counts
+//   ... at its poles               1e-5 of the residual, without a bound of the error
 //   exponents at one place         10 T [1e-12, 0.1], relative to the larger of growth rate and speed
 //   ... to compare numbers of modes   T/100 [1e-12, 10 T]
 //   boundaries of stability        exponents T [1e-13, 1e-9]; bracket T/10 [1e-14, 1e-6] of the number that varies
@@ -21,6 +22,8 @@
 namespace hb {
 
 [[nodiscard]] SteadyOptions response_options(const Settings& settings);
+// Where the response is unbounded: what is told of it depends on how near to the pole its place was rounded.
+[[nodiscard]] SteadyOptions pole_options(const Settings& settings);
 [[nodiscard]] StabilityOptions exponent_options(const Settings& settings);
 // To compare growth rates of different numbers of modes.
 [[nodiscard]] StabilityOptions growth_comparison_options(const Settings& settings);

@@ -368,20 +368,41 @@ class SweepRun {
     std::vector<SweepPoint> points = work_.results<SweepPoint>(
         what, places.size(),
         [&](std::size_t k) {
-          return work_.ends_early() ? left_out(places[k])
-                                    : analyse_point(scene_, places[k], only_, {.at_boundary = at_boundary(places[k])});
+          const double x = places[k];
+          return work_.ends_early()
+                     ? left_out(x)
+                     : analyse_point(scene_, x, only_, {.at_boundary = at_boundary(x), .at_pole = at_pole(x)});
         },
         [](auto& visit, SweepPoint& point) { visit_point(visit, point); });
     std::erase_if(points, [](const SweepPoint& point) { return point.problem == not_computed; });
     std::ranges::move(points, std::back_inserter(result_.refined));
   }
 
+  // Null where the rod has none there.
+  static const StabilityBoundary* boundary_at(const SweepRod& rod, double x) {
+    const auto there = std::ranges::find_if(
+        rod.boundaries, [x](const StabilityBoundary& boundary) { return boundary.converged && boundary.x == x; });
+    return there == rod.boundaries.end() ? nullptr : &*there;
+  }
+
   // Which rods have a boundary there.
   std::vector<bool> at_boundary(double x) const {
     std::vector<bool> there;
-    for (const SweepRod& rod : result_.rods)
-      there.push_back(std::ranges::any_of(
-          rod.boundaries, [x](const StabilityBoundary& boundary) { return boundary.converged && boundary.x == x; }));
+    for (const SweepRod& rod : result_.rods) there.push_back(boundary_at(rod, x) != nullptr);
+    return there;
+  }
+
+  // Which rods have a boundary there that is the pole of a response: a multiplier is +1, and the load excites it.
+  std::vector<bool> at_pole(double x) const {
+    std::vector<bool> there;
+    for (std::size_t r = 0; r < result_.rods.size(); ++r) {
+      const StabilityBoundary* boundary = boundary_at(result_.rods[r], x);
+      there.push_back(boundary != nullptr && boundary->kind == BoundaryKind::plus_one &&
+                      std::ranges::any_of(result_.critical, [&](const CriticalPoint& point) {
+                        return point.rod == r && !is_refined(point) &&
+                               std::abs(point.peak.x - x) <= boundary->error + point.peak.error;
+                      }));
+    }
     return there;
   }
 

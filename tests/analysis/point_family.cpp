@@ -10,6 +10,8 @@
 #include <tuple>
 #include <vector>
 
+#include "hb/analysis/sweep_analysis.hpp"
+
 namespace hb {
 namespace {
 
@@ -111,6 +113,49 @@ TEST(SweepPoint, AtTheEndOfABandTheRodThatEndsItHasOneMethod) {
   EXPECT_LE(b.growth_error, 1e-7);
   EXPECT_EQ(pursued[1].stability->stability.evidence, ended[1].stability->stability.evidence);
   EXPECT_EQ(pursued[1].stability->stability.growth_rate, ended[1].stability->stability.growth_rate);
+}
+
+// The response of AB has no bound where a multiplier passes +1: what is told there has none either, and nothing else
+// changes.
+TEST(SweepPoint, AtAPoleTheResponseIsToldWithoutABound) {
+  const SweepScene scene = scene_along("tests/scenes/six_link.toml", 2600, 2700, 2);
+  constexpr double pole = 2682.134939869993;
+  const auto at = [&](std::vector<bool> rods) {
+    const Only steady{.steady = true, .stability = false, .reactions = false, .shape = false};
+    return analyse_point(scene, pole, steady, {.at_pole = std::move(rods)}).rods;
+  };
+  const std::vector<RodPoint> pursued = at({}), told = at({true, false});
+  EXPECT_FALSE(pursued[0].error_bound <= 1);
+  EXPECT_EQ(told[0].steady, SteadyStatus::not_reached);
+  EXPECT_EQ(told[0].error_bound, HUGE_VAL);
+  EXPECT_GT(told[0].max_abs.front(), 1e6);
+  EXPECT_EQ(told[1].error_bound, pursued[1].error_bound);
+  EXPECT_EQ(told[1].max_abs, pursued[1].max_abs);
+}
+
+// Poles are those ends of bands that a peak without bound was located at; at all other places errors have bounds.
+TEST(SweepPoint, PolesAreFoundBetweenThePointsOfASweep) {
+  Settings settings;
+  settings.only = {.steady = true, .stability = true, .reactions = false, .shape = false};
+  Axis axis;
+  for (double x = 2640; x <= 2720; x += 20) axis.values.push_back(x);
+  const SweepScene scene(SceneSource(HB_SOURCE_DIR "/tests/scenes/six_link.toml"), {}, settings, axis, 0, 0);
+  Work work;
+  const SweepResult result = run_sweep(scene, work);
+  const auto is_pole = [&](std::size_t r, double x) {
+    return std::ranges::any_of(result.rods[r].boundaries, [x](const StabilityBoundary& boundary) {
+      return boundary.x == x && boundary.kind == BoundaryKind::plus_one;
+    });
+  };
+  int poles = 0;
+  for (const SweepPoint& point : result.refined)
+    for (std::size_t r = 0; r < point.rods.size(); ++r) {
+      const bool pole = is_pole(r, point.x);
+      poles += pole;
+      EXPECT_EQ(point.rods[r].error_bound == HUGE_VAL, pole) << point.x;
+      EXPECT_EQ(point.rods[r].resonance_distance == 0, pole) << point.x;
+    }
+  EXPECT_EQ(poles, 1);
 }
 
 }  // namespace

@@ -104,6 +104,9 @@ void add_shape(RodPoint& point, const SceneModel& model, const RodModel& rod, do
         stress_point(stress, stress_cycle(link, coefficients, speed, q, finer, cut ? point.error_bound : HUGE_VAL));
 }
 
+// What is told of each rod, of none where nothing is.
+bool is_told(const std::vector<bool>& rods, std::size_t r) { return r < rods.size() && rods[r]; }
+
 RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double speed, const Settings& settings,
                      const Only& only, const PointOptions& options, Responses& responses) {
   const RodModel& rod = model.rods[r];
@@ -111,7 +114,8 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
   responses.scaled = scale_system(rod.system, speed);
   const ScaledSystem& scaled = responses.scaled;
   if (only.response()) {
-    SteadyState state = solve_rod(rod.system, rod.num_modes, scaled, response_options(settings));
+    SteadyState state = solve_rod(rod.system, rod.num_modes, scaled,
+                                  is_told(options.at_pole, r) ? pole_options(settings) : response_options(settings));
     point.steady = state.status;
     point.num_harmonics = state.num_harmonics;
     point.error_bound = state.error_bound;
@@ -129,7 +133,7 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
     StabilityOptions exponents = exponent_options(settings);
     if (options.start != nullptr && r < options.start->size()) exponents.starts = (*options.start)[r];
     exponents.keeps_solved = options.solution != nullptr;
-    exponents.one_method = r < options.at_boundary.size() && options.at_boundary[r];
+    exponents.one_method = is_told(options.at_boundary, r);
     if (only.all_exponents() && settings.search) {
       point.stability = stability_sample(scaled, x, exponents);
     } else {

@@ -76,6 +76,7 @@ struct PointOptions {
   const PointSolution* start = nullptr;
   PointSolution* solution = nullptr;  // takes what slaving came to
   std::vector<bool> at_boundary;  // rods with growth rate zero, an end of a band: no second method seeks its sign
+  std::vector<bool> at_pole;  // rods whose response has no bound: it is told roughly, its error bound infinite
 };
 
 [[nodiscard]] SweepPoint analyse_point(const SweepScene& scene, double x, const Only& wanted,
