@@ -120,6 +120,29 @@ TEST(DisturbanceLines, InTheFirstTongueOfMathieuLieAtHalfTheSpeed) {
   EXPECT_NEAR(lines[1].share, 0.1 / 2 / (9 - 1), 1e-3);
 }
 
+// Solved by another way where C is not symmetric, or negative: with 1 + cos(tau)/2 times a matrix the motion is its
+// inverse times the load over that factor.
+TEST(NearestResonance, QuasiStaticResponseOfAnyMatrixIsItsInverseTimesTheLoad) {
+  const Eigen::Vector2d h(3, -1);
+  for (const auto& [off, sign] : {std::pair(1.0, 1.0), std::pair(-2.0, 1.0), std::pair(1.0, -1.0)}) {
+    SCOPED_TRACE(off * sign);
+    Eigen::Matrix2d K;
+    K << 5, off, 1, 4;
+    K *= sign;
+    HillSystem system;
+    system.mass = Eigen::Matrix2d::Identity();
+    system.damping = Eigen::Matrix2d::Zero();
+    system.stiffness[0] = FourierSeries(4, 1);
+    system.stiffness[0].c.col(0) = K.reshaped();
+    system.stiffness[0].c.col(1) = 0.25 * K.reshaped();
+    system.load[0] = FourierSeries(2, 0);
+    system.load[0].c.col(0) = h;
+    const double most = (K.inverse() * h).cwiseAbs().maxCoeff() / 0.5;  // at tau = pi
+    ASSERT_TRUE(quasi_static_response(system, 2, 1));
+    EXPECT_NEAR(*quasi_static_response(system, 2, 1), most, 1e-13 * most);
+  }
+}
+
 // C changes its sign over the turn: there is no load applied slowly.
 TEST(NearestResonance, AStiffnessThatVanishesHasNoQuasiStaticResponse) {
   HillSystem system;
