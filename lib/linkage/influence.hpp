@@ -1,5 +1,5 @@
-// Influence coefficients, lib/README.md (M13): what loads of one unit on the bodies ask of joints, motor and frame along
-// the turn. They are geometry alone: one table serves every speed and deflection.
+// Influence coefficients, lib/README.md (M13): what loads of one unit on the bodies ask of joints, motor and frame
+// along the turn. They are geometry alone: one table serves every speed and deflection.
 #pragma once
 
 #include <array>
