@@ -191,47 +191,10 @@ std::vector<Candidate> candidates_of(const Grid& grid, double least) {
   return candidates;
 }
 
-// Bounds over rod and turn of terms of |F| and, per harmonic k^2 times, of |F''| over the turn.
-struct TermSizes {
-  Eigen::ArrayXd size, bend;
-};
-
-// Bounds of every function's term at every harmonic k = 1..H, functions x H, from the largest value of each shape.
-Eigen::ArrayXXd term_sizes(const Eigen::RowVectorXd& largest, const FourierSeries& T) {
+// Bounds of the harmonics of |F| over the rod, k = 1..H, from the largest value of each shape.
+Eigen::ArrayXd harmonic_sizes(const Eigen::RowVectorXd& largest, const FourierSeries& T) {
   const auto c = T.c.rightCols(T.num_harmonics());
-  return 2 * (largest.transpose().asDiagonal() * (c.real().cwiseAbs() + c.imag().cwiseAbs())).array();
-}
-
-// All functions together, harmonic by harmonic.
-TermSizes of_harmonics(const Eigen::ArrayXXd& sizes) {
-  const Eigen::ArrayXd size = sizes.colwise().sum().transpose();
-  return {size, size * Eigen::ArrayXd::LinSpaced(size.size(), 1, double(size.size())).square()};
-}
-
-// All harmonics together, the constant one with them, function by function.
-TermSizes of_functions(const Eigen::ArrayXXd& sizes, const Eigen::RowVectorXd& largest, const FourierSeries& T) {
-  const Eigen::Index H = sizes.cols();
-  return {sizes.rowwise().sum() + largest.transpose().array() * T.c.col(0).real().array().abs(),
-          (sizes.matrix() * Eigen::VectorXd::LinSpaced(H, 1, double(H)).cwiseAbs2()).array()};
-}
-
-// Functions whose terms are more than a share of all, and what the others' are together.
-struct Telling {
-  std::vector<Eigen::Index> functions;
-  double size_left = 0, bend_left = 0;
-};
-Telling telling_functions(const TermSizes& of, double share) {
-  Telling telling;
-  const double each = share / double(of.size.size()), size = each * of.size.sum(), bend = each * of.bend.sum();
-  for (Eigen::Index i = 0; i < of.size.size(); ++i) {
-    if (of.size(i) > size || of.bend(i) > bend) {
-      telling.functions.push_back(i);
-    } else {
-      telling.size_left += of.size(i);
-      telling.bend_left += of.bend(i);
-    }
-  }
-  return telling;
+  return 2 * (largest * (c.real().cwiseAbs() + c.imag().cwiseAbs())).transpose().array();
 }
 
 // The fewest harmonics without which bounds of at most `small` are missing.
@@ -243,35 +206,29 @@ Eigen::Index harmonics_above(const Eigen::ArrayXd& size, double small) {
 }
 
 // Largest |F| over rod and turn: local maxima of a grid with at least 8 points per wave that come within a tenth of the
-// best (a wave's top lies at most 8 % above its samples), each climbed. The grid leaves out harmonics and functions
-// that make up a small share of F'' over the turn: the more, the flatter the highest one turns out.
+// best (a wave's top lies at most 8 % above its samples), each climbed. The grid leaves out harmonics that make up a
+// small share of F'' over the turn: the more, the flatter the highest one turns out.
 RodPeak peak(const rod_terms::ShapeTable& table, const FourierSeries& T, int order) {
   const Eigen::VectorXd& x = table.x;
   const double l = table.length;
-  const Eigen::RowVectorXd& largest = order == 0 ? table.largest_deflection : table.largest_curvature;
-  const Eigen::ArrayXXd sizes = term_sizes(largest, T);
-  const TermSizes harmonics = of_harmonics(sizes), functions = of_functions(sizes, largest, T);
-  const Eigen::Index all = harmonics.size.size();
+  const Eigen::ArrayXd size = harmonic_sizes(order == 0 ? table.largest_deflection : table.largest_curvature, T);
+  const Eigen::ArrayXd bend = size * Eigen::ArrayXd::LinSpaced(size.size(), 1, size.size()).square();
   thread_local Workspace surface_values;
   for (double share = 1e-2;; share *= share) {
-    Eigen::Index H = all;
+    Eigen::Index H = size.size();
     double missing = 0;
-    while (H > 0 && missing + harmonics.bend(H - 1) <= share / 2 * harmonics.bend.sum()) missing += harmonics.bend(--H);
-    const auto [kept, size_left, bend_left] = telling_functions(functions, share / 2);
-    missing += bend_left;
-    if (kept.empty()) return {};
-    const double beside = harmonics.size.tail(all - H).sum() + size_left;
-    const FourierSeries of_grid(Eigen::MatrixXcd(T.c(kept, Eigen::seqN(0, H + 1))));
-    const Eigen::MatrixXd time = rod_terms::over_turn(of_grid, rod_terms::angles_from(samples_per_wave * (H + 1)));
+    while (H > 0 && missing + bend(H - 1) <= share * bend.sum()) missing += bend(--H);
+    const Eigen::MatrixXd time =
+        rod_terms::over_turn(fourier::resized(T, H), rod_terms::angles_from(samples_per_wave * (H + 1)));
     end_if_wished();
-    const Grid grid((order == 0 ? table.deflection : table.curvature)(Eigen::all, kept), time, surface_values);
+    const Grid grid(order == 0 ? table.deflection : table.curvature, time, surface_values);
     end_if_wished();
     const double top = grid.highest.maxCoeff();
     if (!(top > 0)) return {};
-    const Eigen::MatrixXd telling = harmonics_down(T, harmonics_above(harmonics.size, eps / 2 * top));
+    const Eigen::MatrixXd telling = harmonics_down(T, harmonics_above(size, eps / 2 * top));
     RodPeak best;
     double curvature = 0;
-    for (const Candidate& c : candidates_of(grid, 0.9 * top - 2 * beside)) {
+    for (const Candidate& c : candidates_of(grid, 0.9 * top - size.tail(size.size() - H).sum())) {
       const Surface surface{table.shapes, telling, l, order, c.sign};
       const auto [candidate, its_curvature] =
           climbed(surface, c.i / static_cast<double>(x.size() - 1), two_pi * c.j / static_cast<double>(time.rows()));
