@@ -18,7 +18,7 @@ SteadyOptions response_options(const Settings& settings) {
 }
 
 SteadyOptions pole_options(const Settings& settings) {
-  return {.tolerance = 1e-5, .method = settings.steady_method, .without_bound = true};
+  return {.tolerance = std::max(settings.tolerance, 1e-5), .method = settings.steady_method, .without_bound = true};
 }
 
 StabilityOptions exponent_options(const Settings& settings) {

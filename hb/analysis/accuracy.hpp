@@ -2,7 +2,7 @@
 // the tolerance (Settings::tolerance, 1e-10 by default) and [a, b] for "at least a, at most b":
 //
 //   response q at one speed        T; max(T/20, 1e-14) where the number of modes is sought: their difference counts
-//   ... at its poles               1e-5 of the residual, without a bound of the error
+//   ... at its poles               max(T, 1e-5), without a bound of the error
 //   exponents at one place         10 T [1e-12, 0.1], relative to the larger of growth rate and speed
 //   ... to compare numbers of modes   T/100 [1e-12, 10 T]
 //   boundaries of stability        exponents T [1e-13, 1e-9]; bracket T/10 [1e-14, 1e-6] of the number that varies

@@ -4,6 +4,7 @@
 #include <complex>
 
 #include "hb/analysis/modes.hpp"
+#include "lib/linkage/balance.hpp"
 
 namespace hb {
 namespace {
@@ -22,13 +23,16 @@ double bytes_of_stiffness(const HillSystem& system, double n) {
   return static_cast<double>(sizeof(std::complex<double>)) * static_cast<double>(columns) * n * n;
 }
 
-// The table of influence coefficients at as many crank angles as the geometry needs: at most five joints a dyad and one
-// of the crank, two components each, torque and three of the frame, for three powers of the speed and three loads a
-// rod.
+// The table of influence coefficients, and a coarser one while it grows, at as many crank angles as the geometry and
+// the applied forces need: at most five joints a dyad and one of the crank, two components each, torque and three of
+// the frame, for three powers of the speed, an applied force a dyad and three loads a rod.
 double bytes_of_influence(const SceneModel& model) {
-  const auto dyads = static_cast<double>(model.linkage()->dyads.size()), rods = static_cast<double>(model.rods.size());
-  const double quantities = 2 * (5 * dyads + 1) + 4;
-  return sizeof(double) * quantities * 3 * (1 + rods) * static_cast<double>(model.coefficients.num_samples);
+  const Linkage& linkage = *model.linkage();
+  const auto dyads = static_cast<double>(linkage.dyads.size()), rods = static_cast<double>(model.rods.size());
+  const double quantities = 2 * (5 * dyads + 1) + 4, loads = 3 + dyads + 3 * rods;
+  const Eigen::Index angles = std::max(
+      {Eigen::Index(64), Eigen::Index(model.coefficients.num_samples), 4 * slider_force_harmonics(linkage) + 4});
+  return 1.5 * sizeof(double) * quantities * loads * static_cast<double>(angles);
 }
 
 }  // namespace

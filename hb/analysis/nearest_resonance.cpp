@@ -31,7 +31,7 @@ std::optional<NearestResonance> resonance_of(const HillSystem& system, double sp
 }
 
 // N x components.
-Eigen::MatrixXd sampled(const Eigen::MatrixXcd& harmonics, Index N) {
+Eigen::MatrixXd by_angle(const Eigen::MatrixXcd& harmonics, Index N) {
   fourier::RealTransform& transform = fourier::thread_transform(N, harmonics.rows());
   auto spectrum = transform.spectrum();
   spectrum.topRows(harmonics.cols()) = harmonics.transpose();
@@ -49,8 +49,8 @@ std::optional<Eigen::MatrixXd> by_definite(const FourierSeries& C, const Fourier
       if (C.c.row(i + I * j) != C.c.row(j + I * i)) return std::nullopt;
       lower.push_back(i + I * j);
     }
-  const Eigen::MatrixXd matrices = sampled(C.c(lower, Eigen::all), N);
-  Eigen::MatrixXd motion = sampled(h.c, N);
+  const Eigen::MatrixXd matrices = by_angle(C.c(lower, Eigen::all), N);
+  Eigen::MatrixXd motion = by_angle(h.c, N);
   std::vector<Lanes> A(static_cast<std::size_t>(I * I)), u(static_cast<std::size_t>(I));
   for (Index first = 0; first < N; first += Lanes::width) {
     for (std::size_t e = 0; e < lower.size(); ++e)

@@ -378,32 +378,30 @@ class SweepRun {
     std::ranges::move(points, std::back_inserter(result_.refined));
   }
 
-  // Null where the rod has none there.
-  static const StabilityBoundary* boundary_at(const SweepRod& rod, double x) {
-    const auto there = std::ranges::find_if(
-        rod.boundaries, [x](const StabilityBoundary& boundary) { return boundary.converged && boundary.x == x; });
-    return there == rod.boundaries.end() ? nullptr : &*there;
+  // Of which rods a boundary there is `such`.
+  template <class Such>
+  std::vector<bool> with_boundary(double x, const Such& such) const {
+    std::vector<bool> there;
+    for (std::size_t r = 0; r < result_.rods.size(); ++r)
+      there.push_back(std::ranges::any_of(result_.rods[r].boundaries, [&](const StabilityBoundary& boundary) {
+        return boundary.converged && boundary.x == x && such(r, boundary);
+      }));
+    return there;
   }
 
-  // Which rods have a boundary there.
   std::vector<bool> at_boundary(double x) const {
-    std::vector<bool> there;
-    for (const SweepRod& rod : result_.rods) there.push_back(boundary_at(rod, x) != nullptr);
-    return there;
+    return with_boundary(x, [](std::size_t, const StabilityBoundary&) { return true; });
   }
 
-  // Which rods have a boundary there that is the pole of a response: a multiplier is +1, and the load excites it.
+  // The pole of a response: a multiplier is +1, and the load excites it.
   std::vector<bool> at_pole(double x) const {
-    std::vector<bool> there;
-    for (std::size_t r = 0; r < result_.rods.size(); ++r) {
-      const StabilityBoundary* boundary = boundary_at(result_.rods[r], x);
-      there.push_back(boundary != nullptr && boundary->kind == BoundaryKind::plus_one &&
-                      std::ranges::any_of(result_.critical, [&](const CriticalPoint& point) {
-                        return point.rod == r && !is_refined(point) &&
-                               std::abs(point.peak.x - x) <= boundary->error + point.peak.error;
-                      }));
-    }
-    return there;
+    return with_boundary(x, [&](std::size_t r, const StabilityBoundary& boundary) {
+      return boundary.kind == BoundaryKind::plus_one &&
+             std::ranges::any_of(result_.critical, [&](const CriticalPoint& point) {
+               return point.rod == r && !is_refined(point) &&
+                      std::abs(point.peak.x - x) <= boundary.error + point.peak.error;
+             });
+    });
   }
 
   // Boundaries, peaks, and the fastest growth between points.

@@ -55,8 +55,12 @@ void rigid_loads(const Linkage& linkage, const std::vector<BodyMotion>& motion,
 
 std::array<std::vector<BodyLoad>, 3> rigid_loads(const Linkage& linkage, const std::vector<BodyMotion>& motion,
                                                  double crank_angle) {
+  Eigen::VectorXd slider_forces = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(linkage.dyads.size()));
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d)
+    if (const FourierSeries* force = slider_force(linkage.dyads[d]))
+      slider_forces(static_cast<Eigen::Index>(d)) = fourier::evaluate(*force, crank_angle)(0);
   std::array<std::vector<BodyLoad>, 3> loads;
-  rigid_loads(linkage, motion, slider_forces_at(linkage, crank_angle), loads);
+  rigid_loads(linkage, motion, slider_forces, loads);
   return loads;
 }
 
@@ -162,14 +166,6 @@ Eigen::MatrixXd deflection_samples(const Linkage& linkage, const LinkResponse& r
     integrals.c.col(k) << sums.col(k), Complex(0, n) * sums.col(k), -n * n * sums.col(k);
   }
   return fourier::synthesise(integrals, num_samples);
-}
-
-Eigen::VectorXd slider_forces_at(const Linkage& linkage, double crank_angle) {
-  Eigen::VectorXd forces = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(linkage.dyads.size()));
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d)
-    if (const FourierSeries* force = slider_force(linkage.dyads[d]))
-      forces(static_cast<Eigen::Index>(d)) = fourier::evaluate(*force, crank_angle)(0);
-  return forces;
 }
 
 Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples) {

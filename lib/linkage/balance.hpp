@@ -40,10 +40,8 @@ struct RodMotion {
 [[nodiscard]] Eigen::MatrixXd deflection_samples(const Linkage& linkage, const LinkResponse& response,
                                                  Eigen::Index num_samples);
 
-// Applied force of each dyad's slider, 0 for a rocker.
-[[nodiscard]] Eigen::VectorXd slider_forces_at(const Linkage& linkage, double crank_angle);
-// The same, dyads x num_samples, at tau_j = 2 pi j / num_samples; needs
-// num_samples > 2 slider_force_harmonics.
+// Applied slider forces, dyads x num_samples, at tau_j = 2 pi j / num_samples; needs num_samples > 2
+// slider_force_harmonics.
 [[nodiscard]] Eigen::MatrixXd slider_force_samples(const Linkage& linkage, Eigen::Index num_samples);
 [[nodiscard]] Eigen::Index slider_force_harmonics(const Linkage& linkage);
 

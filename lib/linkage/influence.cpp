@@ -1,5 +1,7 @@
 #include "lib/linkage/influence.hpp"
 
+#include <cassert>
+
 #include "lib/constants.hpp"
 #include "lib/linkage/joint_rows.hpp"
 #include "lib/stop_wish.hpp"
@@ -10,24 +12,11 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Joints cancel in the sum over all bodies: what they ask of pivots, guides and motor is
-//     G = sum of load,   M = sum of load.moment + (z - O) x load.force,
-// a slider's applied force F, taken off its load there, being given back to the frame:  -(G + F),  -(M + (z - O) x F).
+// Joints cancel in the sum over all bodies: what a load asks of pivots, guides and motor they take from the frame,
+//     -load.force,   -(load.moment + (z - O) x load.force).
 Eigen::Vector3d on_frame(const Linkage& linkage, const BodyMotion& motion, const BodyLoad& load) {
   const double moment = load.moment + (std::conj(motion.z - linkage.crank.pivot) * load.force).imag();
   return {-load.force.real(), -load.force.imag(), -moment};
-}
-
-Eigen::Vector3d on_frame(const Linkage& linkage, const std::vector<BodyMotion>& motion,
-                         const std::vector<BodyLoad>& loads, const Eigen::VectorXd& slider_forces) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t b = 0; b < loads.size(); ++b) sum += on_frame(linkage, motion[b], loads[b]);
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
-    const std::size_t body = at(closing_index(static_cast<int>(d)));
-    if (std::holds_alternative<Slider>(linkage.dyads[d].closing))
-      sum += on_frame(linkage, motion[body], {slider_forces(static_cast<Eigen::Index>(d)) * motion[body].e, 0});
-  }
-  return sum;
 }
 
 // One crank angle after the other.
@@ -41,30 +30,40 @@ class Turn {
   Eigen::Index num_quantities() const { return 2 * static_cast<Eigen::Index>(rows_.size()) + 4; }
 
   void fill(Influence& table, Eigen::Index j) {
-    const double tau = two_pi * static_cast<double>(j) / static_cast<double>(table.num_samples());
-    motion_at(linkage_, tau, motion_);
-    const Eigen::VectorXd slider_forces = slider_forces_at(linkage_, tau);
-    rigid_loads(linkage_, motion_, slider_forces, powers_);
+    motion_at(linkage_, two_pi * static_cast<double>(j) / static_cast<double>(table.num_samples()), motion_);
+    rigid_loads(linkage_, motion_, no_slider_forces_, powers_);
     for (std::size_t p = 0; p < powers_.size(); ++p) {
       auto quantities = table.rigid[p].col(j);
-      quantities.tail<3>() = on_frame(linkage_, motion_, powers_[p], p == 0 ? slider_forces : no_slider_forces_);
+      quantities.tail<3>().setZero();
+      for (std::size_t b = 0; b < motion_.size(); ++b)
+        quantities.tail<3>() += on_frame(linkage_, motion_[b], powers_[p][b]);
       balance_joints(powers_[p], quantities);
+    }
+    // What applies the force stands on the frame, too.
+    for (Influence::AppliedForce& applied : table.applied) {
+      const int slider = closing_index(static_cast<int>(applied.dyad));
+      balance_joints(alone(slider, {-motion_[at(slider)].e, 0}), applied.unit.col(j));
+      applied.unit.col(j).tail<3>().setZero();
     }
     for (Influence::Rod& rod : table.rods) {
       const BodyMotion& motion = motion_[at(rod.link)];
       rod.motion[static_cast<std::size_t>(j)] = rod_motion(motion);
       const BodyLoad of_one[] = {{motion.e, 0}, {Complex(0, 1) * motion.e, 0}, {0, 1}};
       for (std::size_t c = 0; c < rod.unit.size(); ++c) {
-        auto quantities = rod.unit[c].col(j);
-        quantities.tail<3>() = on_frame(linkage_, motion, of_one[c]);
-        loads_.assign(motion_.size(), {});
-        loads_[at(rod.link)] = of_one[c];
-        balance_joints(loads_, quantities);
+        balance_joints(alone(rod.link, of_one[c]), rod.unit[c].col(j));
+        rod.unit[c].col(j).tail<3>() = on_frame(linkage_, motion, of_one[c]);
       }
     }
   }
 
  private:
+  // Until the next.
+  std::vector<BodyLoad>& alone(int body, const BodyLoad& load) {
+    loads_.assign(motion_.size(), {});
+    loads_[at(body)] = load;
+    return loads_;
+  }
+
   // All but those of the frame. Uses up `loads`.
   void balance_joints(std::vector<BodyLoad>& loads, Eigen::Ref<Eigen::VectorXd> quantities) {
     balance(linkage_, motion_, loads, forces_);
@@ -93,6 +92,10 @@ Influence influence(const Linkage& linkage, Eigen::Index N, const Influence* coa
     for (Eigen::MatrixXd& each : answers) each.resize(turn.num_quantities(), N);
   };
   sized(table.rigid);
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
+    const auto* slider = std::get_if<Slider>(&linkage.dyads[d].closing);
+    if (slider && slider->force.c.size() > 0) table.applied.push_back({d, Eigen::MatrixXd(turn.num_quantities(), N)});
+  }
   for (const int link : elastic_links(linkage)) {
     Influence::Rod& rod = table.rods.emplace_back();
     rod.link = link;
@@ -108,6 +111,8 @@ Influence influence(const Linkage& linkage, Eigen::Index N, const Influence* coa
     }
     const Eigen::Index same = j / step;
     for (std::size_t p = 0; p < 3; ++p) table.rigid[p].col(j) = coarse->rigid[p].col(same);
+    for (std::size_t a = 0; a < table.applied.size(); ++a)
+      table.applied[a].unit.col(j) = coarse->applied[a].unit.col(same);
     for (std::size_t r = 0; r < table.rods.size(); ++r) {
       table.rods[r].motion[static_cast<std::size_t>(j)] = coarse->rods[r].motion[static_cast<std::size_t>(same)];
       for (std::size_t c = 0; c < 3; ++c) table.rods[r].unit[c].col(j) = coarse->rods[r].unit[c].col(same);
@@ -119,6 +124,7 @@ Influence influence(const Linkage& linkage, Eigen::Index N, const Influence* coa
 }  // namespace
 
 std::shared_ptr<const Influence> InfluenceTable::at(Eigen::Index num_samples) const {
+  assert(num_samples > 0 && (num_samples & (num_samples - 1)) == 0);
   const std::lock_guard lock(mutex_);
   if (!finest_ || finest_->num_samples() < num_samples)
     finest_ = std::make_shared<const Influence>(influence(linkage_, num_samples, finest_.get()));

@@ -1,5 +1,5 @@
 // Influence coefficients, lib/README.md (M13): what loads of one unit on the bodies ask of joints, motor and frame
-// along the turn. They are geometry alone: one table serves every speed and deflection.
+// along the turn. They depend on neither speed nor deflection: one table serves all.
 #pragma once
 
 #include <array>
@@ -13,9 +13,14 @@ namespace hb {
 
 // At tau_j = 2 pi j / N. Rows: x, y of each of joint_rows, the torque, then forces x, y and moment on the frame.
 struct Influence {
-  // Of the rigid motion's loads, quantities x N: gravity and applied slider forces, external damping, inertia. Sum with
-  // 1, Omega, Omega^2.
+  // Of the rigid motion's loads, quantities x N: gravity, external damping, inertia. Sum with 1, Omega, Omega^2.
   std::array<Eigen::MatrixXd, 3> rigid;
+  // Of a force of 1 applied to a slider along its guide.
+  struct AppliedForce {
+    std::size_t dyad = 0;
+    Eigen::MatrixXd unit;
+  };
+  std::vector<AppliedForce> applied;  // of the sliders that have one
   // Of forces of 1 along and across an elastic link and of a moment of 1 about its joint 0.
   struct Rod {
     int link = 0;  // body number
@@ -35,7 +40,8 @@ class InfluenceTable {
 
   const Linkage& linkage() const { return linkage_; }
 
-  // At num_samples angles, a power of two, or at a multiple of these.
+  // At num_samples angles, a power of two, or at a multiple of these. Others wait while it is computed; may end by
+  // Stopped (lib/stop_wish.hpp), the table then as before.
   [[nodiscard]] std::shared_ptr<const Influence> at(Eigen::Index num_samples) const;
 
  private:

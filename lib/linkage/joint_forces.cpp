@@ -54,11 +54,11 @@ void add_deflections(const InfluenceTable& table, const Influence& influence, do
     const Body& link = *body_at(table.linkage(), response.link);
     const auto& rod = *std::ranges::find(influence.rods, response.link, &Influence::Rod::link);
     for (Eigen::Index j = begin; j < N; j += step) {
-      const Eigen::Index at = j * finer;
-      const Eigen::Vector3d load = deflection_load(link, table.linkage().gravity,
-                                                   rod.motion[static_cast<std::size_t>(at)], speed, integrals.col(j));
-      quantities.col(j) += load(0) * rod.unit[0].col(at).head(n) + load(1) * rod.unit[1].col(at).head(n) +
-                           load(2) * rod.unit[2].col(at).head(n);
+      const Eigen::Index there = j * finer;
+      const RodMotion& motion = rod.motion[static_cast<std::size_t>(there)];
+      const Eigen::Vector3d load = deflection_load(link, table.linkage().gravity, motion, speed, integrals.col(j));
+      quantities.col(j) += load(0) * rod.unit[0].col(there).head(n) + load(1) * rod.unit[1].col(there).head(n) +
+                           load(2) * rod.unit[2].col(there).head(n);
     }
   }
 }
@@ -89,10 +89,13 @@ JointForces joint_forces(const InfluenceTable& table, double speed, const std::v
     const Eigen::Index N = samples.cols();
     const std::shared_ptr<const Influence> influence = table.at(N);
     const Eigen::Index finer = influence->num_samples() / N;
+    const Eigen::MatrixXd slider_forces = slider_force_samples(linkage, N);
     const auto& rigid = influence->rigid;
     for (Eigen::Index j = begin; j < N; j += step) {
-      const Eigen::Index at = j * finer;
-      samples.col(j).head(all) = rigid[0].col(at) + speed * (rigid[1].col(at) + speed * rigid[2].col(at));
+      const Eigen::Index there = j * finer;
+      samples.col(j).head(all) = rigid[0].col(there) + speed * (rigid[1].col(there) + speed * rigid[2].col(there));
+      for (const Influence::AppliedForce& applied : influence->applied)
+        samples.col(j).head(all) += slider_forces(static_cast<Eigen::Index>(applied.dyad), j) * applied.unit.col(there);
       samples.col(j).tail(all) = samples.col(j).head(all);
     }
     add_deflections(table, *influence, speed, responses, begin, step, samples.bottomRows(all));

@@ -90,8 +90,7 @@ struct JointForces {
 [[nodiscard]] JointForces joint_forces(const Linkage& linkage, double speed, const std::vector<LinkResponse>& responses,
                                        double tolerance = 1e-13);
 
-// What is the same at every speed and for every response of a linkage: made once where many are asked for. Defined in
-// lib/linkage/influence.hpp.
+// As above, of the linkage whose table it is, made once where many speeds are asked for (lib/linkage/influence.hpp).
 class InfluenceTable;
 [[nodiscard]] JointForces joint_forces(const InfluenceTable& table, double speed,
                                        const std::vector<LinkResponse>& responses, double tolerance = 1e-13);

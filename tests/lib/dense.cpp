@@ -47,5 +47,15 @@ TEST(Dense, LargeEliminationEndsWhereItIsWished) {
   EXPECT_THROW(dense::Lu<std::complex<double>>{A}, Stopped);
 }
 
+TEST(Dense, InverseOfADiagonalMatrixIsExact) {
+  const Eigen::Vector3d diagonal(4, -0.5, 1e-200);
+  const Eigen::MatrixXd D = diagonal.asDiagonal();
+  const Eigen::MatrixXd inverse = dense::inverse(D);
+  EXPECT_EQ(inverse, Eigen::MatrixXd(diagonal.cwiseInverse().asDiagonal()));
+  Eigen::MatrixXd nearly = D;
+  nearly(0, 1) = 2;
+  EXPECT_LE((nearly * dense::inverse(nearly) - Eigen::MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff(), 1e-15);
+}
+
 }  // namespace
 }  // namespace hb

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <thread>
 #include <tuple>
 
 #include "lib/linkage/influence.hpp"
@@ -131,7 +134,34 @@ TEST(JointForces, OfOneTableAtEverySpeedAreThoseOfTheirOwn) {
       EXPECT_EQ(shared.joints[j].rigid.c, own.joints[j].rigid.c) << own.joints[j].name;
     }
     EXPECT_EQ(shared.torque.c, own.torque.c);
+    EXPECT_EQ(shared.torque_rigid.c, own.torque_rigid.c);
     EXPECT_EQ(shared.frame.elastic.c, own.frame.elastic.c);
+    EXPECT_EQ(shared.frame.rigid.c, own.frame.rigid.c);
+    EXPECT_EQ(shared.force_error, own.force_error);
+    EXPECT_EQ(shared.torque_error, own.torque_error);
+  }
+}
+
+// Gravity, damping, inertia and the applied force against the balance of all loads at once.
+TEST(JointForces, RigidOnesAreThoseOfTheWholeBalanceAtEveryAngle) {
+  const Linkage linkage = std::get<Linkage>(read_scene(HB_SOURCE_DIR "/tests/scenes/eight_link.toml").model);
+  ASSERT_TRUE(std::ranges::any_of(linkage.dyads, [](const Dyad& dyad) {
+    const auto* slider = std::get_if<Slider>(&dyad.closing);
+    return slider != nullptr && slider->force.c.size() > 0;
+  }));
+  const double Omega = 40;
+  const Eigen::RowVectorXd torque = fourier::synthesise(joint_forces(linkage, Omega, {}).torque_rigid, 512);
+  for (Eigen::Index j = 0; j < 512; j += 37) {
+    const double tau = 2 * std::numbers::pi * double(j) / 512;
+    const std::vector<BodyMotion> motion = motion_at(linkage, tau);
+    const auto powers = rigid_loads(linkage, motion, tau);
+    std::vector<BodyLoad> loads(motion.size());
+    for (std::size_t b = 0; b < loads.size(); ++b)
+      for (std::size_t p = 0; p < 3; ++p) {
+        loads[b].force += std::pow(Omega, double(p)) * powers[p][b].force;
+        loads[b].moment += std::pow(Omega, double(p)) * powers[p][b].moment;
+      }
+    EXPECT_NEAR(torque(j), balance(linkage, motion, loads).torque, 1e-10 * torque.cwiseAbs().maxCoeff());
   }
 }
 
@@ -144,6 +174,8 @@ TEST(JointForces, InfluenceCoefficientsDoNotDependOnWhichAnglesAreAskedForFirst)
   const auto some = grown.at(128), all = made.at(256);
   EXPECT_EQ(some->num_samples(), 256);
   for (std::size_t p = 0; p < 3; ++p) EXPECT_EQ(some->rigid[p], all->rigid[p]);
+  ASSERT_EQ(some->applied.size(), 1u);
+  EXPECT_EQ(some->applied[0].unit, all->applied[0].unit);
   ASSERT_EQ(some->rods.size(), elastic_links(linkage).size());
   for (std::size_t r = 0; r < all->rods.size(); ++r) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -156,6 +188,25 @@ TEST(JointForces, InfluenceCoefficientsDoNotDependOnWhichAnglesAreAskedForFirst)
                 std::tie(b.phi1, b.phi2, b.sine, b.along1, b.along2));
     }
   }
+}
+
+TEST(JointForces, ThreadsMayAskForInfluenceCoefficientsAtOnce) {
+  const Linkage linkage = six_link::linkage({.J = 45.0});
+  const std::shared_ptr<const Influence> alone = InfluenceTable(linkage).at(512);
+  const InfluenceTable shared(linkage);
+  std::vector<std::thread> threads;
+  std::vector<int> wrong(4, 0);
+  for (std::size_t t = 0; t < wrong.size(); ++t)
+    threads.emplace_back([&, t] {
+      for (const Eigen::Index N : {64, 512, 128, 256}) {
+        const std::shared_ptr<const Influence> found = shared.at(t % 2 == 0 ? N : 32768 / N);
+        const Eigen::Index step = 512 / found->num_samples();
+        for (Eigen::Index j = 0; j < found->num_samples(); ++j)
+          wrong[t] += found->rigid[2].col(j) != alone->rigid[2].col(j * step);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, std::vector<int>(4, 0));
 }
 
 // Beside responses of 1e14 times their size rigid forces counted as rounding, and were 0.

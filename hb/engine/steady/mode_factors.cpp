@@ -59,6 +59,7 @@ ModeFactors::ModeFactors(const Operator& A) : H_(A.num_harmonics()) {
 template <class To>
 void ModeFactors::gather(const Spectrum& x, const Band& band, const To& to) const {
   constexpr Index together = width / 2;
+  static_assert(width % 2 == 0);
   std::array<const double*, std::size_t(width)> columns;
   for (Index c = 0; c < width; ++c)
     columns[std::size_t(c)] = reinterpret_cast<const double*>(x.col(band.mode(c)).data());
