@@ -28,7 +28,7 @@ constexpr GrowthAccuracy growth_accuracy{.of_change = 0.02, .of_rate = 1e-7};
 // Twice the angles leave about the square of what they change, which may be this part of the answer.
 constexpr double look_settled = 0.07;
 // Cells of a turn for each oscillation of the fastest mode, look by look.
-constexpr double cells_per_oscillation[] = {0.4, 1.2, 1.8, 2.4};
+constexpr double cells_per_oscillation[] = {0.8, 2.4, 3.6, 4.8};
 constexpr Index fewest_cells = 12, most_cells = 100000;
 
 // The first modes of a linear system, alone: alpha = M^-1 C/Omega^2, beta = M^-1 B/Omega.
@@ -115,7 +115,7 @@ double resolving_cells(const NormalForm& exact, double largest_growth, double en
   for (Index i = 0; i < n; ++i) {
     const double mean_growth = -exact.beta.row(i * (n + 1)).mean() / 2;
     if (mean_growth < largest_growth - std::max(std::abs(largest_growth), 0.01)) continue;
-    cells = std::max(cells, oscillator_cells(frequency(i), 0.1 * enough));
+    cells = std::max(cells, rough_oscillator_cells(frequency(i), 0.1 * enough));
   }
   return cells;
 }

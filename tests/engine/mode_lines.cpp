@@ -44,7 +44,7 @@ NormalForm small_change(Index n, double w, double size, Index N) {
 }
 
 double propagated_change(const std::vector<PeriodicCoefficients>& parts, const NormalForm& change) {
-  const Index n = change.num_modes(), cells = radau_cells(256);
+  const Index n = change.num_modes(), cells = radau_cells(2048);
   PeriodicCoefficients all{fourier::analyse(change.alpha), fourier::analyse(change.beta), n};
   double before = -HUGE_VAL;
   Index first = 0;

@@ -219,6 +219,19 @@ double CellErrors::total(bool real) const {
   return deviations * eps * std::sqrt(variance + alike * alike * deviation * deviation) + given;
 }
 
+SizedProduct sized_product(const MatrixXd& factors) {
+  const Index p = factors.rows();
+  MatrixXd product = factors.leftCols(p), next;
+  int exponent = 0;
+  for (Index first = p; first < factors.cols(); first += p) {
+    multiply_columns(factors, first, product, next);
+    exponent += normalised(next);
+    product.swap(next);
+  }
+  const Size total{std::max(product.norm(), 1e-300), exponent};
+  return {product / total.value, total.log()};
+}
+
 ChainProduct product_of(const CellChain& chain) {
   const Index p = chain.size(), N = chain.num_cells();
   const auto cell = [&](const MatrixXd& all, Index i) { return all.middleCols(p * i, p); };

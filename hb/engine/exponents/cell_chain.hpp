@@ -25,6 +25,14 @@ struct CellErrors {
   [[nodiscard]] double total(bool real) const;
 };
 
+// D_N .. D_1 = e^log_size M, |M| = 1.
+struct SizedProduct {
+  Eigen::MatrixXd M;
+  double log_size = 0;
+};
+// Of p x p factors side by side, p = factors.rows().
+[[nodiscard]] SizedProduct sized_product(const Eigen::MatrixXd& factors);
+
 // M = closing D_N .. D_1.
 struct CellChain {
   Eigen::MatrixXd factors;  // D_1 .. D_N, p x p each, side by side

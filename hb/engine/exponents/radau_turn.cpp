@@ -20,8 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
-constexpr int stages = 8;
-
+template <int stages>
 struct Radau {
   Eigen::Matrix<double, stages, 1> c;
   Eigen::Matrix<double, stages, stages> A, A2;  // A2 = A A: positions from accelerations
@@ -41,8 +40,8 @@ std::array<long double, n + 1> legendre(long double x) {
 // the nodes, weights w_k = (1 + x_k)/(s P_(s-1)(x_k))^2 with the end at -1, integrates products of degree 2s - 2
 // exactly, so that with int_{-1}^{x} P_j = (P_(j+1) - P_(j-1))/(2j+1)
 //     A_ik = (w_k/2) sum_{j<s} (2j+1)/2 P_j(x_k) int_{-1}^{x_i} P_j.
-Radau make_radau() {
-  constexpr int s = stages;
+template <int s>
+Radau<s> make_radau() {
   std::array<long double, s> x{};
   const auto f = [](long double t) {
     const auto p = legendre<s>(t);
@@ -68,7 +67,7 @@ Radau make_radau() {
       A[i][k] = weight / 4 * (x[i] + 1);
       for (std::size_t j = 1; j < s; ++j) A[i][k] += weight / 4 * at[j] * (p[j + 1] - p[j - 1]);
     }
-  Radau radau;
+  Radau<s> radau;
   for (std::size_t i = 0; i < s; ++i) {
     radau.c(Index(i)) = double((x[i] + 1) / 2);
     for (std::size_t k = 0; k < s; ++k) {
@@ -81,8 +80,9 @@ Radau make_radau() {
   return radau;
 }
 
-const Radau& radau() {
-  static const Radau tableau = make_radau();
+template <int stages>
+const Radau<stages>& radau() {
+  static const Radau<stages> tableau = make_radau<stages>();
   return tableau;
 }
 
@@ -90,10 +90,11 @@ const Radau& radau() {
 constexpr Index lanes = 4;
 using Lane = Eigen::Array<double, lanes, 1>;
 // Above, the blocked kernels of one matrix at a time are faster.
-constexpr Index most_modes_in_lanes = 8;
+constexpr Index most_modes_in_lanes = 8, most_rows = 8 * most_modes_in_lanes;
 
 // e^{i k c_i h}, h = 2 pi/num_cells, at (k, i), k up to `least`; kept per thread, since neighbouring points of a
 // sweep use the same ones.
+template <int stages>
 const Eigen::ArrayXXcd& stage_shifts(Index num_cells, Index least) {
   thread_local std::map<std::pair<Index, Index>, Eigen::ArrayXXcd> kept;
   const Index H = (least + 15) / 16 * 16;
@@ -103,7 +104,7 @@ const Eigen::ArrayXXcd& stage_shifts(Index num_cells, Index least) {
   Eigen::ArrayXXcd shifts(H + 1, stages);
   for (int i = 0; i < stages; ++i)
     for (Index k = 0; k <= H; ++k)
-      shifts(k, i) = std::polar(1.0, double(k) * two_pi * radau().c(i) / double(num_cells));
+      shifts(k, i) = std::polar(1.0, double(k) * two_pi * radau<stages>().c(i) / double(num_cells));
   return kept.emplace(key, std::move(shifts)).first->second;
 }
 
@@ -119,10 +120,11 @@ void fold(cplx c, Index k, Index N, cplx* spectrum) {
 
 // The series at the stage angles (n + c_i) h, row i num_cells + n, a column per component: per stage one Fourier
 // transform over the cells of the shifted coefficients, those beyond its length folded back.
+template <int stages>
 MatrixXd at_stages(const FourierSeries& series, Index num_cells) {
   const Index H = series.num_harmonics(), N = num_cells, n = series.num_components();
   if (H == 0) return series.c.col(0).real().transpose().replicate(stages * N, 1);
-  const auto& shifts = stage_shifts(N, H);
+  const auto& shifts = stage_shifts<stages>(N, H);
   fourier::RealTransform& transform = fourier::thread_transform(N, stages);
   MatrixXd values(stages * N, n);
   const Index apart = std::min(H + 1, (N + 1) / 2);
@@ -178,7 +180,7 @@ Lane eliminate(Lane* rows, Index dynamic_n, Index dynamic_r) {
   const Index n = fixed_n == Eigen::Dynamic ? dynamic_n : fixed_n;
   const Index width = n + (fixed_r == Eigen::Dynamic ? dynamic_r : fixed_r);
   const auto row_of = [&](Index i) { return rows + i * width; };
-  std::array<Lane, stages * most_modes_in_lanes> inverse, largest, sum;
+  std::array<Lane, most_rows> inverse, largest, sum;
   const auto at = [](auto& of_rows, Index i) -> Lane& { return of_rows[std::size_t(i)]; };
   Lane size = Lane::Zero(), growth = Lane::Zero();
   for (Index i = 0; i < n; ++i) {
@@ -230,6 +232,7 @@ Lane eliminate(Lane* rows, Index dynamic_n, Index dynamic_r) {
 }
 
 // k_i + beta_i h sum_j A_ij k_j + alpha_i h^2 sum_j (A^2)_ij k_j = -beta_i v_0 - alpha_i (x_0 + c_i h v_0)
+template <int stages>
 struct Turn {
   Index m, num_cells;
   double h;
@@ -241,8 +244,8 @@ struct Turn {
       : m(num_modes),
         num_cells(number_of_cells),
         h(two_pi / double(num_cells)),
-        alpha(at_stages(alpha_series, num_cells)),
-        beta(at_stages(beta_series, num_cells)),
+        alpha(at_stages<stages>(alpha_series, num_cells)),
+        beta(at_stages<stages>(beta_series, num_cells)),
         scale(m),
         cells(2 * m, 2 * m * num_cells) {
     for (Index i = 0; i < m; ++i) scale(i) = std::max(1.0, std::sqrt(std::abs(alpha_series.c(i + m * i, 0).real())));
@@ -251,7 +254,7 @@ struct Turn {
   // One cell, with pivots.
   void pivoted(Index n) {
     end_if_wished();
-    const auto& [c, A, A2] = radau();
+    const auto& [c, A, A2] = radau<stages>();
     MatrixXd system(stages * m, stages * m), right(stages * m, 2 * m), alpha_i(m, m), beta_i(m, m);
     for (int i = 0; i < stages; ++i) {
       for (Index q = 0; q < m * m; ++q) {
@@ -285,7 +288,7 @@ struct Turn {
     // Up to this growth the maps are as accurate as with pivots (random systems against 80-bit maps: medians of 0.34
     // and 0.29 epsilon of (E11) for growths of 4 to 6, 0.38 and 0.35 for 2 to 4).
     constexpr double most_growth = 8;
-    const auto& [c, A, A2] = radau();
+    const auto& [c, A, A2] = radau<stages>();
     const Index size = stages * m, width = size + 2 * m;
     std::vector<Lane, Eigen::aligned_allocator<Lane>> rows(static_cast<std::size_t>(size * width));
     const auto at = [&](Index row, Index column) -> Lane& {
@@ -344,16 +347,24 @@ double oscillator_error(double frequency, double num_cells) { return std::pow(0.
 
 double oscillator_cells(double frequency, double error) { return 0.61 * frequency * std::pow(error, -1.0 / 15); }
 
-TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
-  Turn turn(alpha, beta, num_modes, num_cells);
+// |R(iz)| = 1 - c z^2s, c = s! (s-1)!/((2s)! (2s-1)!), z = 2 pi w/N: (c (2 pi)^7 w)^1/7 w/N.
+double rough_oscillator_cells(double frequency, double error) {
+  return 0.8311 * frequency * std::pow(frequency / error, 1.0 / 7);
+}
+
+namespace {
+
+template <int stages>
+TurnMaps turn_maps(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
+  Turn<stages> turn(alpha, beta, num_modes, num_cells);
   if (num_modes == 1)
-    turn.in_lanes<1>();
+    turn.template in_lanes<1>();
   else if (num_modes == 2)
-    turn.in_lanes<2>();
+    turn.template in_lanes<2>();
   else if (num_modes == 4)
-    turn.in_lanes<4>();
+    turn.template in_lanes<4>();
   else if (num_modes <= most_modes_in_lanes)
-    turn.in_lanes<Eigen::Dynamic>();
+    turn.template in_lanes<Eigen::Dynamic>();
   else
     for (Index n = 0; n < num_cells; ++n) turn.pivoted(n);
 
@@ -371,6 +382,16 @@ TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index
   TurnMaps maps{num_cells, std::move(turn.cells), std::move(turn.scale), std::move(terms)};
   for (Index i = 0; i < num_modes; ++i) maps.damping_trace += beta.c(i + num_modes * i, 0).real();
   return maps;
+}
+
+}  // namespace
+
+TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
+  return turn_maps<8>(alpha, beta, num_modes, num_cells);
+}
+
+TurnMaps rough_radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Index num_modes, Index num_cells) {
+  return turn_maps<4>(alpha, beta, num_modes, num_cells);
 }
 
 }  // namespace hb

@@ -27,9 +27,14 @@ struct TurnMaps {
 // s = 8 stages, order 15. alpha and beta have m*m components (column-major); num_cells is one of radau_cells.
 [[nodiscard]] TurnMaps radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Eigen::Index num_modes,
                                   Eigen::Index num_cells);
+// The same with s = 4 stages, order 7, for a few digits: as many cells take a third of the time.
+[[nodiscard]] TurnMaps rough_radau_turn(const FourierSeries& alpha, const FourierSeries& beta, Eigen::Index num_modes,
+                                        Eigen::Index num_cells);
 
 // One oscillator's phase and damping come out to so much of a turn (measured), and the cells for that.
 [[nodiscard]] double oscillator_error(double frequency, double num_cells);
 [[nodiscard]] double oscillator_cells(double frequency, double error);
+// Cells of rough_radau_turn over which it damps an oscillator by no more than `error` per radian.
+[[nodiscard]] double rough_oscillator_cells(double frequency, double error);
 
 }  // namespace hb

@@ -210,38 +210,37 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error(0) / 2 : 0;
   for (Index cells = least; cells <= most && work(double(cells)) < most_work; cells = radau_cells(cells + 1)) {
+    const TurnMaps maps = radau_turn(reduced.alpha, reduced.beta, m, cells);
+    if (!coarse) {
+      coarse = Cells{cells, turn_values(maps, leading_only), {}, {}};
+      continue;
+    }
     // Errors of the coefficients over a cell: h d alpha W^-1, h d beta.
     MatrixXd given = MatrixXd::Zero(2 * m, 2 * m);
     const double h = two_pi / double(cells);
     given.bottomLeftCorner(m, m) = h * reduced.alpha_error * W.cwiseInverse().asDiagonal();
     given.bottomRightCorner(m, m) = h * reduced.beta_error;
-    Cells fine{cells,
-               turn_exponents(radau_turn(reduced.alpha, reduced.beta, m, cells), given, leading_only,
-                              coarse ? coarse->turn.subspaces : MatrixXd()),
-               {},
-               {}};
-    if (coarse) {
-      TruncatedErrors errors = errors_from(*coarse, fine);
-      // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
-      const double least = m == 1 ? oscillator_error(fastest, double(cells)) : 0;
-      for (auto* of : {&errors.changed, &errors.left, &errors.imaginary})
-        for (double& error : *of) error = std::max(error, least) + damping_error;
-      result.s = fine.turn.s;
-      result.others_below = fine.turn.others_below;
-      result.error = errors.left;
-      result.imaginary_error = errors.imaginary;
-      if (result.s.empty()) break;
-      // At rounding more cells gain nothing.
-      const auto at_rounding = [&](std::size_t i) { return errors.changed[i] <= 2 * fine.turn.error[i]; };
-      result.converged = errors.changed[0] <= allowed(tolerance, fine.turn.s[0]);
-      bool done = result.converged || at_rounding(0);
-      if (done && enough == 0) enough = cells;
-      const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
-      for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
-        done = done &&
-               (at_rounding(i) || errors.changed[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
-      if (done) break;
-    }
+    Cells fine{cells, turn_exponents(maps, given, leading_only, coarse->turn.subspaces), {}, {}};
+    TruncatedErrors errors = errors_from(*coarse, fine);
+    // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
+    const double least = m == 1 ? oscillator_error(fastest, double(cells)) : 0;
+    for (auto* of : {&errors.changed, &errors.left, &errors.imaginary})
+      for (double& error : *of) error = std::max(error, least) + damping_error;
+    result.s = fine.turn.s;
+    result.others_below = fine.turn.others_below;
+    result.error = errors.left;
+    result.imaginary_error = errors.imaginary;
+    if (result.s.empty()) break;
+    // At rounding more cells gain nothing.
+    const auto at_rounding = [&](std::size_t i) { return errors.changed[i] <= 2 * fine.turn.error[i]; };
+    result.converged = errors.changed[0] <= allowed(tolerance, fine.turn.s[0]);
+    bool done = result.converged || at_rounding(0);
+    if (done && enough == 0) enough = cells;
+    const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
+    for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
+      done =
+          done && (at_rounding(i) || errors.changed[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
+    if (done) break;
     coarse = std::move(fine);
   }
   if (result.s.empty() && coarse) {

@@ -144,11 +144,9 @@ void carry_changes(Length n, const double* Q, const double* W, const double* V, 
   }
 }
 
-// The diagonal blocks of R as chains: with V_i the bases of the invariant subspaces and W_i = V_i^-1, a change E_i of a
-// cell's map is a change W_i E_i V_(i-1) of the blocks, to first order.
-std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given, const QrSweep& sweep) {
-  const Index n = maps.num_states(), N = maps.num_cells;
-  const std::optional<SubspaceBases> bases = subspace_bases(sweep);
+// The diagonal blocks of R, their errors not known.
+std::vector<CellChain> blocks_of(const QrSweep& sweep) {
+  const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
   std::vector<CellChain> chains;
   Index begin = 0;
   for (const Index end : sweep.ends) {
@@ -161,6 +159,15 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
     for (Index i = 0; i < N; ++i) chain.factors.middleCols(p * i, p) = sweep.R.block(begin, n * i + begin, p, p);
     begin = end;
   }
+  return chains;
+}
+
+// The diagonal blocks of R as chains: with V_i the bases of the invariant subspaces and W_i = V_i^-1, a change E_i of a
+// cell's map is a change W_i E_i V_(i-1) of the blocks, to first order.
+std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given, const QrSweep& sweep) {
+  const Index n = maps.num_states(), N = maps.num_cells;
+  const std::optional<SubspaceBases> bases = subspace_bases(sweep);
+  std::vector<CellChain> chains = blocks_of(sweep);
   if (!bases) return chains;
   const bool exact = given.cwiseAbs().maxCoeff() == 0;
   MatrixXd rounding(n, n), changed = MatrixXd::Zero(n, n);
@@ -177,7 +184,7 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
                     bases->right.data() + n * n * i, swept * swept, exact ? nullptr : given.data(), work,
                     rounding.data(), changed.data());
     });
-    begin = 0;
+    Index begin = 0;
     for (std::size_t b = 0; b < chains.size(); ++b) {
       const Index p = chains[b].size();
       chains[b].rounding.middleCols(p * i, p) = rounding.block(begin, begin, p, p);
@@ -223,8 +230,9 @@ class Collector {
   TurnExponents found_;
 };
 
-// One exponent: ln of the product of all d_i, taken to twice the digits, (high + low) 2^exponent.
-void add_single(const CellChain& chain, Collector& collector) {
+// One exponent: ln of the product of all d_i, taken to twice the digits, (high + low) 2^exponent. Its error, where not
+// to be told, is none.
+void add_single(const CellChain& chain, bool with_errors, Collector& collector) {
   double high = chain.closing(0), low = 0;
   int exponent = 0;
   CellErrors relative;
@@ -235,7 +243,7 @@ void add_single(const CellChain& chain, Collector& collector) {
     high = std::frexp(product, &e);
     low = std::ldexp(low, -e);
     exponent += e;
-    relative.add(chain.rounding(i) / (d * d), chain.given(i) / std::abs(d));
+    if (with_errors) relative.add(chain.rounding(i) / (d * d), chain.given(i) / std::abs(d));
   }
   const double radius = relative.total(true), size = std::abs(high);
   const double log = size > 0 ? std::log(size) + low / high + exponent * std::numbers::ln2 : -HUGE_VAL;
@@ -281,7 +289,39 @@ void add_several(const CellChain& chain, bool leading_only, Collector& collector
   for (Index j = 0; j < mu.value.size(); ++j) collector.add(mu.value(j), mu.radius(j), product.log_size);
 }
 
+// Several exponents of closing D_N .. D_1 without their errors, but for those lost in the rounding of the product.
+void add_values(const MatrixXd& factors, const MatrixXd& closing, Collector& collector) {
+  constexpr double lost = 1e-12;
+  const SizedProduct product = sized_product(factors);
+  const Eigen::VectorXcd values = dense::eigenvalues(closing * product.M);
+  for (const cplx mu : values) collector.add(mu, lost, product.log_size);
+}
+
 }  // namespace
+
+TurnExponents turn_values(const TurnMaps& maps, bool leading_only) {
+  const Index n = maps.num_states();
+  TurnExponents result;
+  if (n == 2) {
+    const SizedProduct product = sized_product(maps.cells);
+    result = discriminant({product.M, product.log_size, 0, 0, 0, 0}, maps.damping_trace);
+  } else {
+    Collector collector;
+    QrSweep sweep;
+    if (leading_only) {
+      add_values(maps.cells, MatrixXd::Identity(n, n), collector);
+    } else {
+      sweep = qr_sweep(maps, {});
+      for (const CellChain& chain : blocks_of(sweep))
+        chain.size() == 1 ? add_single(chain, false, collector) : add_values(chain.factors, chain.closing, collector);
+    }
+    result = std::move(collector).sorted();
+    if (!leading_only) result.subspaces = sweep.frames.rightCols(n);
+  }
+  result.error.assign(result.s.size(), HUGE_VAL);
+  result.others_below = HUGE_VAL;
+  return result;
+}
 
 TurnExponents turn_exponents(const TurnMaps& maps, const MatrixXd& given, bool leading_only,
                              const MatrixXd& subspaces) {
@@ -293,7 +333,7 @@ TurnExponents turn_exponents(const TurnMaps& maps, const MatrixXd& given, bool l
   }
   const QrSweep sweep = qr_sweep(maps, subspaces);
   for (const CellChain& chain : block_chains(maps, given, sweep))
-    chain.size() == 1 ? add_single(chain, collector) : add_several(chain, false, collector);
+    chain.size() == 1 ? add_single(chain, true, collector) : add_several(chain, false, collector);
   TurnExponents result = std::move(collector).sorted();
   result.subspaces = sweep.frames.rightCols(maps.num_states());
   return result;

@@ -25,4 +25,7 @@ struct TurnExponents {
 [[nodiscard]] TurnExponents turn_exponents(const TurnMaps& maps, const Eigen::MatrixXd& given,
                                            bool leading_only = false, const Eigen::MatrixXd& subspaces = {});
 
+// The same without errors, to compare others with: each infinite, so is others_below.
+[[nodiscard]] TurnExponents turn_values(const TurnMaps& maps, bool leading_only = false);
+
 }  // namespace hb
