@@ -50,11 +50,16 @@ RoughSolver solver_of(const LinearRod& rod, double speed, double tolerance) {
   std::optional<ScaledSystem> own;
   if (rod.scaled == nullptr) own = scale_unloaded(*rod.system, speed);
   const ScaledSystem& all = own ? *own : *rod.scaled;
+  FourierSeries K = cut_stiffness(all.K, all.num_modes(), 0.1 * tolerance);
+  Modulation modulation;
+  if (all.modulation.found() && K.num_harmonics() > 0)
+    modulation = {all.modulation.functions.topRows(K.num_harmonics()), all.modulation.shares};
   const ScaledSystem cut{.speed = all.speed,
                          .T = all.T,
                          .T_inverse = {},
                          .G = all.G,
-                         .K = cut_stiffness(all.K, all.num_modes(), 0.1 * tolerance),
+                         .K = std::move(K),
+                         .modulation = std::move(modulation),
                          .K_rounding = {},
                          .f_rounding = {},
                          .G_error = {},

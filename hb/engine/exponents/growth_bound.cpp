@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
+#include "hb/engine/system/stiffness_samples.hpp"
 #include "lib/dense.hpp"
-#include "lib/fourier/transpose.hpp"
 
 namespace hb {
 
@@ -178,13 +178,8 @@ double growth_bound(const SampledSystem& system) {
 
 double growth_bound(const ScaledSystem& system) {
   if (!system.diagonal_damping) return HUGE_VAL;
-  const Eigen::MatrixXcd& K = system.K.c;
-  const Index N = fourier::fast_length(2 * K.cols() + 10);
-  fourier::RealTransform& stiffness = fourier::thread_transform(N, K.rows());
-  fourier::transpose_singly(K, stiffness.spectrum().topRows(K.cols()));
-  stiffness.spectrum().bottomRows(N / 2 + 1 - K.cols()).setZero();
-  stiffness.backward();
-  return growth_bound(SampledSystem{stiffness.samples(), {}, system.damping_diagonal()});
+  const Index N = fourier::fast_length(2 * system.K.c.cols() + 10);
+  return growth_bound(SampledSystem{stiffness_samples(system, N), {}, system.damping_diagonal()});
 }
 
 }  // namespace hb

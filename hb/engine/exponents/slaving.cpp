@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hb/engine/exponents/slaving_iteration.hpp"
+#include "hb/engine/system/stiffness_samples.hpp"
 #include "lib/constants.hpp"
 #include "lib/modulus.hpp"
 #include "lib/workspace.hpp"
@@ -21,28 +22,6 @@ using slaving::Iteration;
 using slaving::Partition;
 
 namespace {
-
-// N x I*I samples of K.
-MatrixXd sampled(const FourierSeries& K, Index I, Index N) {
-  std::vector<Index> own;  // components that are not those of the transposed place
-  std::vector<Index> from(std::size_t(I * I));
-  own.reserve(from.size());
-  for (Index j = 0; j < I; ++j)
-    for (Index i = 0; i < I; ++i) {
-      const Index here = i + I * j, transposed = j + I * i;
-      const bool copy = i < j && K.c.row(here) == K.c.row(transposed);
-      from[std::size_t(here)] = copy ? from[std::size_t(transposed)] : Index(own.size());
-      if (!copy) own.push_back(here);
-    }
-  fourier::RealTransform& transform = fourier::thread_transform(N, Index(own.size()));
-  auto spectrum = transform.spectrum();
-  for (Index q = 0; q < spectrum.cols(); ++q) spectrum.col(q).head(K.c.cols()) = K.c.row(own[std::size_t(q)]);
-  spectrum.bottomRows(spectrum.rows() - K.c.cols()).setZero();
-  transform.backward();
-  MatrixXd samples(N, I * I);
-  for (Index q = 0; q < I * I; ++q) samples.col(q) = transform.samples().col(from[std::size_t(q)]);
-  return samples;
-}
 
 // Largest sum of harmonics of K_SF A and weight K_SF C that N angles do not tell apart, by what A and C are:
 // Iteration's `solution`.
@@ -105,7 +84,7 @@ ReducedSystem unreduced(const ScaledSystem& system) {
 const SampledStiffness::Samples& SampledStiffness::at(Index num_samples) {
   const auto [place, is_new] = samples_.try_emplace(num_samples);
   if (is_new) {
-    place->second.K = sampled(system_.K, system_.num_modes(), num_samples);
+    place->second.K = stiffness_samples(system_, num_samples);
     place->second.largest = place->second.K.cwiseAbs().colwise().maxCoeff();
   }
   return place->second;

@@ -1,5 +1,6 @@
 #include "hb/engine/steady/steady_operator.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "lib/constants.hpp"
@@ -31,6 +32,8 @@ WeightedSystem weighted(const ScaledSystem& system) {
   const Eigen::MatrixXd ratio = s.weight * s.weight.cwiseInverse().transpose();
   end_if_wished();
   s.K = with_rows_times(ratio, system.K.c);
+  if (system.modulation.found())
+    s.modulation = {system.modulation.functions, ratio.reshaped().asDiagonal() * system.modulation.shares};
   end_if_wished();
   s.K_rounding = Eigen::MatrixXd::Zero(I, I);
   s.f_rounding = Eigen::VectorXd::Zero(I);
@@ -93,6 +96,10 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
   const Eigen::Index I = system_->I, P = system_->P;
   store.N = N;
   store.E.resize(static_cast<std::size_t>(I * I * N / together));
+  if (system_->modulation.found()) {
+    by_modulation(N, store.E);
+    return store;
+  }
   const auto put = [&](Eigen::Index i, Eigen::Index j, const double* samples) {
     for (Eigen::Index n = 0; n < N; n += together)
       store.E[static_cast<std::size_t>(I * I * n / together + I * i + j)] = Eigen::Map<const Neighbours>(samples + n);
@@ -119,6 +126,35 @@ const Operator::Nodes& Operator::nodes(Eigen::Index N) {
     }
   }
   return store;
+}
+
+// Mean and shares of E_11, E_12, ... one after the other.
+void Operator::by_modulation(Eigen::Index N, std::vector<Neighbours>& E) const {
+  const Eigen::Index I = system_->I, entries = I * I;
+  const Modulation& modulation = system_->modulation;
+  Eigen::MatrixXd numbers(modulation.functions.cols() + 1, entries);
+  for (Eigen::Index i = 0; i < I; ++i)
+    for (Eigen::Index j = 0; j < I; ++j) {
+      auto entry = numbers.col(I * i + j);
+      entry(0) = i == j ? 0 : system_->K(i + I * j, 0).real();
+      entry.tail(entry.size() - 1) = modulation.shares.row(i + I * j).transpose();
+    }
+  const auto functions = modulation.samples(N);
+  with_functions(functions.cols(), [&](auto r) {
+    constexpr Eigen::Index most = 8;
+    std::array<Neighbours, most> g;
+    Neighbours* entry = E.data();
+    for (Eigen::Index n = 0; n < N; n += together) {
+      for (Eigen::Index m = 0; m < r; ++m)
+        g[static_cast<std::size_t>(m)] = functions.col(m).template segment<together>(n).array();
+      const double* number = numbers.data();
+      for (Eigen::Index q = 0; q < entries; ++q, ++entry) {
+        Neighbours sum = Neighbours::Constant(*number++);
+        for (Eigen::Index m = 0; m < r; ++m) sum += *number++ * g[static_cast<std::size_t>(m)];
+        *entry = sum;
+      }
+    }
+  });
 }
 
 void Operator::couple(const Spectrum& x, Eigen::Index num_rows, Spectrum& result) {

@@ -24,6 +24,7 @@ struct WeightedSystem {
   Eigen::Index I = 0, P = 0;  // components; harmonics of K
   Eigen::VectorXd weight;  // powers of two
   Eigen::MatrixXcd K;  // I*I x (P+1)
+  Modulation modulation;  // of K
   Eigen::MatrixXd G, G_off;  // damping; the same without its diagonal
   bool diagonal_damping = true;
   bool symmetric = false;  // K, exactly
@@ -88,6 +89,7 @@ class Operator {
     std::vector<Neighbours> E;
   };
   const Nodes& nodes(Eigen::Index N);
+  void by_modulation(Eigen::Index N, std::vector<Neighbours>& E) const;
   // `full`: with the noise.
   void couple(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);
   void convolve(const Spectrum& x, Eigen::Index num_rows, bool full, Spectrum& result);

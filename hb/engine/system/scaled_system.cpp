@@ -219,6 +219,7 @@ ScaledSystem scaled_matrices(const HillSystem& system, double speed, Eigen::Matr
   parts(scaled.K.c) *= 1 / (speed * speed);
   end_if_wished();
   scaled.K = without_rounding(std::move(scaled.K), I);
+  scaled.modulation = modulation_of(scaled.K, I);
   return scaled;
 }
 
