@@ -1,7 +1,9 @@
 #include "lib/exact/exact_forces.hpp"
 
 #include <algorithm>
+#include <array>
 
+#include "lib/exact/bent_mechanism.hpp"
 #include "lib/linkage/joint_rows.hpp"
 
 namespace hb {
@@ -10,59 +12,96 @@ using Eigen::Index;
 
 namespace {
 
-// On the frame at one angle: pivots, guides and the motor as the bodies push back, and what applies the sliders'
-// forces,
-//     -(R + F),   -(T + sum (z - O) x (R_d + F_d)),   z the pivot or the slider's joint.
-Eigen::Vector3d on_frame(const Linkage& linkage, const MechanismForces& forces, const std::vector<BodyMotion>& motion,
-                         const Eigen::Ref<const Eigen::VectorXd>& applied) {
-  std::complex<double> sum = forces.crank_pivot;
-  double moment = forces.torque;
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
-    std::complex<double> force = forces.dyads[d].ground;
-    const BodyMotion& closing = motion[static_cast<std::size_t>(closing_index(static_cast<int>(d)))];
-    if (std::holds_alternative<Slider>(linkage.dyads[d].closing)) force += applied(static_cast<Index>(d)) * closing.e;
-    sum += force;
-    moment += (std::conj(closing.z - linkage.crank.pivot) * force).imag();
-  }
-  return {-sum.real(), -sum.imag(), -moment};
+using Mechanism = exact::BentMechanism<Lanes>;
+using Vector = Plane<Lanes>;
+
+// The row's vector of the balance, in its frame.
+Vector resolved(const JointRow& row, const Mechanism& mechanism) {
+  const auto vector = [&]() -> Vector {
+    const auto dyad = [&]() -> const exact::BentDyadForces<Lanes>& {
+      return mechanism.forces[static_cast<std::size_t>(row.dyad)];
+    };
+    switch (row.kind) {
+      case JointRow::Kind::crank_pivot:
+        return mechanism.crank_pivot;
+      case JointRow::Kind::joint0:
+        return dyad().joint0;
+      case JointRow::Kind::joint1:
+        return dyad().joint1;
+      case JointRow::Kind::rocker0:
+        return Vector{} - dyad().ground;
+      case JointRow::Kind::rocker1:
+        return Vector{} - dyad().joint1;
+      case JointRow::Kind::ground:
+      case JointRow::Kind::guide:
+        break;
+    }
+    return dyad().ground;
+  };
+  return conj(mechanism.motion[static_cast<std::size_t>(row.frame)].e) * vector();
 }
 
-Eigen::VectorXd slider_positions(const Linkage& linkage, const std::vector<BodyMotion>& motion) {
-  std::vector<double> positions;
-  for (std::size_t d = 0; d < linkage.dyads.size(); ++d)
-    if (const auto* slider = std::get_if<Slider>(&linkage.dyads[d].closing)) {
-      const BodyMotion& body = motion[static_cast<std::size_t>(closing_index(static_cast<int>(d)))];
-      positions.push_back((std::conj(body.e) * (body.z - slider->guide)).real());
-    }
-  return Eigen::Map<const Eigen::VectorXd>(positions.data(), static_cast<Index>(positions.size()));
+// On the frame: pivots, guides and the motor as the bodies push back, and what applies the sliders' forces,
+//     -(R + F),   -(T + sum (z - O) x (R_d + F_d)),   z the pivot or the slider's joint.
+// `applied`: F by dyad.
+template <class Applied>
+std::array<Lanes, 3> on_frame(const Linkage& linkage, const Mechanism& mechanism, const Applied& applied) {
+  const Vector pivot = exact::plane<Lanes>(linkage.crank.pivot);
+  Vector sum = mechanism.crank_pivot;
+  Lanes moment = mechanism.torque;
+  for (std::size_t d = 0; d < linkage.dyads.size(); ++d) {
+    Vector force = mechanism.forces[d].ground;
+    const exact::BentMotion<Lanes>& closing =
+        mechanism.motion[static_cast<std::size_t>(closing_index(static_cast<int>(d)))];
+    if (std::holds_alternative<Slider>(linkage.dyads[d].closing))
+      force = force + applied(static_cast<Index>(d)) * closing.e;
+    sum = sum + force;
+    moment += cross(closing.z - pivot, force);
+  }
+  return {-sum.x, -sum.y, -moment};
+}
+
+// Along its guide, from the guide's point.
+Lanes slider_position(const Slider& slider, const exact::BentMotion<Lanes>& body) {
+  return dot(body.e, body.z - exact::plane<Lanes>(slider.guide));
 }
 
 }  // namespace
 
 ForceSamples exact_forces(const ExactModel& model, double speed, const CrankAngles& angles, const RitzSamples& motion) {
-  const std::vector<JointRow> rows = joint_rows(model.linkage());
+  const Linkage& linkage = model.linkage();
+  const std::vector<JointRow> rows = joint_rows(linkage);
   const auto components = [](const JointRow& row) { return row.kind == JointRow::Kind::guide ? 1 : 2; };
   Index size = 1;
   for (const JointRow& row : rows) size += components(row);
-
-  const ExactModel::Forces all = model.forces(speed, angles, motion);
-  const Linkage& linkage = model.linkage();
   const Index sliders = std::ranges::count_if(
       linkage.dyads, [](const Dyad& dyad) { return std::holds_alternative<Slider>(dyad.closing); });
   ForceSamples samples{Eigen::MatrixXd(size, angles.size()), Eigen::Matrix3Xd(3, angles.size()),
-                       Eigen::MatrixXd(sliders, angles.size()), all.breakdown};
-  for (Index j = 0; j < angles.size(); ++j) {
-    const auto angle = static_cast<std::size_t>(j);
+                       Eigen::MatrixXd(sliders, angles.size()), std::nullopt};
+  const auto visit = [&](Index first, Index count, const Mechanism& mechanism) {
+    const auto put = [&](const Lanes& lanes, auto& to, Index row) {
+      const Lanes::Values values = lanes.values();
+      for (Index lane = 0; lane < count; ++lane) to(row, first + lane) = values[static_cast<std::size_t>(lane)];
+    };
     Index next = 0;
     for (const JointRow& row : rows) {
-      const std::complex<double> force = resolved(row, all.forces[angle], all.motion[angle]);
-      if (components(row) == 2) samples.values(next++, j) = force.real();
-      samples.values(next++, j) = force.imag();
+      const Vector force = resolved(row, mechanism);
+      if (components(row) == 2) put(force.x, samples.values, next++);
+      put(force.y, samples.values, next++);
     }
-    samples.values(next, j) = all.forces[angle].torque;
-    samples.frame.col(j) = on_frame(linkage, all.forces[angle], all.motion[angle], angles.slider_forces.col(j));
-    samples.sliders.col(j) = slider_positions(linkage, all.motion[angle]);
-  }
+    put(mechanism.torque, samples.values, next);
+    const auto applied = [&](Index dyad) {
+      return Lanes::of([&](Index lane) { return angles.slider_forces(dyad, first + std::min(lane, count - 1)); });
+    };
+    const std::array<Lanes, 3> frame = on_frame(linkage, mechanism, applied);
+    for (Index i = 0; i < 3; ++i) put(frame[static_cast<std::size_t>(i)], samples.frame, i);
+    next = 0;
+    for (std::size_t d = 0; d < linkage.dyads.size(); ++d)
+      if (const auto* slider = std::get_if<Slider>(&linkage.dyads[d].closing))
+        put(slider_position(*slider, mechanism.motion[static_cast<std::size_t>(closing_index(static_cast<int>(d)))]),
+            samples.sliders, next++);
+  };
+  samples.breakdown = model.visit_forces(speed, angles, motion, visit);
   return samples;
 }
 

@@ -345,17 +345,25 @@ ExactResidual ExactModel::linearised(double speed, const CrankAngles& angles, co
   return evaluated(*impl_, speed, angles, motion, std::move(result));
 }
 
-ExactModel::Forces ExactModel::forces(double speed, const CrankAngles& angles, const RitzSamples& motion) const {
+std::optional<ExactBreakdown> ExactModel::visit_forces(double speed, const CrankAngles& angles,
+                                                       const RitzSamples& motion, const Visit& visit) const {
   check_shapes(*impl_, angles, motion);
-  Forces result;
+  std::optional<ExactBreakdown> breakdown;
   Block block(*impl_, angles, speed);
-  const exact::BentMechanism<Lanes>& mechanism = block.mechanism();
-  result.forces.reserve(static_cast<std::size_t>(angles.size()));
-  result.motion.reserve(static_cast<std::size_t>(angles.size()));
   for (Index first = 0; first < angles.size(); first += Lanes::width) {
     block.solve(motion, first);
-    if (!result.breakdown) result.breakdown = block.breakdown();
-    for (Index lane = 0; lane < block.count(); ++lane) {
+    if (!breakdown) breakdown = block.breakdown();
+    visit(first, block.count(), block.mechanism());
+  }
+  return breakdown;
+}
+
+ExactModel::Forces ExactModel::forces(double speed, const CrankAngles& angles, const RitzSamples& motion) const {
+  Forces result;
+  result.forces.reserve(static_cast<std::size_t>(angles.size()));
+  result.motion.reserve(static_cast<std::size_t>(angles.size()));
+  const auto keep = [&](Index, Index count, const exact::BentMechanism<Lanes>& mechanism) {
+    for (Index lane = 0; lane < count; ++lane) {
       MechanismForces& forces = result.forces.emplace_back();
       forces.dyads.reserve(mechanism.forces.size());
       for (const exact::BentDyadForces<Lanes>& dyad : mechanism.forces)
@@ -368,7 +376,8 @@ ExactModel::Forces ExactModel::forces(double speed, const CrankAngles& angles, c
         bodies.push_back({number(m.z, lane), number(m.z1, lane), number(m.z2, lane), number(m.e, lane),
                           in(m.phi1, lane), in(m.phi2, lane)});
     }
-  }
+  };
+  result.breakdown = visit_forces(speed, angles, motion, keep);
   return result;
 }
 

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +16,12 @@
 #include "lib/linkage/linkage.hpp"
 
 namespace hb {
+
+class Lanes;
+namespace exact {
+template <class T>
+struct BentMechanism;
+}
 
 // Crank angles at which the model is evaluated, with what depends on them alone.
 struct CrankAngles {
@@ -94,6 +101,10 @@ class ExactModel {
     std::optional<ExactBreakdown> breakdown;
   };
   [[nodiscard]] Forces forces(double speed, const CrankAngles& angles, const RitzSamples& motion) const;
+  // The same as it is computed: visit(first angle, how many, the mechanism with one of them in each lane).
+  using Visit = std::function<void(Eigen::Index, Eigen::Index, const exact::BentMechanism<Lanes>&)>;
+  [[nodiscard]] std::optional<ExactBreakdown> visit_forces(double speed, const CrankAngles& angles,
+                                                           const RitzSamples& motion, const Visit& visit) const;
 
   struct Impl;
 
