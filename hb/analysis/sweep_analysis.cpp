@@ -293,13 +293,43 @@ class SweepRun {
     return samples;
   }
 
+  // Where a multiplier passes +1 and the response rises on both sides as the distance from there falls: its pole, known
+  // as well as the boundary is.
+  std::optional<ResponsePeak> pole_at_boundary(const PeakTask& task) const {
+    constexpr double nearer = 0.1, alike = 0.1, clear_of_error = 100;
+    const Maximum& m = task.maximum;
+    const auto height = [&](double x) {
+      const std::optional<FourierSeries> q = along_[task.rod].rough_response(x);
+      return q ? fourier::max_abs(*q, m.component).value : 0.0;
+    };
+    for (const StabilityBoundary& boundary : result_.rods[task.rod].boundaries) {
+      const double x = boundary.x, distance = std::abs(m.inside - x);
+      if (boundary.kind != BoundaryKind::plus_one || !boundary.converged || !(m.low < x && x < m.high)) continue;
+      if (!(boundary.error <= peak_accuracy(settings_).height * x &&
+            nearer * distance > clear_of_error * boundary.error))
+        continue;
+      const double rise = distance * height(m.inside);
+      const auto rises_alike = [&](double by) {
+        return std::abs(std::abs(by) * height(x + by) - rise) <= alike * rise;
+      };
+      if (rises_alike(x - m.inside) && rises_alike(nearer * distance) && rises_alike(-nearer * distance))
+        return ResponsePeak{x, HUGE_VAL, boundary.error, true};
+    }
+    return std::nullopt;
+  }
+
+  std::optional<ResponsePeak> peak_of(const PeakTask& task) const {
+    if (const std::optional<ResponsePeak> pole = pole_at_boundary(task)) return pole;
+    const Maximum& m = task.maximum;
+    const std::optional<PeakResponses> responses = along_[task.rod].responses(m.component, m.inside);
+    if (!responses) return std::nullopt;
+    return locate_peak(*responses, m.low, m.inside, m.high, peak_accuracy(settings_).height);
+  }
+
   std::optional<CriticalPoint> located(const PeakTask& task) const {
     const RodAlong& rod = along_[task.rod];
     const Maximum& m = task.maximum;
-    const std::optional<PeakResponses> responses = rod.responses(m.component, m.inside);
-    if (!responses) return std::nullopt;
-    const std::optional<ResponsePeak> peak =
-        locate_peak(*responses, m.low, m.inside, m.high, peak_accuracy(settings_).height);
+    const std::optional<ResponsePeak> peak = peak_of(task);
     if (!peak) return std::nullopt;
     CriticalPoint point;
     point.rod = task.rod;
@@ -307,7 +337,10 @@ class SweepRun {
     point.peak = *peak;
     point.prominence = m.prominence;
     point.speed = scene_.at(peak->x).speed;
-    if (only_.all_exponents() && !is_refined(point)) {
+    const bool refined = is_refined(point) ||
+                         std::ranges::find(result_.rods[task.rod].boundaries, point.peak.x, &StabilityBoundary::x) !=
+                             result_.rods[task.rod].boundaries.end();
+    if (only_.all_exponents() && !refined) {
       if (const std::optional<ScaledSystem> system = rod.system(point.peak.x))
         name_mode(point, exponents_of(*system, m.component));
     }
@@ -418,7 +451,7 @@ class SweepRun {
 
   void name_peaks() {
     for (CriticalPoint& point : result_.critical) {
-      if (!is_refined(point)) continue;
+      if (point.mode >= 0) continue;
       for (const std::vector<SweepPoint>* points : {&result_.refined, &result_.points}) {
         const auto there = std::ranges::find(*points, point.peak.x, &SweepPoint::x);
         if (there == points->end() || there->rods.empty() || !there->rods[point.rod].stability) continue;
