@@ -156,6 +156,19 @@ TEST(SweepPoint, PolesAreFoundBetweenThePointsOfASweep) {
       EXPECT_EQ(point.rods[r].resonance_distance == 0, pole) << point.x;
     }
   EXPECT_EQ(poles, 1);
+  // The peak there is the boundary, with the boundary's error, and named by what is refined there.
+  int unbounded = 0;
+  for (const CriticalPoint& point : result.critical) {
+    if (std::isfinite(point.peak.value)) continue;
+    ++unbounded;
+    EXPECT_TRUE(is_pole(point.rod, point.peak.x));
+    EXPECT_TRUE(point.peak.converged);
+    EXPECT_LE(point.peak.error, 1e-7);
+    EXPECT_GT(point.peak.error, 0);
+    EXPECT_EQ(point.mode, 0);
+    EXPECT_EQ(point.order, 2);
+  }
+  EXPECT_EQ(unbounded, 1);
 }
 
 }  // namespace

@@ -67,6 +67,47 @@ TEST(RadauTurn, ErrorOfAStiffModeFallsWithTheFifteenthPowerOfTheCell) {
   EXPECT_LT(last_error, 1e-11);
 }
 
+// What is left of an oscillator without damping over a turn, by so many cells.
+TEST(RoughRadauTurn, DampsAnOscillatorAsItsCellsTell) {
+  for (const double w : {0.9, 3.3, 20.3})
+    for (const double error : {1e-2, 1e-4, 1e-7}) {
+      const Uncoupled system(Eigen::VectorXd::Constant(1, w * w), Eigen::VectorXd::Zero(1), 0);
+      const Eigen::Index least = static_cast<Eigen::Index>(std::ceil(rough_oscillator_cells(w, error)));
+      const Eigen::Index cells = radau_cells(least);
+      const TurnMaps maps = rough_radau_turn(system.alpha, system.beta, 1, cells);
+      const double decay = -std::log(product(maps).determinant()) / (2 * turn);
+      const double told = error * std::pow(rough_oscillator_cells(w, error) / static_cast<double>(cells), 7);
+      EXPECT_NEAR(decay, told, 0.25 * told + 1e-13) << w << ' ' << error;
+    }
+}
+
+TEST(RoughRadauTurn, UnresolvedFastModesVanish) {
+  const Uncoupled system(Eigen::VectorXd::Constant(1, 1e16), Eigen::VectorXd::Constant(1, 1e3), 0);
+  EXPECT_LT(product(rough_radau_turn(system.alpha, system.beta, 1, 8)).cwiseAbs().maxCoeff(), 1e-3);
+}
+
+// Of coupled modes, one to nine: nearer to the maps of eight stages by 2^7 with twice the cells.
+TEST(RoughRadauTurn, ConvergesWithTheSeventhPowerOfTheCell) {
+  for (const Eigen::Index m : {1, 2, 3, 4, 9}) {
+    FourierSeries alpha(m * m, 2), beta(m * m, 0);
+    for (Eigen::Index j = 0; j < m; ++j)
+      for (Eigen::Index i = 0; i < m; ++i) {
+        const double x = static_cast<double>(i - j), own = i == j ? 1 : 0;
+        alpha.c(i + m * j, 0) = own * std::pow(1.3 + 0.4 * static_cast<double>(i), 2);
+        alpha.c(i + m * j, 1) = cplx(0.2, 0.1 * x);
+        alpha.c(i + m * j, 2) = cplx(0.05 * x, 0.1);
+        beta.c(i + m * j, 0) = 0.1 * own;
+      }
+    const auto error = [&](Eigen::Index cells) {
+      const Eigen::MatrixXd fine = product(radau_turn(alpha, beta, m, 64));
+      return (product(rough_radau_turn(alpha, beta, m, cells)) - fine).norm() / fine.norm();
+    };
+    const double coarse = error(16), finer = error(32);
+    EXPECT_LT(coarse, 1e-2) << m;
+    EXPECT_NEAR(std::log2(coarse / finer), 7, 1) << m;
+  }
+}
+
 TEST(RadauTurn, UnresolvedFastModesVanish) {
   const Uncoupled system(Eigen::VectorXd::Constant(1, 1e16), Eigen::VectorXd::Constant(1, 1e3), 0);
   EXPECT_LT(product(maps_of(system, 1, 8)).cwiseAbs().maxCoeff(), 1e-3);
@@ -103,6 +144,27 @@ TEST(TurnExponents, AreThoseOfTheConstantSystemFolded) {
     }
   }
   for (std::size_t k = 1; k < found.s.size(); ++k) EXPECT_GE(found.s[k - 1].real(), found.s[k].real());
+}
+
+// Of one mode, of several and of the leading ones alone: those that have errors, with none.
+TEST(TurnExponents, ValuesAloneAreTheSame) {
+  for (const Eigen::Index m : {1, 2, 3}) {
+    const Eigen::VectorXd a = Eigen::Vector3d(1.21, 30, 5.3).head(m), b = Eigen::Vector3d(0.02, 0.3, 4.8).head(m);
+    const TurnMaps maps = maps_of(Uncoupled(a, b, 0.3), m, 48);
+    for (const bool leading_only : {false, true}) {
+      const TurnExponents full = turn_exponents(maps, Eigen::MatrixXd::Zero(2 * m, 2 * m), leading_only),
+                          values = turn_values(maps, leading_only);
+      EXPECT_EQ(values.others_below, HUGE_VAL);
+      ASSERT_GE(values.s.size(), full.s.size());
+      for (std::size_t k = 0; k < full.s.size(); ++k) {
+        double nearest = HUGE_VAL;
+        for (const cplx& s : values.s) nearest = std::min(nearest, std::abs(s - full.s[k]));
+        EXPECT_LE(nearest, full.error[k]) << m << ' ' << full.s[k];
+      }
+      for (const double error : values.error) EXPECT_EQ(error, HUGE_VAL);
+      EXPECT_EQ(values.subspaces.size() > 0, m > 1 && !leading_only);
+    }
+  }
 }
 
 TEST(TurnExponents, SweepsKeepMultipliersThatTheProductLoses) {

@@ -36,17 +36,18 @@ bool tells(const Modulation& modulation, const FourierSeries& K, double relative
     for (Index m = 0; m < r; ++m)
       for (Index lane = 0; lane < width; ++lane) functions(lane, r * P + m) = modulation.shares((begin + lane) / 2, m);
     const double *function = functions.data(), *shares = functions.col(r * P).data();
-    Lanes largest, left;
+    Lanes largest, left, sum;  // the sum is no number where one of them is none
     for (Index k = 1; k <= P; ++k) {
       const Lanes given = Lanes::load(parts(K.c).col(k).data() + begin);
       Lanes rest = given;
       for (Index m = 0; m < r; ++m, function += width) rest -= Lanes::load(shares + m * width) * Lanes::load(function);
       largest = max(largest, abs(given));
       left = max(left, abs(rest));
+      sum += rest;
     }
-    const Lanes::Values most = (relative * largest).values(), beside = left.values();
+    const Lanes::Values most = (relative * largest).values(), beside = left.values(), sums = sum.values();
     for (std::size_t lane = 0; lane < most.size(); ++lane)
-      if (!(beside[lane] <= most[lane])) return false;
+      if (!(beside[lane] <= most[lane] && std::isfinite(sums[lane]))) return false;
   }
   return true;
 }
