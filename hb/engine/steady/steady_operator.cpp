@@ -54,7 +54,7 @@ WeightedSystem weighted(const ScaledSystem& system) {
   Eigen::MatrixXd mean = s.K.col(0).real().reshaped(I, I);
   mean.diagonal().setZero();
   s.within = mean.cwiseAbs().rowwise().sum();
-  s.symmetric = true;
+  s.symmetric = !s.modulation.found();
   for (Eigen::Index j = 0; j < I; ++j)
     for (Eigen::Index i = j + 1; i < I; ++i) s.symmetric = s.symmetric && s.K.row(i + I * j) == s.K.row(j + I * i);
   return s;

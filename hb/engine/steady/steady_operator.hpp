@@ -27,7 +27,7 @@ struct WeightedSystem {
   Modulation modulation;  // of K
   Eigen::MatrixXd G, G_off;  // damping; the same without its diagonal
   bool diagonal_damping = true;
-  bool symmetric = false;  // K, exactly
+  bool symmetric = false;  // K, exactly; not looked for where it has a modulation
   Eigen::VectorXd mean;  // w_i^2 = mean K_ii
   Spectrum f;  // (F+1) x I
   Eigen::MatrixXd K_rounding;  // sum over harmonics of |error| of K, entry by entry
