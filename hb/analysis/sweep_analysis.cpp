@@ -13,6 +13,7 @@
 #include "hb/analysis/sweep/resonances.hpp"
 #include "hb/analysis/sweep/rod_along.hpp"
 #include "hb/analysis/sweep/sweep_parts.hpp"
+#include "lib/constants.hpp"
 #include "lib/stopwatch.hpp"
 
 namespace hb {
@@ -300,15 +301,22 @@ class SweepRun {
     const Maximum& m = task.maximum;
     const auto height = [&](double x) {
       const std::optional<FourierSeries> q = along_[task.rod].rough_response(x);
-      return q ? fourier::max_abs(*q, m.component).value : 0.0;
+      return q ? fourier::max_abs(*q, m.component).value : nan;
     };
-    for (const StabilityBoundary& boundary : result_.rods[task.rod].boundaries) {
+    const std::vector<StabilityBoundary>& boundaries = result_.rods[task.rod].boundaries;
+    const auto is_inside = [&m](const StabilityBoundary& boundary) {
+      return boundary.kind == BoundaryKind::plus_one && m.low < boundary.x && boundary.x < m.high;
+    };
+    // Of two that are near to each other the response does not tell which one it rises at.
+    if (std::ranges::count_if(boundaries, is_inside) != 1) return std::nullopt;
+    for (const StabilityBoundary& boundary : boundaries) {
       const double x = boundary.x, distance = std::abs(m.inside - x);
-      if (boundary.kind != BoundaryKind::plus_one || !boundary.converged || !(m.low < x && x < m.high)) continue;
+      if (!is_inside(boundary) || !boundary.converged) continue;
       if (!(boundary.error <= peak_accuracy(settings_).height * x &&
             nearer * distance > clear_of_error * boundary.error))
         continue;
       const double rise = distance * height(m.inside);
+      if (!(rise > 0 && std::isfinite(rise))) continue;
       const auto rises_alike = [&](double by) {
         return std::abs(std::abs(by) * height(x + by) - rise) <= alike * rise;
       };
@@ -327,7 +335,6 @@ class SweepRun {
   }
 
   std::optional<CriticalPoint> located(const PeakTask& task) const {
-    const RodAlong& rod = along_[task.rod];
     const Maximum& m = task.maximum;
     const std::optional<ResponsePeak> peak = peak_of(task);
     if (!peak) return std::nullopt;
@@ -337,13 +344,9 @@ class SweepRun {
     point.peak = *peak;
     point.prominence = m.prominence;
     point.speed = scene_.at(peak->x).speed;
-    const bool refined = is_refined(point) ||
-                         std::ranges::find(result_.rods[task.rod].boundaries, point.peak.x, &StabilityBoundary::x) !=
-                             result_.rods[task.rod].boundaries.end();
-    if (only_.all_exponents() && !refined) {
-      if (const std::optional<ScaledSystem> system = rod.system(point.peak.x))
-        name_mode(point, exponents_of(*system, m.component));
-    }
+    const auto is_there = [&](const StabilityBoundary& boundary) { return boundary.x == point.peak.x; };
+    // What is refined there names the others.
+    if (!is_refined(point) && std::ranges::none_of(result_.rods[task.rod].boundaries, is_there)) name_alone(point);
     return point;
   }
 
@@ -355,6 +358,12 @@ class SweepRun {
     if (std::ranges::find(found.exponents, mode, &Exponent::mode) != found.exponents.end()) return found;
     options.one_method = false;
     return analyse_stability(system, options);
+  }
+
+  void name_alone(CriticalPoint& point) const {
+    if (!only_.all_exponents()) return;
+    if (const std::optional<ScaledSystem> system = along_[point.rod].system(point.peak.x))
+      name_mode(point, exponents_of(*system, point.component));
   }
 
   // Everything is computed there: where the response is bounded.
@@ -458,6 +467,7 @@ class SweepRun {
         name_mode(point, there->rods[point.rod].stability->stability);
         break;
       }
+      if (point.mode < 0 && !is_refined(point) && !work_.ends_early()) name_alone(point);
     }
   }
 

@@ -53,7 +53,7 @@ RoughSolver solver_of(const LinearRod& rod, double speed, double tolerance) {
   FourierSeries K = cut_stiffness(all.K, all.num_modes(), 0.1 * tolerance);
   Modulation modulation;
   if (all.modulation.found() && K.num_harmonics() > 0)
-    modulation = {all.modulation.functions.topRows(K.num_harmonics()), all.modulation.shares};
+    modulation = {all.modulation.functions.topRows(K.num_harmonics()), all.modulation.shares, {}};
   const ScaledSystem cut{.speed = all.speed,
                          .T = all.T,
                          .T_inverse = {},

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <variant>
 
 #include "lib/exact/bent_mechanism.hpp"
+#include "lib/lanes.hpp"
 #include "lib/linkage/joint_rows.hpp"
 
 namespace hb {
@@ -14,32 +17,6 @@ namespace {
 
 using Mechanism = exact::BentMechanism<Lanes>;
 using Vector = Plane<Lanes>;
-
-// The row's vector of the balance, in its frame.
-Vector resolved(const JointRow& row, const Mechanism& mechanism) {
-  const auto vector = [&]() -> Vector {
-    const auto dyad = [&]() -> const exact::BentDyadForces<Lanes>& {
-      return mechanism.forces[static_cast<std::size_t>(row.dyad)];
-    };
-    switch (row.kind) {
-      case JointRow::Kind::crank_pivot:
-        return mechanism.crank_pivot;
-      case JointRow::Kind::joint0:
-        return dyad().joint0;
-      case JointRow::Kind::joint1:
-        return dyad().joint1;
-      case JointRow::Kind::rocker0:
-        return Vector{} - dyad().ground;
-      case JointRow::Kind::rocker1:
-        return Vector{} - dyad().joint1;
-      case JointRow::Kind::ground:
-      case JointRow::Kind::guide:
-        break;
-    }
-    return dyad().ground;
-  };
-  return conj(mechanism.motion[static_cast<std::size_t>(row.frame)].e) * vector();
-}
 
 // On the frame: pivots, guides and the motor as the bodies push back, and what applies the sliders' forces,
 //     -(R + F),   -(T + sum (z - O) x (R_d + F_d)),   z the pivot or the slider's joint.
@@ -85,7 +62,8 @@ ForceSamples exact_forces(const ExactModel& model, double speed, const CrankAngl
     };
     Index next = 0;
     for (const JointRow& row : rows) {
-      const Vector force = resolved(row, mechanism);
+      const Vector force = conj(mechanism.motion[static_cast<std::size_t>(row.frame)].e) *
+                           force_of(row, mechanism.crank_pivot, mechanism.forces);
       if (components(row) == 2) put(force.x, samples.values, next++);
       put(force.y, samples.values, next++);
     }

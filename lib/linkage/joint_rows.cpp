@@ -28,25 +28,7 @@ std::vector<JointRow> joint_rows(const Linkage& linkage) {
 
 std::complex<double> resolved(const JointRow& row, const MechanismForces& forces,
                               const std::vector<BodyMotion>& motion) {
-  const auto vector = [&]() -> std::complex<double> {
-    switch (row.kind) {
-      case JointRow::Kind::crank_pivot:
-        return forces.crank_pivot;
-      case JointRow::Kind::joint0:
-        return forces.dyads[at(row.dyad)].joint0;
-      case JointRow::Kind::joint1:
-        return forces.dyads[at(row.dyad)].joint1;
-      case JointRow::Kind::rocker0:
-        return -forces.dyads[at(row.dyad)].ground;
-      case JointRow::Kind::rocker1:
-        return -forces.dyads[at(row.dyad)].joint1;
-      case JointRow::Kind::ground:
-      case JointRow::Kind::guide:
-        break;
-    }
-    return forces.dyads[at(row.dyad)].ground;
-  };
-  return std::conj(motion[at(row.frame)].e) * vector();
+  return std::conj(motion[at(row.frame)].e) * force_of(row, forces.crank_pivot, forces.dyads);
 }
 
 }  // namespace hb

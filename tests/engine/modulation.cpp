@@ -20,11 +20,11 @@ namespace {
 using Eigen::Index;
 
 // r random functions of P harmonics that fall by a third each, in random shares; the mean is full.
-FourierSeries made_of(Index r, Index I, Index P, bool symmetric, stress::Random& random) {
+FourierSeries made_of(Index r, Index I, Index P, bool symmetric, stress::Random& random, double decades = 2) {
   FourierSeries K(I * I, P);
   for (Index m = 0; m < r; ++m) {
     Eigen::MatrixXd S(I, I);
-    for (Index q = 0; q < I * I; ++q) S(q) = random(-1, 1) * random.power(-2, 2);
+    for (Index q = 0; q < I * I; ++q) S(q) = random(-1, 1) * random.power(-decades, decades);
     if (symmetric) S = (S + S.transpose()).eval();
     for (Index k = 1; k <= P; ++k) {
       const std::complex<double> g(random(-1, 1), random(-1, 1));
@@ -79,6 +79,20 @@ TEST(Modulation, IsEmptyWhereALateHarmonicHasAFunctionOfItsOwn) {
   EXPECT_FALSE(modulation_of(K, 5).found());
 }
 
+// K_11 is almost nothing in the first harmonics, and a function of its own later on: in large shares that cancel, the
+// samples of K_22, which has no sixth harmonic, would have what rounding leaves of one 1e10 times as large.
+TEST(Modulation, IsEmptyWhereLargeTermsCancel) {
+  for (const double small : {1e-4, 1e-10, 1e-14, 1e-17, 0.0}) {
+    FourierSeries K(9, 6);
+    K.c(0, 1) = small;
+    K.c(0, 6) = 0.9;
+    K.c(4, 1) = 1.1;
+    K.c(4, 2) = 0.3;
+    for (int i = 0; i < 3; ++i) K.c(4 * i, 0) = 2.3 * (i + 1);
+    EXPECT_FALSE(modulation_of(K, 3).found()) << small;
+  }
+}
+
 TEST(Modulation, NotANumberIsNoFunction) {
   stress::Random random(4);
   FourierSeries K = made_of(2, 5, 12, true, random);
@@ -96,7 +110,7 @@ TEST(StiffnessSamples, AreThoseOfEveryEntry) {
     for (const Index N : {32, 48, 64}) {
       ScaledSystem system;
       system.G = Eigen::MatrixXd::Identity(5, 5);
-      system.K = made_of(3, 5, 12, symmetric, random);
+      system.K = made_of(2, 5, 15, symmetric, random, 0.3);
       const Eigen::MatrixXd all = stiffness_samples(system, N);
       system.modulation = modulation_of(system.K, 5);
       ASSERT_TRUE(system.modulation.found());
@@ -104,7 +118,7 @@ TEST(StiffnessSamples, AreThoseOfEveryEntry) {
       ASSERT_EQ(all.rows(), N);
       for (Index q = 0; q < 25; ++q) {
         double size = 0;
-        for (Index k = 0; k <= 12; ++k) size += 2 * std::abs(system.K.c(q, k));
+        for (Index k = 0; k <= 15; ++k) size += 2 * std::abs(system.K.c(q, k));
         EXPECT_LE((all.col(q) - by_few.col(q)).cwiseAbs().maxCoeff(), 8 * eps * size) << q;
       }
       const Eigen::MatrixXd direct = fourier::synthesise(system.K, N).transpose();
@@ -135,8 +149,10 @@ TEST(Modulation, ChangesAnswersByRoundingAlone) {
   const double largest = fourier::largest_values(b.q).maxCoeff();
   EXPECT_LE(fourier::largest_values(fourier::difference(a.q, b.q)).maxCoeff(),
             (a.error_bound + b.error_bound) * largest);
-  const Stability p = analyse_stability(few, {}), q = analyse_stability(every, {});
-  ASSERT_EQ(p.exponents.size(), q.exponents.size());
+  const StabilityOptions slaved{.method = StabilityMethod::slaving};
+  const Stability p = analyse_stability(few, slaved), q = analyse_stability(every, slaved);
+  ASSERT_EQ(p.exponents.size(), 2u * I);
+  ASSERT_EQ(q.exponents.size(), 2u * I);
   for (std::size_t i = 0; i < p.exponents.size(); ++i)
     EXPECT_LE(std::abs(p.exponents[i].value - q.exponents[i].value), p.exponents[i].error + q.exponents[i].error);
 }

@@ -177,6 +177,7 @@ inline void subtract(Lane* __restrict a, Lane* __restrict b, const Multiples& l,
 // max_i sum_k |l_ik| max_j |u_kj|, divided by max |a_ij|: not finite, or large, where pivots would have been needed.
 template <int fixed_n, int fixed_r>
 Lane eliminate(Lane* rows, Index dynamic_n, Index dynamic_r) {
+  static_assert(fixed_n <= most_rows);
   const Index n = fixed_n == Eigen::Dynamic ? dynamic_n : fixed_n;
   const Index width = n + (fixed_r == Eigen::Dynamic ? dynamic_r : fixed_r);
   const auto row_of = [&](Index i) { return rows + i * width; };
@@ -347,7 +348,7 @@ double oscillator_error(double frequency, double num_cells) { return std::pow(0.
 
 double oscillator_cells(double frequency, double error) { return 0.61 * frequency * std::pow(error, -1.0 / 15); }
 
-// |R(iz)| = 1 - c z^2s, c = s! (s-1)!/((2s)! (2s-1)!), z = 2 pi w/N: (c (2 pi)^7 w)^1/7 w/N.
+// |R(iz)| = 1 - c z^2s, c = s! (s-1)!/((2s)! (2s-1)!), z = w h: per radian c w^8 h^7 = 0.274 w (w/N)^7.
 double rough_oscillator_cells(double frequency, double error) {
   return 0.8311 * frequency * std::pow(frequency / error, 1.0 / 7);
 }

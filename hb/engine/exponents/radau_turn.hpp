@@ -21,7 +21,7 @@ struct TurnMaps {
   Eigen::Index num_states() const { return cells.rows(); }
 };
 
-// A number of cells that radau_turn takes, at least `least`; fixed numbers not far apart, whose tables are kept.
+// A number of cells that both of them take, at least `least`; fixed numbers not far apart, whose tables are kept.
 [[nodiscard]] Eigen::Index radau_cells(Eigen::Index least);
 
 // s = 8 stages, order 15. alpha and beta have m*m components (column-major); num_cells is one of radau_cells.

@@ -207,6 +207,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   Index enough = 0;  // cells for the leading one
   Exponents result;
   std::optional<Cells> coarse;
+  bool compared = false;
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error(0) / 2 : 0;
   for (Index cells = least; cells <= most && work(double(cells)) < most_work; cells = radau_cells(cells + 1)) {
@@ -228,6 +229,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
       for (double& error : *of) error = std::max(error, least) + damping_error;
     result.s = fine.turn.s;
     result.others_below = fine.turn.others_below;
+    compared = true;
     result.error = errors.left;
     result.imaginary_error = errors.imaginary;
     if (result.s.empty()) break;
@@ -243,7 +245,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     if (done) break;
     coarse = std::move(fine);
   }
-  if (result.s.empty() && coarse) {
+  if (!compared && coarse) {
     result.s = coarse->turn.s;
     result.error.assign(coarse->turn.s.size(), HUGE_VAL);
     result.imaginary_error = result.error;

@@ -144,7 +144,7 @@ void carry_changes(Length n, const double* Q, const double* W, const double* V, 
   }
 }
 
-// The diagonal blocks of R, their errors not known.
+// The diagonal blocks of R; errors are still to come.
 std::vector<CellChain> blocks_of(const QrSweep& sweep) {
   const Index n = sweep.R.rows(), N = sweep.R.cols() / n;
   std::vector<CellChain> chains;
@@ -153,8 +153,6 @@ std::vector<CellChain> blocks_of(const QrSweep& sweep) {
     const Index p = end - begin;
     CellChain& chain = chains.emplace_back();
     chain.factors.resize(p, p * N);
-    chain.rounding = MatrixXd::Constant(p, p * N, HUGE_VAL);
-    chain.given = chain.rounding;
     chain.closing = sweep.turned.block(begin, begin, p, p);
     for (Index i = 0; i < N; ++i) chain.factors.middleCols(p * i, p) = sweep.R.block(begin, n * i + begin, p, p);
     begin = end;
@@ -168,6 +166,8 @@ std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given,
   const Index n = maps.num_states(), N = maps.num_cells;
   const std::optional<SubspaceBases> bases = subspace_bases(sweep);
   std::vector<CellChain> chains = blocks_of(sweep);
+  for (CellChain& chain : chains)
+    chain.rounding = chain.given = MatrixXd::Constant(chain.size(), chain.factors.cols(), HUGE_VAL);
   if (!bases) return chains;
   const bool exact = given.cwiseAbs().maxCoeff() == 0;
   MatrixXd rounding(n, n), changed = MatrixXd::Zero(n, n);
@@ -230,8 +230,8 @@ class Collector {
   TurnExponents found_;
 };
 
-// One exponent: ln of the product of all d_i, taken to twice the digits, (high + low) 2^exponent. Its error, where not
-// to be told, is none.
+// One exponent: ln of the product of all d_i, taken to twice the digits, (high + low) 2^exponent; with its error or
+// without.
 void add_single(const CellChain& chain, bool with_errors, Collector& collector) {
   double high = chain.closing(0), low = 0;
   int exponent = 0;

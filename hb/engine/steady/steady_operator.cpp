@@ -33,7 +33,7 @@ WeightedSystem weighted(const ScaledSystem& system) {
   end_if_wished();
   s.K = with_rows_times(ratio, system.K.c);
   if (system.modulation.found())
-    s.modulation = {system.modulation.functions, ratio.reshaped().asDiagonal() * system.modulation.shares};
+    s.modulation = {system.modulation.functions, ratio.reshaped().asDiagonal() * system.modulation.shares, {}};
   end_if_wished();
   s.K_rounding = Eigen::MatrixXd::Zero(I, I);
   s.f_rounding = Eigen::VectorXd::Zero(I);

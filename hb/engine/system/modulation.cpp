@@ -16,10 +16,12 @@ using Eigen::MatrixXd;
 namespace {
 
 // Whether the harmonics above the mean of every entry are, but for `relative` of the largest, the sums of the
-// functions. Real and imaginary parts in turn, as they stand in K; some are looked at twice.
+// functions, whose terms are not much larger than the sum: sums over the turn would lose that much to rounding. Real
+// and imaginary parts in turn, as they stand in K; some are looked at twice.
 template <class Length>
-bool tells(const Modulation& modulation, const FourierSeries& K, double relative, Length r) {
+bool tells(Modulation& modulation, const FourierSeries& K, double relative, Length r) {
   constexpr Index width = Lanes::width;
+  constexpr double largest_terms = 16;
   const Index P = modulation.functions.rows(), n = 2 * K.num_components();
   thread_local Workspace kept;
   auto functions = kept.matrix(width, (P + 1) * r);  // last: shares of one group of entries
@@ -31,24 +33,32 @@ bool tells(const Modulation& modulation, const FourierSeries& K, double relative
   };
   for (Index k = 0; k < P; ++k)
     for (Index m = 0; m < r; ++m) alternating(modulation.functions(k, m), functions.col(r * k + m).data());
+  const Eigen::VectorXd peaks = modulation.functions.cwiseAbs2().colwise().maxCoeff().cwiseSqrt().transpose();
+  Eigen::VectorXd left_out(n);
   for (Index first = 0; first < n; first += width) {
     const Index begin = std::min(first, n - width);
     for (Index m = 0; m < r; ++m)
       for (Index lane = 0; lane < width; ++lane) functions(lane, r * P + m) = modulation.shares((begin + lane) / 2, m);
     const double *function = functions.data(), *shares = functions.col(r * P).data();
-    Lanes largest, left, sum;  // the sum is no number where one of them is none
+    Lanes largest, left, all_left, sum, terms;  // the sum is no number where one of them is none
+    for (Index m = 0; m < r; ++m) terms += abs(Lanes::load(shares + m * width)) * peaks(m);
     for (Index k = 1; k <= P; ++k) {
       const Lanes given = Lanes::load(parts(K.c).col(k).data() + begin);
       Lanes rest = given;
       for (Index m = 0; m < r; ++m, function += width) rest -= Lanes::load(shares + m * width) * Lanes::load(function);
       largest = max(largest, abs(given));
       left = max(left, abs(rest));
+      all_left += abs(rest);
       sum += rest;
     }
-    const Lanes::Values most = (relative * largest).values(), beside = left.values(), sums = sum.values();
+    const Lanes::Values most = (relative * largest).values(), beside = left.values(), sums = sum.values(),
+                        most_terms = (largest_terms * largest).values(), all_terms = terms.values();
     for (std::size_t lane = 0; lane < most.size(); ++lane)
-      if (!(beside[lane] <= most[lane] && std::isfinite(sums[lane]))) return false;
+      if (!(beside[lane] <= most[lane] && std::isfinite(sums[lane]) && all_terms[lane] <= most_terms[lane]))
+        return false;
+    (2.0 * all_left).store(left_out.data() + begin);
   }
+  modulation.left_out = left_out.reshaped(2, n / 2).colwise().sum().transpose();
   return true;
 }
 
@@ -67,10 +77,10 @@ Eigen::Map<MatrixXd> Modulation::samples(Index N) const {
 // Gauss's elimination of the entries, each a row of its first harmonics: the next function is what is left of the entry
 // that has most left of itself, its shares are told by its largest harmonic. All harmonics then show whether that is
 // all there is to them.
-Modulation modulation_of(const FourierSeries& K, Index I) {
+Modulation modulation_of(const FourierSeries& K, Index num_modes) {
   constexpr Index first_harmonics = 4, most_functions = 8;
   constexpr double enough = 4 * eps;
-  const Index P = K.num_harmonics(), n = I * I, looked_at = std::min(P, first_harmonics);
+  const Index P = K.num_harmonics(), I = num_modes, n = I * I, looked_at = std::min(P, first_harmonics);
   const Index most = std::min(most_functions, I * (I + 1) / 4);
   if (most < 1 || P < 1) return {};
   thread_local Workspace kept;
@@ -110,6 +120,7 @@ Modulation modulation_of(const FourierSeries& K, Index I) {
     function = K.c.row(next).tail(P).transpose();
     for (Index m = 0; m < found; ++m) function -= modulation.shares(next, m) * modulation.functions.col(m);
   }
+  if (found == 0) return {};
   modulation.functions.conservativeResize(Eigen::NoChange, found);
   modulation.shares.conservativeResize(Eigen::NoChange, found);
   bool all = false;

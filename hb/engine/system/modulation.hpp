@@ -8,10 +8,13 @@
 
 namespace hb {
 
-// K(tau) = mean K + sum_m S_m g_m(tau), to rounding: 4 epsilon of each entry's largest harmonic above the mean.
+// K(tau) = mean K + sum_m S_m g_m(tau), hb/engine/README.md (S13): but for 4 epsilon of each entry's largest real part
+// of a harmonic above the mean, and of the largest imaginary one.
 struct Modulation {
   Eigen::MatrixXcd functions;  // harmonics 1..P of g_m, P x r
   Eigen::MatrixXd shares;  // S_m column-major, I*I x r
+
+  Eigen::VectorXd left_out;  // bound on what that leaves out of each entry, I*I: sum over all harmonics
 
   // Whether there are so few functions.
   [[nodiscard]] bool found() const { return functions.cols() > 0; }
@@ -19,7 +22,9 @@ struct Modulation {
   [[nodiscard]] Eigen::Map<Eigen::MatrixXd> samples(Eigen::Index N) const;
 };
 
-// Of K with I*I components. Empty where that takes more than half as many functions as a symmetric K has entries.
+// Of K with num_modes^2 components. Empty where that takes more than eight functions, or half as many as a symmetric K
+// has entries; where a function is not seen in the first four harmonics; where entries are small differences of large
+// terms.
 [[nodiscard]] Modulation modulation_of(const FourierSeries& K, Eigen::Index num_modes);
 
 // Calls with(r) with the number of functions, known at compile time where it is small.

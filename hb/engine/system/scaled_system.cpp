@@ -346,6 +346,7 @@ ScaledSystem scale_system(const HillSystem& system, double speed, const GivenErr
   const double stiffness_steps = scaling ? scaling_steps(system, T.diagonal(), speed) : steps;
   scaled.K_rounding = stiffness_steps * eps / (speed * speed) * L.cwiseAbs() *
                       Eigen::Map<const Eigen::MatrixXd>(stiffness_size.data(), I, I) * T.cwiseAbs();
+  if (scaled.modulation.found()) scaled.K_rounding += scaled.modulation.left_out.reshaped(I, I);
   add_given(given, L, scaled);
   add_load(system, L, steps, scaled);
   return scaled;

@@ -15,7 +15,7 @@ struct ScaledSystem {
   Eigen::MatrixXd T_inverse;  // x = T_inverse q
   Eigen::MatrixXd G;  // T^-1 M^-1 B T / Omega
   FourierSeries K;  // T^-1 M^-1 C T / Omega^2: I*I components column-major; harmonics below rounding cut
-  Modulation modulation;  // of K, of several modes of a given system
+  Modulation modulation;  // of K; empty of one mode and of parts of a system. Who changes K empties it
   Eigen::MatrixXd K_rounding;  // bound on the rounding error of K, entry by entry: sum over all harmonics of |error|
   Eigen::VectorXd f_rounding;  // the same of f
   Eigen::MatrixXd G_error;  // bound on what G is given wrong by, beside rounding
