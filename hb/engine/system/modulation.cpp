@@ -22,43 +22,45 @@ template <class Length>
 bool tells(Modulation& modulation, const FourierSeries& K, double relative, Length r) {
   constexpr Index width = Lanes::width;
   constexpr double largest_terms = 16;
-  const Index P = modulation.functions.rows(), n = 2 * K.num_components();
+  const Index P = modulation.functions.rows(), entries = K.num_components(), n = 2 * entries;
   thread_local Workspace kept;
-  auto functions = kept.matrix(width, (P + 1) * r);  // last: shares of one group of entries
-  const auto alternating = [](std::complex<double> c, double* numbers) {
-    for (Index lane = 0; lane < width; lane += 2) {
-      numbers[lane] = c.real();
-      numbers[lane + 1] = c.imag();
-    }
-  };
+  auto room = kept.matrix(std::max(n, width), (P + 1) * r + 3);
+  auto functions = room.topLeftCorner(width, (P + 1) * r);  // last: shares of one group of entries
+  auto largest = room.col((P + 1) * r), left = room.col((P + 1) * r + 1), left_out = room.col((P + 1) * r + 2);
   for (Index k = 0; k < P; ++k)
-    for (Index m = 0; m < r; ++m) alternating(modulation.functions(k, m), functions.col(r * k + m).data());
-  const Eigen::VectorXd peaks = modulation.functions.cwiseAbs2().colwise().maxCoeff().cwiseSqrt().transpose();
-  Eigen::VectorXd left_out(n);
+    for (Index m = 0; m < r; ++m)
+      for (Index lane = 0; lane < width; ++lane)
+        functions(lane, r * k + m) =
+            lane % 2 == 0 ? modulation.functions(k, m).real() : modulation.functions(k, m).imag();
   for (Index first = 0; first < n; first += width) {
     const Index begin = std::min(first, n - width);
     for (Index m = 0; m < r; ++m)
       for (Index lane = 0; lane < width; ++lane) functions(lane, r * P + m) = modulation.shares((begin + lane) / 2, m);
-    const double *function = functions.data(), *shares = functions.col(r * P).data();
-    Lanes largest, left, all_left, sum, terms;  // the sum is no number where one of them is none
-    for (Index m = 0; m < r; ++m) terms += abs(Lanes::load(shares + m * width)) * peaks(m);
-    for (Index k = 1; k <= P; ++k) {
-      const Lanes given = Lanes::load(parts(K.c).col(k).data() + begin);
+    Lanes most, most_left, all_left;
+    for (Index k = 0; k < P; ++k) {
+      const Lanes given = Lanes::load(parts(K.c).col(k + 1).data() + begin);
       Lanes rest = given;
-      for (Index m = 0; m < r; ++m, function += width) rest -= Lanes::load(shares + m * width) * Lanes::load(function);
-      largest = max(largest, abs(given));
-      left = max(left, abs(rest));
+      for (Index m = 0; m < r; ++m)
+        rest -= Lanes::load(&functions(0, r * P + m)) * Lanes::load(&functions(0, r * k + m));
+      most = max(most, abs(given));
+      most_left = max(most_left, abs(rest));
       all_left += abs(rest);
-      sum += rest;
     }
-    const Lanes::Values most = (relative * largest).values(), beside = left.values(), sums = sum.values(),
-                        most_terms = (largest_terms * largest).values(), all_terms = terms.values();
-    for (std::size_t lane = 0; lane < most.size(); ++lane)
-      if (!(beside[lane] <= most[lane] && std::isfinite(sums[lane]) && all_terms[lane] <= most_terms[lane]))
-        return false;
-    (2.0 * all_left).store(left_out.data() + begin);
+    most.store(&largest(begin));
+    most_left.store(&left(begin));
+    all_left.store(&left_out(begin));
   }
-  modulation.left_out = left_out.reshaped(2, n / 2).colwise().sum().transpose();
+  const Eigen::VectorXd peaks = modulation.functions.cwiseAbs2().colwise().maxCoeff().cwiseSqrt().transpose();
+  modulation.left_out.resize(entries);
+  for (Index q = 0; q < entries; ++q) {
+    double terms = 0;
+    for (Index m = 0; m < r; ++m) terms += std::abs(modulation.shares(q, m)) * peaks(m);
+    const double size = std::max(largest(2 * q), largest(2 * q + 1));
+    modulation.left_out(q) = 2 * (left_out(2 * q) + left_out(2 * q + 1));
+    if (!(std::max(left(2 * q), left(2 * q + 1)) <= relative * size && terms <= largest_terms * size &&
+          std::isfinite(modulation.left_out(q))))
+      return false;
+  }
   return true;
 }
 

@@ -8,12 +8,11 @@
 
 namespace hb {
 
-// K(tau) = mean K + sum_m S_m g_m(tau), hb/engine/README.md (S13): but for 4 epsilon of each entry's largest real part
-// of a harmonic above the mean, and of the largest imaginary one.
+// K(tau) = mean K + sum_m S_m g_m(tau), hb/engine/README.md (S13), but for 4 epsilon of each entry's largest real or
+// imaginary part of a harmonic above the mean.
 struct Modulation {
   Eigen::MatrixXcd functions;  // harmonics 1..P of g_m, P x r
   Eigen::MatrixXd shares;  // S_m column-major, I*I x r
-
   Eigen::VectorXd left_out;  // bound on what that leaves out of each entry, I*I: sum over all harmonics
 
   // Whether there are so few functions.
