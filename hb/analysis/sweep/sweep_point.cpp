@@ -121,8 +121,8 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
     point.error_bound = state.error_bound;
     point.resonance_distance = state.resonance_distance;
     if (state.status != SteadyStatus::singular) {
-      const Eigen::VectorXd largest = fourier::largest_values(state.q);
-      point.max_abs.assign(largest.begin(), largest.end());
+      for (Eigen::Index i = 0; i < state.q.num_components(); ++i)
+        point.max_abs.push_back(fourier::max_abs(state.q, i).value);
       responses.q = std::move(state.q);
       if (rod.finer.num_modes() > 0)
         compare(responses, model, rod, speed, with_more_modes(rod, speed, settings, responses.q));
