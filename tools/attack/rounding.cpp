@@ -74,7 +74,7 @@ void measure(const Case& c, Rounding& rounding) {
   if (cells > most_cells) return;
   const TurnMaps maps = radau_turn(whole.alpha, whole.beta, whole.num_modes, cells);
   rounding.add(maps, long_radau_turn(whole.alpha, whole.beta, cells, maps.scale));
-  if (whole.num_modes > 1) rounding.add(maps, qr_sweep(maps, {}));
+  if (whole.num_modes > 1) rounding.add(maps, qr_sweep(maps.cells, {}));
 }
 
 // Whether what errors are made of is as was measured. Not so where cells need pivots, see there; the engine takes

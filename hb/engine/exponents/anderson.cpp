@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 // min |f - dF gamma| by the normal equations of columns scaled to length 1, by Cholesky's method with the largest pivot
 // first; columns that depend on those before drop out.
-Anderson::Weights Anderson::weights(Index kept, const Weights& right) const {
+Anderson::Weights Anderson::weights(Index kept) const {
   std::array<Index, depth> order{};
   Weights scale = Weights::Zero(), solution = scale, y = scale, pivot = Weights::Ones();
   Square L = Square::Zero();  // a row per column of dF; factors in the order of pivots
@@ -26,7 +26,7 @@ Anderson::Weights Anderson::weights(Index kept, const Weights& right) const {
       if (!taken[std::size_t(i)] && (next < 0 || pivot(i) > pivot(next))) next = i;
     if (!(pivot(next) > double(depth) * eps)) break;
     const double root = std::sqrt(pivot(next));
-    double sum = right(next) * scale(next);
+    double sum = right_(next) * scale(next);
     for (Index p = 0; p < rank; ++p) sum -= L(next, p) * y(p);
     y(rank) = sum / root;
     L(next, rank) = root;
@@ -54,12 +54,17 @@ VectorXd Anderson::step(const Eigen::Ref<const VectorXd>& x, const Eigen::Ref<co
       moved_.resize(x.size(), depth);
       df_.resize(x.size(), depth);
       gram_.setZero();
+      right_.setZero();
     }
     const Index column = taken_++ % depth;
     df_.col(column) = f - last_f_;
     moved_.col(column) = (x - last_x_) + df_.col(column);
     const Index kept = std::min(taken_, depth);
-    gram_.col(column).head(kept).noalias() = df_.leftCols(kept).transpose() * df_.col(column);
+    // dF' df = dF' f - dF' last f, but for the new column itself
+    const Weights last = right_;
+    right_.head(kept).noalias() = df_.leftCols(kept).transpose() * f;
+    gram_.col(column).head(kept) = (right_ - last).head(kept);
+    gram_(column, column) = df_.col(column).squaredNorm();
     gram_.row(column).head(kept) = gram_.col(column).head(kept).transpose();
   }
   last_x_ = x;
@@ -67,9 +72,7 @@ VectorXd Anderson::step(const Eigen::Ref<const VectorXd>& x, const Eigen::Ref<co
   VectorXd next = x + f;
   const Index kept = std::min(taken_, depth);
   if (kept == 0) return next;
-  Weights right = Weights::Zero();
-  right.head(kept).noalias() = df_.leftCols(kept).transpose() * f;
-  const Weights gamma = weights(kept, right);
+  const Weights gamma = weights(kept);
   if (gamma.allFinite()) next.noalias() -= moved_.leftCols(kept) * gamma.head(kept);
   return next;
 }

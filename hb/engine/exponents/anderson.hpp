@@ -16,12 +16,13 @@ class Anderson {
   using Weights = Eigen::Matrix<double, depth, 1>;
   using Square = Eigen::Matrix<double, depth, depth>;
 
-  // How much of each of the first `kept` columns is taken, from dF' f.
-  [[nodiscard]] Weights weights(Eigen::Index kept, const Weights& right) const;
+  // How much of each of the first `kept` columns is taken.
+  [[nodiscard]] Weights weights(Eigen::Index kept) const;
 
   // The last differences dx + df and df, a ring of columns; none before the second step.
   Eigen::MatrixXd moved_, df_;
-  Square gram_;  // df' df, of the columns taken so far
+  Square gram_;  // dF' dF, of the columns taken so far
+  Weights right_;  // dF' f
   Eigen::VectorXd last_x_, last_f_;
   Eigen::Index taken_ = 0;
 };

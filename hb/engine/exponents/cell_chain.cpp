@@ -86,15 +86,17 @@ constexpr double multiplied = 0.35;
 
 // The errors of all entries of a matrix as they add up over the cells.
 struct EntryErrors {
+  double joined;  // cells in what one step adds
   MatrixXd variance, deviation, given;
 
-  explicit EntryErrors(Index p) : variance(MatrixXd::Zero(p, p)), deviation(variance), given(variance) {}
+  EntryErrors(Index p, Index joined_cells)
+      : joined(double(joined_cells)), variance(MatrixXd::Zero(p, p)), deviation(variance), given(variance) {}
 
   // E <- diag(d) E + e diag(g) with what one cell adds.
   void carry(const VectorXd& d, const VectorXd& g, const MatrixXd& new_variance, const MatrixXd& new_given) {
     for (Index j = 0; j < g.size(); ++j)
       for (Index i = 0; i < d.size(); ++i) {
-        variance(i, j) = d(i) * d(i) * variance(i, j) + new_variance(i, j) * g(j) * g(j);
+        variance(i, j) = d(i) * d(i) * variance(i, j) + new_variance(i, j) / joined * g(j) * g(j);
         deviation(i, j) = d(i) * deviation(i, j) + std::sqrt(new_variance(i, j)) * g(j);
         given(i, j) = d(i) * given(i, j) + new_given(i, j) * g(j);
       }
@@ -110,7 +112,7 @@ struct EntryErrors {
     for (Index j = 0; j < result.cols(); ++j)
       for (Index i = 0; i < result.rows(); ++i)
         result(i, j) +=
-            CellErrors{variance(i, j), deviation(i, j), 0}.total(real[std::size_t(i)] && real[std::size_t(j)]);
+            CellErrors{1, variance(i, j), deviation(i, j), 0}.total(real[std::size_t(i)] && real[std::size_t(j)]);
     return result;
   }
 };
@@ -159,7 +161,7 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
   MatrixXd X = V.real(), Y = V.imag(), next_X(p, p), next_Y(p, p);  // F = X + i Y
   MatrixXd before(p, p), inverse(p, p), part(p, p), variance(p, p), given = MatrixXd::Zero(p, p);
   VectorXd d(p), g = VectorXd::Ones(p);  // g: growth of each column so far, over 2^exponent
-  EntryErrors change(p);
+  EntryErrors change(p, chain.joined);
   InverseSquares invert(p);
   int exponent = 0;
   for (Index i = 0; i < N; ++i) {
@@ -211,7 +213,50 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
   return result;
 }
 
+// Pairs of neighbours, D_2 D_1.
+CellChain in_pairs(const CellChain& chain) {
+  const Index p = chain.size(), N = chain.num_cells() / 2, entries = p * p;
+  const bool rounded = chain.rounding.size() > 0, changed = chain.given.size() > 0 && !chain.given.isZero(0);
+  CellChain pairs{MatrixXd(p, p * N), MatrixXd(p, rounded ? p * N : 0), {}, chain.closing, 2 * chain.joined};
+  if (chain.given.size() > 0) pairs.given = MatrixXd::Zero(p, p * N);
+  MatrixXd first(p, p), second(p, p), early(p, p), late(p, p), own(p, p);
+  for (Index i = 0; i < N; ++i) {
+    const auto cell = [&](const MatrixXd& all, Index k) { return all.data() + entries * k; };
+    const double *one = cell(chain.factors, 2 * i), *two = cell(chain.factors, 2 * i + 1);
+    multiply(p, two, one, pairs.factors.data() + entries * i);
+    if (rounded) {
+      for (Index k = 0; k < entries; ++k) first(k) = one[k] * one[k], second(k) = two[k] * two[k];
+      multiply(p, second.data(), cell(chain.rounding, 2 * i), early.data());
+      multiply(p, cell(chain.rounding, 2 * i + 1), first.data(), late.data());
+      multiply(p, second.data(), first.data(), own.data());
+      double* rounding = pairs.rounding.data() + entries * i;
+      for (Index k = 0; k < entries; ++k)
+        rounding[k] = early(k) + 2 * std::sqrt(early(k) * late(k)) + late(k) + multiplied * multiplied * p * own(k);
+    }
+    if (changed) {
+      for (Index k = 0; k < entries; ++k) first(k) = std::abs(one[k]), second(k) = std::abs(two[k]);
+      multiply(p, second.data(), cell(chain.given, 2 * i), early.data());
+      multiply(p, cell(chain.given, 2 * i + 1), first.data(), late.data());
+      pairs.given.middleCols(p * i, p) = early + late;
+    }
+  }
+  return pairs;
+}
+
 }  // namespace
+
+CellChain joined(CellChain chain, double damping) {
+  constexpr Index most = 4;
+  constexpr double most_damping = 8, most_growth = 8;
+  while (2 * chain.joined <= most && chain.num_cells() % 2 == 0 && 2 * double(chain.joined) * damping <= most_damping) {
+    CellChain pairs = in_pairs(chain);
+    const Index p = chain.size();
+    for (Index i = 0; i < pairs.num_cells(); ++i)
+      if (!(pairs.factors.middleCols(p * i, p).norm() <= most_growth * std::sqrt(double(p)))) return chain;
+    chain = std::move(pairs);
+  }
+  return chain;
+}
 
 double CellErrors::total(bool real) const {
   constexpr double deviations = 3;
@@ -248,7 +293,7 @@ ChainProduct product_of(const CellChain& chain) {
   MatrixXd behind = MatrixXd::Identity(p, p), next(p, p), turned(p, p);
   int behind_exponent = 0;
   Size bound;
-  CellErrors change, trace;
+  CellErrors change{.joined = chain.joined}, trace = change;
   for (Index i = N - 1; i >= 0; --i) {
     const auto a = cell(before, i), rounding = cell(chain.rounding, i), given = cell(chain.given, i);
     const double scale = std::ldexp(
@@ -298,7 +343,7 @@ double first_order_change(const CellChain& chain, const ChainProduct& product, c
     v = chain.factors.middleCols(p * i, p).lazyProduct(before.middleCols(2 * i, 2));
     v /= v.norm();
   }
-  CellErrors change;
+  CellErrors change{.joined = chain.joined};
   for (Index i = N - 1; i >= 0; --i) {
     back = chain.factors.middleCols(p * i, p).transpose().lazyProduct(w);
     const auto here = before.middleCols(2 * i, 2);

@@ -12,12 +12,13 @@ namespace hb {
 // How errors of the cells add up, hb/engine/README.md (E14): rounding errors are independent from cell to cell for the
 // most part, what is wrong with the coefficients is alike in all of them. tools/attack puts it to the test.
 struct CellErrors {
+  Eigen::Index joined = 1;  // cells that each of those added is a product of
   double variance = 0;  // sum of the variances of rounding errors, in units of the machine epsilon squared
   double deviation = 0;  // sum of their standard deviations
   double given = 0;  // sum of the effects of wrong coefficients
 
   void add(double rounding_variance, double coefficient) {
-    variance += rounding_variance;
+    variance += rounding_variance / double(joined);
     deviation += std::sqrt(rounding_variance);
     given += coefficient;
   }
@@ -36,13 +37,20 @@ struct SizedProduct {
 // M = closing D_N .. D_1.
 struct CellChain {
   Eigen::MatrixXd factors;  // D_1 .. D_N, p x p each, side by side
-  Eigen::MatrixXd rounding;  // of the entries of D_i: variances in units of the machine epsilon squared
+  // Of the entries of D_i: squares of what the standard deviations of its cells add up to, in units of the machine
+  // epsilon squared.
+  Eigen::MatrixXd rounding;
   Eigen::MatrixXd given;  // bound on the effect of wrong coefficients on the entries of D_i
   Eigen::MatrixXd closing;
+  Eigen::Index joined = 1;  // cells in each factor
 
   Eigen::Index size() const { return factors.rows(); }
   Eigen::Index num_cells() const { return factors.cols() / factors.rows(); }
 };
+
+// The same product of fewer factors (E21): up to four cells each while that loses nothing, where `damping` bounds what
+// one damps. `rounding` and `given` may be empty.
+[[nodiscard]] CellChain joined(CellChain chain, double damping);
 
 // |M| = 1 but for its size, kept apart as a logarithm.
 struct ChainProduct {

@@ -12,8 +12,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
-  const Index n = maps.num_states(), N = maps.num_cells;
+QrSweep qr_sweep(const MatrixXd& cells, const MatrixXd& from) {
+  const Index n = cells.rows(), N = cells.cols() / n;
   constexpr int most_sweeps = 16;
   constexpr Index often = 64;
   const double apart = std::log(10.0);
@@ -29,7 +29,7 @@ QrSweep qr_sweep(const TurnMaps& maps, const MatrixXd& from) {
     VectorXd logs = VectorXd::Zero(n);
     for (Index i = 0; i < N; ++i) {
       if (i % often == 0) end_if_wished();
-      multiply_columns(maps.cells, n * i, Q, next);
+      multiply_columns(cells, n * i, Q, next);
       orthogonalise(next, Q);
       result.R.middleCols(n * i, n) = next;
       result.frames.middleCols(n * (i + 1), n) = Q;

@@ -7,8 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "hb/engine/exponents/radau_turn.hpp"
-
 namespace hb {
 
 // Q_i R_i = Phi_i Q_(i-1), i = 1..N, and what turns the last frame back to the first.
@@ -20,8 +18,8 @@ struct QrSweep {
 };
 
 // Over the turns Q_0 turns into the ordered invariant subspaces. `from`: Q_0 to start from, or empty: both states of
-// one mode after the other.
-[[nodiscard]] QrSweep qr_sweep(const TurnMaps& maps, const Eigen::MatrixXd& from);
+// one mode after the other. `cells`: Phi_1 .. Phi_N, n x n each, side by side.
+[[nodiscard]] QrSweep qr_sweep(const Eigen::MatrixXd& cells, const Eigen::MatrixXd& from);
 
 // Bases of the blocks' invariant subspaces over the turn: in the frame Q_i the columns of V_i, unit upper triangular by
 // blocks, with R_i V_(i-1) = V_i diag(blocks of R_i). Columns of V and rows of V^-1 make oblique projectors.

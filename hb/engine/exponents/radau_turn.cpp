@@ -281,7 +281,7 @@ struct Turn {
     cells.middleCols(2 * m * n, 2 * m) = map;
   }
 
-  // All cells, four at a time; m known at compile time for one and two modes.
+  // All cells, four at a time; m known at compile time up to four modes.
   template <int fixed_m>
   void in_lanes() {
     constexpr int fixed_n = fixed_m == Eigen::Dynamic ? Eigen::Dynamic : stages * fixed_m;
@@ -362,6 +362,8 @@ TurnMaps turn_maps(const FourierSeries& alpha, const FourierSeries& beta, Index 
     turn.template in_lanes<1>();
   else if (num_modes == 2)
     turn.template in_lanes<2>();
+  else if (num_modes == 3)
+    turn.template in_lanes<3>();
   else if (num_modes == 4)
     turn.template in_lanes<4>();
   else if (num_modes <= most_modes_in_lanes)
@@ -382,6 +384,7 @@ TurnMaps turn_maps(const FourierSeries& alpha, const FourierSeries& beta, Index 
       MatrixXd::Identity(2 * num_modes, 2 * num_modes) + rates + square / 2 + square.lazyProduct(rates) / 6;
   TurnMaps maps{num_cells, std::move(turn.cells), std::move(turn.scale), std::move(terms)};
   for (Index i = 0; i < num_modes; ++i) maps.damping_trace += beta.c(i + num_modes * i, 0).real();
+  maps.damping = rates.bottomRightCorner(num_modes, num_modes).rowwise().sum().maxCoeff();
   return maps;
 }
 

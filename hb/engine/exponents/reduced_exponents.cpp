@@ -21,6 +21,9 @@ using cplx = std::complex<double>;
 // Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
 double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
 
+// The same at the others than the leading one.
+double further_allowed(double tolerance, cplx s) { return std::max(tolerance, 1e-9) * std::max(std::abs(s), 1.0); }
+
 // Harmonics of alpha and beta that the cells of a propagation have to resolve: the others together, each averaged over
 // its own short period, move no exponent by more than `negligible`.
 Index resolved_harmonics(const ReducedSystem& reduced, double negligible) {
@@ -87,7 +90,7 @@ double fastest_frequency(const ReducedSystem& reduced, const VectorXd& W) {
 }
 
 // Cells to begin with.
-Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance) {
+Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance, bool leading_only) {
   // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
   // agree by chance.
   constexpr Index fewest_cells = 12;
@@ -110,6 +113,9 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
   for (Index i = 0; i < reduced.num_modes; ++i) all = std::max(all, needed(i, allowed(tolerance, decay(i))));
   Index cells = radau_cells(least);
   while (double(radau_cells(cells + 1)) <= all) cells = radau_cells(cells + 1);
+  // Where each one is wanted, cells that leave too much of one are only a step to more.
+  for (Index i = 0; i < reduced.num_modes && !leading_only; ++i)
+    cells = std::max(cells, radau_cells(Index(std::ceil(needed(i, further_allowed(tolerance, decay(i)))))));
   return cells;
 }
 
@@ -199,10 +205,9 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     nothing.others_below = HUGE_VAL;
     return nothing;
   }
-  const Index least = first_cells(reduced, fastest, tolerance), most = std::max<Index>(512, 12 * least);
+  const Index least = first_cells(reduced, fastest, tolerance, leading_only), most = std::max<Index>(512, 12 * least);
   // The other exponents are wanted too, but for so much work only.
   constexpr double most_further_work = 1e6;  // about a second's
-  const double further_tolerance = std::max(tolerance, 1e-9);
   constexpr Index most_further = 4;
   Index enough = 0;  // cells for the leading one
   Exponents result;
@@ -240,8 +245,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     if (done && enough == 0) enough = cells;
     const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
     for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
-      done =
-          done && (at_rounding(i) || errors.changed[i] <= further_tolerance * std::max(std::abs(fine.turn.s[i]), 1.0));
+      done = done && (at_rounding(i) || errors.changed[i] <= further_allowed(tolerance, fine.turn.s[i]));
     if (done) break;
     coarse = std::move(fine);
   }

@@ -105,16 +105,16 @@ void close_turn(const QrSweep& sweep, const SubspaceBases& bases, std::vector<Ce
 
 // One cell's numbers on their way, n x n each.
 struct CellChanges {
-  std::vector<double> cell, left, right, part, frame;
+  std::vector<double> left, right, part, frame;
 
-  explicit CellChanges(Index n) : cell(std::size_t(n * n)), left(cell), right(cell), part(cell), frame(cell) {}
+  explicit CellChanges(Index n) : left(std::size_t(n * n)), right(left), part(left), frame(left) {}
 };
 
-// How the rounding of a cell's map, of variances work.cell, and of its sweep, `swept` an entry, and a bound `given` on
-// its error change W_i Q_i^T E_i Q_(i-1) V_(i-1): variances and bound. Q: Q_(i-1), Q_i.
+// How the rounding of a cell's map, of variances `cell`, and of its sweep, `swept` an entry, and a bound `given` on its
+// error change W_i Q_i^T E_i Q_(i-1) V_(i-1): variances and bound. Q: Q_(i-1), Q_i.
 template <class Length>
-void carry_changes(Length n, const double* Q, const double* W, const double* V, double swept, const double* given,
-                   CellChanges& work, double* __restrict rounding, double* __restrict changed) {
+void carry_changes(Length n, const double* Q, const double* W, const double* V, const double* cell, double swept,
+                   const double* given, CellChanges& work, double* __restrict rounding, double* __restrict changed) {
   const Index entries = Index(n) * Index(n);
   double* __restrict left = work.left.data();
   double* __restrict right = work.right.data();
@@ -129,7 +129,7 @@ void carry_changes(Length n, const double* Q, const double* W, const double* V, 
     multiply(n, work.part.data(), right, changed);
   }
   for (Index k = 0; k < entries; ++k) left[k] *= left[k], right[k] *= right[k];
-  multiply(n, left, work.cell.data(), work.part.data());
+  multiply(n, left, cell, work.part.data());
   multiply(n, work.part.data(), right, rounding);
   // |rows of W|^2 |columns of V|^2
   for (Index r = 0; r < n; ++r) {
@@ -162,27 +162,28 @@ std::vector<CellChain> blocks_of(const QrSweep& sweep) {
 
 // The diagonal blocks of R as chains: with V_i the bases of the invariant subspaces and W_i = V_i^-1, a change E_i of a
 // cell's map is a change W_i E_i V_(i-1) of the blocks, to first order.
-std::vector<CellChain> block_chains(const TurnMaps& maps, const MatrixXd& given, const QrSweep& sweep) {
-  const Index n = maps.num_states(), N = maps.num_cells;
+std::vector<CellChain> block_chains(const CellChain& whole, const QrSweep& sweep) {
+  const Index n = whole.size(), N = whole.num_cells();
   const std::optional<SubspaceBases> bases = subspace_bases(sweep);
   std::vector<CellChain> chains = blocks_of(sweep);
-  for (CellChain& chain : chains)
+  for (CellChain& chain : chains) {
     chain.rounding = chain.given = MatrixXd::Constant(chain.size(), chain.factors.cols(), HUGE_VAL);
+    chain.joined = whole.joined;
+  }
   if (!bases) return chains;
-  const bool exact = given.cwiseAbs().maxCoeff() == 0;
+  const bool exact = whole.given.isZero(0);
   MatrixXd rounding(n, n), changed = MatrixXd::Zero(n, n);
   CellChanges work(n);
   constexpr Index often = 64;  // cells between looks
   for (Index i = 0; i < N; ++i) {
     if (i % often == 0) end_if_wished();
-    rounding_variance(maps, i, work.cell.data());
     // The sweep's own rounding knows no entries (E11).
     constexpr double per_entry = 0.6;
-    const double swept = per_entry * sweep.R.middleCols(n * i, n).norm() / std::sqrt(double(n));
+    const double swept = per_entry * sweep.R.middleCols(n * i, n).norm() * std::sqrt(double(whole.joined) / double(n));
     with_size(n, [&](auto size) {
-      carry_changes(size, sweep.frames.data() + n * n * i, bases->left.data() + n * n * i,
-                    bases->right.data() + n * n * i, swept * swept, exact ? nullptr : given.data(), work,
-                    rounding.data(), changed.data());
+      const auto cell = [&](const MatrixXd& all) { return all.data() + n * n * i; };
+      carry_changes(size, cell(sweep.frames), cell(bases->left), cell(bases->right), cell(whole.rounding),
+                    swept * swept, exact ? nullptr : cell(whole.given), work, rounding.data(), changed.data());
     });
     Index begin = 0;
     for (std::size_t b = 0; b < chains.size(); ++b) {
@@ -235,7 +236,7 @@ class Collector {
 void add_single(const CellChain& chain, bool with_errors, Collector& collector) {
   double high = chain.closing(0), low = 0;
   int exponent = 0;
-  CellErrors relative;
+  CellErrors relative{.joined = chain.joined};
   for (Index i = 0; i < chain.num_cells(); ++i) {
     const double d = chain.factors(i), product = high * d;
     low = std::fma(high, d, -product) + low * d;
@@ -308,10 +309,11 @@ TurnExponents turn_values(const TurnMaps& maps, bool leading_only) {
   } else {
     Collector collector;
     QrSweep sweep;
+    const CellChain whole = joined({maps.cells, {}, {}, MatrixXd::Identity(n, n)}, maps.damping);
     if (leading_only) {
-      add_values(maps.cells, MatrixXd::Identity(n, n), collector);
+      add_values(whole.factors, whole.closing, collector);
     } else {
-      sweep = qr_sweep(maps, {});
+      sweep = qr_sweep(whole.factors, {});
       for (const CellChain& chain : blocks_of(sweep))
         chain.size() == 1 ? add_single(chain, false, collector) : add_values(chain.factors, chain.closing, collector);
     }
@@ -325,14 +327,16 @@ TurnExponents turn_values(const TurnMaps& maps, bool leading_only) {
 
 TurnExponents turn_exponents(const TurnMaps& maps, const MatrixXd& given, bool leading_only,
                              const MatrixXd& subspaces) {
-  if (maps.num_states() == 2) return discriminant(product_of(whole_chain(maps, given)), maps.damping_trace);
+  CellChain whole = whole_chain(maps, given);
+  if (maps.num_states() == 2) return discriminant(product_of(whole), maps.damping_trace);
+  whole = joined(std::move(whole), maps.damping);
   Collector collector;
   if (leading_only) {
-    add_several(whole_chain(maps, given), true, collector);
+    add_several(whole, true, collector);
     return std::move(collector).sorted();
   }
-  const QrSweep sweep = qr_sweep(maps, subspaces);
-  for (const CellChain& chain : block_chains(maps, given, sweep))
+  const QrSweep sweep = qr_sweep(whole.factors, subspaces);
+  for (const CellChain& chain : block_chains(whole, sweep))
     chain.size() == 1 ? add_single(chain, true, collector) : add_several(chain, false, collector);
   TurnExponents result = std::move(collector).sorted();
   result.subspaces = sweep.frames.rightCols(maps.num_states());
