@@ -8,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "hb/engine/exponents/cell_chain.hpp"
 #include "hb/engine/exponents/radau_turn.hpp"
 #include "hb/engine/exponents/turn_exponents.hpp"
 
@@ -163,6 +164,69 @@ TEST(TurnExponents, ValuesAloneAreTheSame) {
       }
       for (const double error : values.error) EXPECT_EQ(error, HUGE_VAL);
       EXPECT_EQ(values.subspaces.size() > 0, m > 1 && !leading_only);
+    }
+  }
+}
+
+// N numbers as a chain, each of the deviation and error given.
+CellChain chain_of(const Eigen::RowVectorXd& factors, double deviation, double given) {
+  const Eigen::Index N = factors.size();
+  return {factors, Eigen::MatrixXd::Constant(1, N, deviation * deviation), Eigen::MatrixXd::Constant(1, N, given),
+          Eigen::MatrixXd::Identity(1, 1)};
+}
+
+TEST(CellChain, JoinedCellsHaveTheProductAndItsErrors) {
+  const Eigen::RowVectorXd d = Eigen::RowVectorXd::LinSpaced(8, 0.8, 1.5);
+  const double deviation = 3, given = 1e-9;
+  const CellChain chain = joined(chain_of(d, deviation, given), 0.1);
+  ASSERT_EQ(chain.joined, 4);
+  ASSERT_EQ(chain.num_cells(), 2);
+  for (Eigen::Index c = 0; c < 2; ++c) {
+    const Eigen::RowVectorXd own = d.segment(4 * c, 4);
+    EXPECT_NEAR(chain.factors(c), own.prod(), 1e-15);
+    EXPECT_NEAR(chain.given(c) / own.prod(), given * own.cwiseInverse().sum(), 1e-20);
+    // Of the sum of deviations, with that of the products: 0.35 each and little beside 3.
+    const double sum = deviation * own.cwiseInverse().sum(), all = std::sqrt(chain.rounding(c)) / own.prod();
+    EXPECT_GT(all, sum);
+    EXPECT_LT(all, 1.02 * sum);
+  }
+}
+
+TEST(CellChain, IsJoinedNoFurtherThanProductsKeepWhatIsSmall) {
+  const CellChain mild = chain_of(Eigen::RowVectorXd::Constant(8, 1.1), 1, 0);
+  EXPECT_EQ(joined(mild, 2).joined, 4);
+  EXPECT_EQ(joined(mild, 3).joined, 2);
+  EXPECT_EQ(joined(mild, 5).joined, 1);
+  EXPECT_EQ(joined(mild, HUGE_VAL).joined, 1);
+  EXPECT_EQ(joined(chain_of(Eigen::RowVectorXd::Constant(8, 2.5), 1, 0), 0).joined, 2);
+  EXPECT_EQ(joined(chain_of(Eigen::RowVectorXd::Constant(6, 1.1), 1, 0), 0).joined, 2);
+  EXPECT_EQ(joined(chain_of(Eigen::RowVectorXd::Constant(7, 1.1), 1, 0), 0).joined, 1);
+}
+
+// The same exponents as cell by cell, with bars of about the same size.
+TEST(TurnExponents, OfJoinedCellsAreThoseOfTheCells) {
+  for (const Eigen::Index m : {2, 3, 4}) {
+    const Eigen::VectorXd a = Eigen::Vector4d(1.21, 30, 5.3, 3.1).head(m),
+                          b = Eigen::Vector4d(0.02, 0.3, 2.4, 0.1).head(m);
+    Uncoupled system(a, b, 0.3);
+    for (Eigen::Index i = 0; i + 1 < m; ++i)  // coupled, one way stronger than back
+      for (const auto& [entry, size] : {std::pair(i + m * (i + 1), 0.2), std::pair(i + 1 + m * i, 0.05)})
+        system.alpha.c(entry, 1) = size;
+    TurnMaps maps = maps_of(system, m, 64);
+    const Eigen::MatrixXd given = Eigen::MatrixXd::Constant(2 * m, 2 * m, 1e-13);
+    for (const bool leading_only : {false, true}) {
+      const double damping = maps.damping;
+      const TurnExponents found = turn_exponents(maps, given, leading_only);
+      maps.damping = HUGE_VAL;
+      const TurnExponents singly = turn_exponents(maps, given, leading_only);
+      maps.damping = damping;
+      EXPECT_LT(damping, 2);  // joined by fours
+      ASSERT_EQ(found.s.size(), singly.s.size());
+      for (std::size_t k = 0; k < found.s.size(); ++k) {
+        EXPECT_LE(std::abs(found.s[k] - singly.s[k]), found.error[k]) << m << ' ' << k;
+        EXPECT_GT(found.error[k], 0.9 * singly.error[k]) << m << ' ' << k;
+        EXPECT_LT(found.error[k], 2 * singly.error[k]) << m << ' ' << k;
+      }
     }
   }
 }

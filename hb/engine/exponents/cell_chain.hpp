@@ -48,7 +48,7 @@ struct CellChain {
   Eigen::Index num_cells() const { return factors.cols() / factors.rows(); }
 };
 
-// The same product of fewer factors (E21): up to four cells each while that loses nothing, where `damping` bounds what
+// The same product of fewer factors (E26): up to four cells each while that loses nothing, where `damping` bounds what
 // one damps. `rounding` and `given` may be empty.
 [[nodiscard]] CellChain joined(CellChain chain, double damping);
 
