@@ -6,8 +6,10 @@
 #include <array>
 #include <cmath>
 #include <complex>
+#include <cstdlib>
 
 #include "hb/engine/exponents/anderson.hpp"
+#include "hb/engine/exponents/slaving_pairs.hpp"
 #include "hb/engine/exponents/stability.hpp"
 #include "tests/support/long_double_floquet.hpp"
 
@@ -172,6 +174,68 @@ TEST(Slaving, AModeInResonanceWithTheKeptOneIsRefused) {
 }
 
 // Of n unknowns n secants say all: long before the window is full.
+// Against the equations with products formed harmonic by harmonic.
+TEST(Slaving, PairsAreInvertedWithWhatModulatesThem) {
+  constexpr Eigen::Index band = slaving::PairInverse::band, pairs = 7, H = 15;  // 4 + 2 + 1 of them at once
+  std::srand(5);
+  slaving::PairInverse::Equations of{Eigen::MatrixXd::Random(pairs, 2 * band + 2),
+                                     Eigen::MatrixXd::Random(pairs, 2 * band + 2), Eigen::VectorXd::Random(pairs),
+                                     Eigen::VectorXd::Random(pairs)};
+  of.fast.col(0) = Eigen::VectorXd::LinSpaced(pairs, 7, 60);
+  of.slow.col(0) = Eigen::VectorXd::LinSpaced(pairs, 2, 3);
+  of.fast.col(band + 1).setZero();
+  of.slow.col(band + 1).setZero();
+  Eigen::MatrixXcd A = Eigen::MatrixXcd::Random(pairs, H + 1), C = Eigen::MatrixXcd::Random(pairs, H + 1);
+  A.col(0) = A.col(0).real().cast<cplx>();
+  C.col(0) = C.col(0).real().cast<cplx>();
+  Eigen::MatrixXd re(2 * pairs, H + 1), im(2 * pairs, H + 1);
+  for (Eigen::Index q = 0; q < pairs; ++q) {
+    const auto harmonic = [](const auto& row, Eigen::Index k) -> cplx {
+      if (std::abs(k) >= row.size()) return 0;
+      return k < 0 ? std::conj(row(-k)) : row(k);
+    };
+    const Eigen::RowVectorXcd kappa = of.fast.row(q).head(band + 1) + cplx(0, 1) * of.fast.row(q).tail(band + 1),
+                              alpha = of.slow.row(q).head(band + 1) + cplx(0, 1) * of.slow.row(q).tail(band + 1);
+    const auto product = [&](const Eigen::RowVectorXcd& f, const Eigen::RowVectorXcd& x) {
+      Eigen::RowVectorXcd result = Eigen::RowVectorXcd::Zero(H + 1);
+      for (Eigen::Index k = 0; k <= H; ++k)
+        for (Eigen::Index m = -band; m <= band; ++m) result(k) += harmonic(f, m) * harmonic(x, k - m);
+      return result;
+    };
+    const Eigen::RowVectorXcd rate = cplx(0, 1) * Eigen::RowVectorXd::LinSpaced(H + 1, 0, H).cast<cplx>();
+    const double g = of.fast_damping(q), b = of.slow_damping(q);
+    const Eigen::RowVectorXcd P = rate.cwiseProduct(A.row(q)) - product(alpha, C.row(q)),
+                              R = A.row(q) + rate.cwiseProduct(C.row(q)) - b * C.row(q);
+    const Eigen::RowVectorXcd r1 = rate.cwiseProduct(P) + g * P - product(alpha, R) + product(kappa, A.row(q)),
+                              r2 = P + rate.cwiseProduct(R) + (g - b) * R + product(kappa, C.row(q));
+    re.row(q) = r1.real(), im.row(q) = r1.imag();
+    re.row(pairs + q) = r2.real(), im.row(pairs + q) = r2.imag();
+  }
+  slaving::PairInverse inverse(pairs, H);
+  inverse.factorise(of);
+  const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(pairs, 1, 2);
+  Eigen::VectorXd step(4 * pairs * (H + 1));
+  inverse.solve({re.data(), im.data(), 2 * pairs}, weight.data(), step.data());
+  for (Eigen::Index k = 0; k <= H; ++k)
+    for (Eigen::Index q = 0; q < pairs; ++q) {
+      const auto part = [&](Eigen::Index p) { return step(4 * pairs * k + pairs * p + q); };
+      EXPECT_LT(std::abs(cplx(part(0), part(2)) + A(q, k)), 1e-11) << q << ' ' << k;
+      EXPECT_LT(std::abs(cplx(part(1), part(3)) + weight(q) * C(q, k)), 1e-11) << q << ' ' << k;
+    }
+}
+
+// The constant part of the equations alone takes 15 to 27 steps.
+TEST(Slaving, TakesFewStepsWhereModesAreStronglyModulated) {
+  for (const double modulation : {0.1, 0.2, 0.3}) {
+    const Eigen::Matrix2d mean = (Eigen::Matrix2d() << 90, 9, 9, 700).finished(),
+                          first = (Eigen::Matrix2d() << 90 * modulation, 20, 20, 600 * modulation).finished();
+    const std::array<Eigen::Index, 1> slow{0};
+    const ReducedSystem reduced = slave_to(scale_system(two_modes(0.1, mean, first), 1), slow, 1e-12);
+    EXPECT_TRUE(reduced.converged) << modulation;
+    EXPECT_LT(reduced.iterations, 12) << modulation;
+  }
+}
+
 TEST(Slaving, MixingSolvesLinearEquationsInAsManySteps) {
   const Eigen::Matrix3d A = (Eigen::Matrix3d() << 3, 1, 0, -1, 2, 0.5, 0, 0.5, 4).finished();
   const Eigen::Vector3d b(1, 2, 3);

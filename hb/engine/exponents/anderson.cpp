@@ -60,7 +60,7 @@ VectorXd Anderson::step(const Eigen::Ref<const VectorXd>& x, const Eigen::Ref<co
     df_.col(column) = f - last_f_;
     moved_.col(column) = (x - last_x_) + df_.col(column);
     const Index kept = std::min(taken_, depth);
-    // dF' df = dF' f - dF' last f, but for the new column itself
+    // dF' df = dF' f - dF' last f, as steps are as large as what they lead away from; of the column itself as it is
     const Weights last = right_;
     right_.head(kept).noalias() = df_.leftCols(kept).transpose() * f;
     gram_.col(column).head(kept) = (right_ - last).head(kept);

@@ -86,7 +86,7 @@ constexpr double multiplied = 0.35;
 
 // The errors of all entries of a matrix as they add up over the cells.
 struct EntryErrors {
-  double joined;  // cells in what one step adds
+  double joined;  // cells per step
   MatrixXd variance, deviation, given;
 
   EntryErrors(Index p, Index joined_cells)
@@ -213,7 +213,7 @@ std::optional<InexactEigenvalues> framed(const CellChain& chain, const MatrixXcd
   return result;
 }
 
-// Pairs of neighbours, D_2 D_1.
+// Pairs of neighbours as one factor each, D_2 D_1.
 CellChain in_pairs(const CellChain& chain) {
   const Index p = chain.size(), N = chain.num_cells() / 2, entries = p * p;
   const bool rounded = chain.rounding.size() > 0, changed = chain.given.size() > 0 && !chain.given.isZero(0);
@@ -247,7 +247,7 @@ CellChain in_pairs(const CellChain& chain) {
 
 CellChain joined(CellChain chain, double damping) {
   constexpr Index most = 4;
-  constexpr double most_damping = 8, most_growth = 8;
+  constexpr double most_damping = 4, most_growth = 8;
   while (2 * chain.joined <= most && chain.num_cells() % 2 == 0 && 2 * double(chain.joined) * damping <= most_damping) {
     CellChain pairs = in_pairs(chain);
     const Index p = chain.size();

@@ -12,7 +12,7 @@ namespace hb {
 // How errors of the cells add up, hb/engine/README.md (E14): rounding errors are independent from cell to cell for the
 // most part, what is wrong with the coefficients is alike in all of them. tools/attack puts it to the test.
 struct CellErrors {
-  Eigen::Index joined = 1;  // cells that each of those added is a product of
+  Eigen::Index joined = 1;  // cells per summand
   double variance = 0;  // sum of the variances of rounding errors, in units of the machine epsilon squared
   double deviation = 0;  // sum of their standard deviations
   double given = 0;  // sum of the effects of wrong coefficients

@@ -18,7 +18,7 @@ struct TurnMaps {
   // about half of epsilon times that.
   Eigen::MatrixXd terms;
   double damping_trace = 0;  // mean over the turn of tr beta: minus the sum of all exponents (Liouville)
-  double damping = HUGE_VAL;  // bound on |h beta|, row by row
+  double damping = HUGE_VAL;  // largest sum of a row of bounds on |h beta|
 
   Eigen::Index num_states() const { return cells.rows(); }
 };

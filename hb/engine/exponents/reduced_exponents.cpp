@@ -21,7 +21,7 @@ using cplx = std::complex<double>;
 // Error allowed at an exponent: relative to it, or to a hundredth of the crank's speed if it is smaller.
 double allowed(double tolerance, cplx s) { return tolerance * std::max(std::abs(s.real()), 0.01); }
 
-// The same at the others than the leading one.
+// At the others than the leading one: relative to them, or to the crank's speed.
 double further_allowed(double tolerance, cplx s) { return std::max(tolerance, 1e-9) * std::max(std::abs(s), 1.0); }
 
 // Harmonics of alpha and beta that the cells of a propagation have to resolve: the others together, each averaged over
@@ -89,6 +89,12 @@ double fastest_frequency(const ReducedSystem& reduced, const VectorXd& W) {
   return std::sqrt(fastest2);
 }
 
+// Arithmetic of a turn's propagation, in some unit.
+double work(const ReducedSystem& reduced, double cells) {
+  return cells * (std::pow(double(reduced.num_modes), 3) + 100);
+}
+constexpr double most_further_work = 1e6;  // about a second's, for other exponents than the leading one
+
 // Cells to begin with.
 Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance, bool leading_only) {
   // A harmonic that is a multiple of the number of cells leaves the same error in every cell: two numbers of cells may
@@ -113,9 +119,11 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
   for (Index i = 0; i < reduced.num_modes; ++i) all = std::max(all, needed(i, allowed(tolerance, decay(i))));
   Index cells = radau_cells(least);
   while (double(radau_cells(cells + 1)) <= all) cells = radau_cells(cells + 1);
-  // Where each one is wanted, cells that leave too much of one are only a step to more.
-  for (Index i = 0; i < reduced.num_modes && !leading_only; ++i)
-    cells = std::max(cells, radau_cells(Index(std::ceil(needed(i, further_allowed(tolerance, decay(i)))))));
+  // Where all are wanted, at least what each one's oscillator needs.
+  for (Index i = 0; i < reduced.num_modes && !leading_only; ++i) {
+    const Index own = radau_cells(Index(std::ceil(needed(i, further_allowed(tolerance, decay(i))))));
+    if (work(reduced, double(own)) < most_further_work) cells = std::max(cells, own);
+  }
   return cells;
 }
 
@@ -199,15 +207,12 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
 
   // Beyond some seconds' work nothing is known.
   constexpr double most_work = 1e8;
-  const auto work = [m](double cells) { return cells * double(m * m * m + 100); };
-  if (!(work(0.8 * fastest) < most_work)) {
+  if (!(work(reduced, 0.8 * fastest) < most_work)) {
     Exponents nothing;
     nothing.others_below = HUGE_VAL;
     return nothing;
   }
   const Index least = first_cells(reduced, fastest, tolerance, leading_only), most = std::max<Index>(512, 12 * least);
-  // The other exponents are wanted too, but for so much work only.
-  constexpr double most_further_work = 1e6;  // about a second's
   constexpr Index most_further = 4;
   Index enough = 0;  // cells for the leading one
   Exponents result;
@@ -215,7 +220,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   bool compared = false;
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error(0) / 2 : 0;
-  for (Index cells = least; cells <= most && work(double(cells)) < most_work; cells = radau_cells(cells + 1)) {
+  for (Index cells = least; cells <= most && work(reduced, double(cells)) < most_work; cells = radau_cells(cells + 1)) {
     const TurnMaps maps = radau_turn(reduced.alpha, reduced.beta, m, cells);
     if (!coarse) {
       coarse = Cells{cells, turn_values(maps, leading_only), {}, {}};
@@ -243,17 +248,18 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     result.converged = errors.changed[0] <= allowed(tolerance, fine.turn.s[0]);
     bool done = result.converged || at_rounding(0);
     if (done && enough == 0) enough = cells;
-    const bool further = !leading_only && cells < most_further * enough && work(double(cells)) < most_further_work;
+    const bool further =
+        !leading_only && cells < most_further * enough && work(reduced, double(cells)) < most_further_work;
     for (std::size_t i = 1; i < fine.turn.s.size() && further; ++i)
       done = done && (at_rounding(i) || errors.changed[i] <= further_allowed(tolerance, fine.turn.s[i]));
     if (done) break;
     coarse = std::move(fine);
   }
-  if (!compared && coarse) {
-    result.s = coarse->turn.s;
-    result.error.assign(coarse->turn.s.size(), HUGE_VAL);
+  if (!compared) {
+    if (coarse) result.s = coarse->turn.s;
+    result.error.assign(result.s.size(), HUGE_VAL);
     result.imaginary_error = result.error;
-    result.others_below = coarse->turn.others_below;
+    result.others_below = HUGE_VAL;
   }
   return result;
 }

@@ -122,7 +122,7 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   if (may_begin && begun.rough) {
     nearer = begun;
   } else if (may_begin) {
-    constexpr int few_iterations = 2;
+    constexpr int few_iterations = 4;
     Iteration judged(stiffness, p, begun_judge);
     judged.start_from(begun);
     if (judged.run(std::max(1e-13, tolerance), reduced.iterations, few_iterations)) {

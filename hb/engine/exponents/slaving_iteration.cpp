@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "hb/engine/exponents/anderson.hpp"
 #include "hb/engine/exponents/growth_bound.hpp"
@@ -83,12 +84,13 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       A1_(diagonal_damping_ ? nullptr : C1_.data() + A_.size(), diagonal_damping_ ? 0 : N_, n_ * m_),
       P_(forward_.samples().data(), N_, n_ * m_),
       R_(P_.data() + P_.size(), N_, n_ * m_),
-      room_(kept_room(2 * (H_ + 1), 13 * n_ * m_ + 2 * m_ * m_)),
+      room_(kept_room(2 * (H_ + 1), 15 * n_ * m_ + 2 * m_ * m_)),
       alpha_(room_.data(), N_, m_ * m_),
       beta_(alpha_.data() + alpha_.size(), N_, m_ * m_),
       x_(beta_.data() + beta_.size(), 4 * n_ * m_ * (H_ + 1)),
       f_(x_.data() + x_.size(), x_.size()),
-      last_x_(f_.data() + x_.size(), x_.size()),
+      step_(f_.data() + x_.size(), x_.size()),
+      last_x_(step_.data() + x_.size(), x_.size()),
       last_f_(last_x_.data() + x_.size(), x_.size()),
       changed_(x_.size()),
       inverse_(last_f_.data() + x_.size(), 8 * n_ * m_, H_ + 1),
@@ -260,6 +262,7 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
   constexpr std::size_t few = 6;
   Anderson anderson;
   bool mixing = false;
+  std::optional<PairInverse> pairs;
   double previous = HUGE_VAL, best = HUGE_VAL;
   // Of the last steps, in turn.
   std::array<double, few> secants{};
@@ -299,14 +302,49 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
     earlier = best;
     last_x_ = x_;
     last_f_ = f_;
+    // Worth it where more than a few steps would be to come.
+    if (!pairs && iteration < most_iterations && (iteration == 1 ? change > 1e3 * goal : rho > 0.1))
+      pairs = modulated();
     if (iteration >= 3 && rho > 0.2) mixing = true;
+    if (pairs) push_through(*pairs);
+    const Column& step = pairs ? step_ : f_;
     if (mixing)
-      x_ = anderson.step(x_, f_);
+      x_ = anderson.step(x_, step);
     else
-      x_ += f_;
+      x_ += step;
     previous = change;
   }
   return false;
+}
+
+PairInverse Iteration::modulated() const {
+  constexpr Index band = PairInverse::band, count = band + 1;
+  const Index nm = n_ * m_;
+  PairInverse::Equations of{MatrixXd::Zero(nm, 2 * count), MatrixXd(nm, 2 * count), damping_.head(nm), VectorXd(nm)};
+  fourier::RealTransform& transform = fourier::thread_transform(N_, m_);
+  for (Index l = 0; l < m_; ++l) transform.samples().col(l) = alpha_.col(l + m_ * l);
+  transform.forward();
+  for (Index l = 0; l < m_; ++l) {
+    const double damping = beta_.col(l + m_ * l).mean();
+    for (Index j = 0; j < n_; ++j) {
+      const Index q = j + n_ * l, known = std::min(count, given_.c.cols());
+      const auto fast = given_.c.row(F_[j] + I_ * F_[j]).head(known);
+      of.fast.row(q).head(known) = fast.real();
+      of.fast.row(q).segment(count, known) = fast.imag();
+      of.slow.row(q).head(count) = transform.spectrum().col(l).head(count).real();
+      of.slow.row(q).tail(count) = transform.spectrum().col(l).head(count).imag();
+      of.slow_damping(q) = damping;
+    }
+  }
+  PairInverse pairs(nm, H_);
+  pairs.factorise(of);
+  return pairs;
+}
+
+void Iteration::push_through(const PairInverse& pairs) {
+  const auto re = forward_.re(), im = forward_.im();
+  const Index first = 2 * n_ * m_;
+  pairs.solve({&re(first, 0), &im(first, 0), re.rows()}, weight_.data(), step_.data());
 }
 
 ReducedSystem Iteration::result(bool bounds_others) {

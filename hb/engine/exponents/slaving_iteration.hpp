@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "hb/engine/exponents/slaving.hpp"
+#include "hb/engine/exponents/slaving_pairs.hpp"
 #include "lib/fourier/split_transform.hpp"
 
 namespace hb::slaving {
@@ -98,6 +99,10 @@ class Iteration {
   // The residuals over the turn, but for what is linear in P and R of the same mode: push_through adds that.
   void sample_residual();
   void push_through();
+  // What each pair feels of itself with alpha and beta as they are now.
+  PairInverse modulated() const;
+  // The residuals through that: step_.
+  void push_through(const PairInverse& pairs);
   void invert_constant_part();
 
   const std::vector<Eigen::Index>& S_;
@@ -116,7 +121,7 @@ class Iteration {
   Columns room_;  // of what follows
   Columns alpha_, beta_;  // N x m*m
   // Of each harmonic k: real parts of A_k, of weight C_k, then the imaginary parts.
-  Column x_, f_, last_x_, last_f_;  // 4 n*m (H+1)
+  Column x_, f_, step_, last_x_, last_f_;  // 4 n*m (H+1)
   Eigen::Index changed_;  // so many of x_ are solved for
   // Inverse M of the constant part, per harmonic: M_11, M_12, weight M_21, weight M_22, of each the real parts, then
   // the imaginary ones.
