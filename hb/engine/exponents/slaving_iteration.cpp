@@ -306,7 +306,10 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
     if (!pairs && iteration < most_iterations && (iteration == 1 ? change > 1e3 * goal : rho > 0.1))
       pairs = modulated();
     if (iteration >= 3 && rho > 0.2) mixing = true;
-    if (pairs) push_through(*pairs);
+    if (pairs) {
+      push_through(*pairs);
+      step_.tail(step_.size() - changed_).setZero();
+    }
     const Column& step = pairs ? step_ : f_;
     if (mixing)
       x_ = anderson.step(x_, step);
