@@ -66,7 +66,8 @@ TEST(PointFamily, ExponentsAreThoseOfEachPlaceAlone) {
         const Stability &found = point.rods[r].stability->stability, &other = alone.rods[r].stability->stability;
         ASSERT_EQ(found.exponents.size(), other.exponents.size());
         EXPECT_EQ(found.verdict, other.verdict);
-        EXPECT_LE(found.growth_error, 10 * other.growth_error + 1e-13 * point.speed);
+        // Begun from neighbours, corrections stop at 1e-13 of alpha; alone the last one goes far below what is asked.
+        EXPECT_LE(found.growth_error, 10 * other.growth_error + 3e-13 * point.speed);
         for (const Exponent& e : found.exponents) {
           double nearest = HUGE_VAL;
           for (const Exponent& x : other.exponents) {
