@@ -235,8 +235,10 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     TruncatedErrors errors = errors_from(*coarse, fine);
     // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
     const double least = m == 1 ? oscillator_error(fastest, double(cells)) : 0;
+    // The cells' length and the method's tables are rounded alike in all of them.
+    const double alike = eps * fastest;
     for (auto* of : {&errors.changed, &errors.left, &errors.imaginary})
-      for (double& error : *of) error = std::max(error, least) + damping_error;
+      for (double& error : *of) error = std::max(error, least) + damping_error + alike;
     result.s = fine.turn.s;
     result.others_below = fine.turn.others_below;
     compared = true;
