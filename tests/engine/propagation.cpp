@@ -261,7 +261,7 @@ TEST(PropagatedExponents, LeaveNothingBoundedThatIsNotComputed) {
   reduced.alpha = system.alpha;
   reduced.beta = system.beta;
   reduced.alpha_error = reduced.beta_error = Eigen::MatrixXd::Zero(2, 2);
-  for (const double w : {5.3e5, 1e6, 1e8}) {
+  for (const double w : {1e6, 1e8}) {
     reduced.alpha.c(3, 0) = w * w;
     for (const bool leading_only : {false, true}) {
       const Exponents found = propagated_exponents(reduced, 1e-6, leading_only);
