@@ -22,7 +22,7 @@ constexpr Index most_growth_modes = 2;  // higher ones change the six-link mecha
 // the first look.
 constexpr double negligible = 1e-6, apart = 1e-4;
 constexpr Index fewest_angles = 24;
-constexpr Index points_beside_modes = 7;
+constexpr Index points_beside_modes = 5;
 // What an answer may be off by.
 constexpr GrowthAccuracy growth_accuracy{.of_change = 0.02, .of_rate = 1e-7};
 // Twice the angles leave about the square of what they change, which may be this part of the answer.

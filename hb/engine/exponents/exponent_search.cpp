@@ -104,7 +104,7 @@ bool too_many(const ScaledSystem& system, const std::vector<Index>& together) {
 
 // Above this resonance strength reductions converge slowly, if at all (by experience with rods in bands of
 // instability).
-constexpr double strong_resonance = 3e-4;
+constexpr double strong_resonance = 3e-3;
 
 // Slaves the others to `together` and to the modes that pull at these, which are added to it until that converges;
 // empty where too many would have to be kept. `diverges`: it is known that it does not with `together` alone. `start`
