@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lib/lanes.hpp"
 #include "lib/modulus.hpp"
 #include "lib/stop_wish.hpp"
 
@@ -25,11 +26,21 @@ Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index 
   Index P_cut = P;
   while (P_cut > 0 && (sizes(P_cut).array() <= floor.array()).all()) --P_cut;
 
-  // For row i of (S4) all |K_m,ij| after each other, m = 1, 2, ..., as a_k-m,j stand in `a`: the last one first.
-  Eigen::MatrixXd row_sums(I * P_cut, I);
-  for (Index m = 1; m <= P_cut; ++m) row_sums.middleRows(I * (m - 1), I) = sizes(m).reshaped(I, I).transpose();
+  // Components i side by side in lanes, zeros beyond them; of `coupling` column j + I (m - 1) is |K_m,ij|, as a_k-m,j
+  // stand in `a`, the last one first.
+  const Index padded = (I + Lanes::width - 1) / Lanes::width * Lanes::width;
+  Eigen::MatrixXd coupling(padded, I * P_cut);
+  coupling.bottomRows(padded - I).setZero();
+  for (Index m = 1; m <= P_cut; ++m) coupling.block(0, I * (m - 1), I, I) = sizes(m).reshaped(I, I);
+  const Eigen::MatrixXd loads = moduli(system.f).transpose();
+  Eigen::MatrixXd of_each = Eigen::MatrixXd::Zero(padded, 5);
+  auto mean = of_each.col(0), damping = of_each.col(1), magnitude = of_each.col(2), response = of_each.col(3),
+       d = of_each.col(4);
+  mean.head(I) = system.mean;
+  damping.head(I) = system.G.diagonal();
+  for (Index i = 0; i < I; ++i) magnitude(i) = system.magnitude(i, 0);
   Index room = std::min(most, F + 4 * P_cut + 64) + 1;
-  Eigen::VectorXd a(I * room), response(I);
+  Eigen::VectorXd a(I * room);
   double largest = 0;
   Index H = 0;  // last harmonic that mattered
   for (Index k = 0; k <= most; ++k) {
@@ -41,15 +52,30 @@ Index predicted_harmonics(const WeightedSystem& system, double tolerance, Index 
       a.tail(kept.size()) = kept;
     }
     const Index terms = I * std::min(k, P_cut);
-    response.noalias() = row_sums.topRows(terms).transpose() * a.segment(I * (room - k), terms);
-    auto here = a.segment(I * (room - 1 - k), I);
-    for (Index i = 0; i < I; ++i) {
-      const double d = std::max(modulus(system.D(i, k)), 1e-12 * system.magnitude(i, k));
-      const double load = k <= F ? modulus(system.f(k, i)) : 0;
-      largest = std::max(largest, load / d);
-      here(i) = std::min((load + response(i)) / d, largest);
+    const double *before = a.data() + I * (room - k), n = double(k);
+    for (Index i = 0; i < padded; i += Lanes::width) {
+      const Lanes w2 = Lanes::load(&mean(i)), b = Lanes::load(&damping(i));
+      const Lanes size = k == 0 ? Lanes::load(&magnitude(i)) : abs(w2) + n * n + n * abs(b);
+      const Lanes real = w2 - n * n, imaginary = n * b;
+      max(sqrt(real * real + imaginary * imaginary), 1e-12 * size).store(&d(i));
+      Lanes sums[4];
+      Index t = 0;
+      for (; t + 4 <= terms; t += 4)
+        for (Index s = 0; s < 4; ++s) sums[s] += Lanes::load(&coupling(i, t + s)) * before[t + s];
+      for (; t < terms; ++t) sums[0] += Lanes::load(&coupling(i, t)) * before[t];
+      ((sums[0] + sums[1]) + (sums[2] + sums[3])).store(&response(i));
     }
-    if (!(here.maxCoeff() <= tolerance * largest)) H = k;
+    for (Index i = 0; i < I && k <= F; ++i) {
+      largest = std::max(largest, loads(i, k) / d(i));
+      response(i) += loads(i, k);
+    }
+    bool small = true;
+    double* const here = a.data() + I * (room - 1 - k);
+    for (Index i = 0; i < I; ++i) {
+      here[i] = std::min(response(i) / d(i), largest);
+      small = small && here[i] <= tolerance * largest;
+    }
+    if (!small) H = k;
     if (k >= F && k - H > std::max<Index>(P_cut, 2)) break;
   }
   return std::clamp<Index>(H + 1, std::min<Index>(2, most), most);
