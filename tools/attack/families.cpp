@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "hb/engine/exponents/stability.hpp"
 #include "tests/support/random_hill_system.hpp"
 
 namespace hb::attack {
@@ -160,6 +161,52 @@ HillSystem crowded(Random& random) {
   return s;
 }
 
+// |Im s| of mode i with its modulation, were it alone, with its stiffness so many times as large; NaN in a tongue.
+double frequency_alone(const HillSystem& s, Index i, double stiffer) {
+  HillSystem alone = oscillators(VectorXd::Zero(1), s.damping.diagonal().segment(i, 1), s.stiffness[0].num_harmonics());
+  alone.stiffness[0].c = stiffer * s.stiffness[0].c.row(i + s.num_modes() * i);
+  const Stability stability = analyse_stability(alone, 1);
+  return stability.exponents.empty() ? NAN : std::abs(stability.exponents.front().value.imag());
+}
+
+HillSystem shifted(Random& random) {
+  const Index I = random.chance(0.7) ? 2 : random.integer(3, 5), P = random.integer(1, 3);
+  const bool fast = random.chance(0.5);
+  const double slowest = fast ? random(22, 34) : random(0.6, 6), most = random.chance(0.8) ? 0.22 : 0.05;
+  VectorXd w(I);
+  for (Index i = 0; i < I; ++i) w(i) = slowest + (i > 0 ? random(0.3, 8) : 0);
+  VectorXd b = VectorXd::Constant(I, fast ? random.power(-11, -3) : random.power(-5, -1.5));
+  for (Index i = 0; i < I; ++i) b(i) *= random.chance(0.5) ? 1 : random(0.7, 1.3);
+  HillSystem s = oscillators(w, b, P);
+  for (Index i = 0; i < I; ++i)
+    for (Index k = 1; k <= P; ++k) add(s, i, i, k, w(i) * w(i) * random(0, most) / double(k * k) * phase(random));
+  for (Index i = 0; i < I; ++i)
+    for (Index j = 0; j < I; ++j) {
+      const double size = random.power(-7, 0.3);
+      for (Index k = 0; k <= P && i != j; ++k)
+        add(s, i, j, k, size / double(k + 1) * phase(random) * (random.chance(0.3) ? random.power(-9, -1) : 1));
+    }
+  // Stiffness of the second mode such that its frequency and the first one's, or their sum, is `off` from a multiple of
+  // the speed.
+  const double off = random.power(-7, -1), other = (random.chance(0.3) ? 1 : -1) * frequency_alone(s, 0, 1);
+  const auto apart = [&](double stiffer) {
+    const double turns = frequency_alone(s, 1, stiffer) + other - off;
+    return turns - std::round(turns);
+  };
+  double low = 1, high = 1;
+  do {
+    low = high;
+    high += 0.01;
+  } while (high < 1.6 &&
+           !(apart(low) * apart(high) <= 0 && std::abs(apart(low)) < 0.25 && std::abs(apart(high)) < 0.25));
+  for (int step = 0; step < 45; ++step) {
+    const double middle = 0.5 * (low + high);
+    (apart(middle) * apart(low) <= 0 ? high : low) = middle;
+  }
+  s.stiffness[0].c.row(1 + I) *= low;
+  return s;
+}
+
 }  // namespace
 
 Case random_case(Family family, std::uint64_t number) {
@@ -209,6 +256,9 @@ Case random_case(Family family, std::uint64_t number) {
       break;
     case Family::crowded:
       s = crowded(random);
+      break;
+    case Family::shifted:
+      s = shifted(random);
       break;
   }
   // Any unit of time.

@@ -21,9 +21,10 @@ enum class Family {
   undamped,  // on the imaginary axis, or off it in tongues
   strong,  // modulation beyond the mean
   crowded,  // four to six modes within a few frequencies
+  shifted,  // two resonant with what modulates them, not by their means; couplings down to a trace one way
 };
-constexpr std::array names = {"random",     "twins",       "tongue", "defective", "one-way", "non-normal",
-                              "gyroscopic", "circulatory", "stiff",  "undamped",  "strong",  "crowded"};
+constexpr std::array names = {"random",      "twins", "tongue",   "defective", "one-way", "non-normal", "gyroscopic",
+                              "circulatory", "stiff", "undamped", "strong",    "crowded", "shifted"};
 constexpr int num_families = int(names.size());
 
 struct Case {

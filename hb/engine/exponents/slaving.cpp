@@ -107,6 +107,7 @@ ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Index> slow,
   const Index start = fourier::fast_length(std::max(2 * system.K.num_harmonics() + 4, fewest_samples));
   const auto finish = [&](Iteration& iteration) {
     const int iterations = reduced.iterations;
+    if (bounds_others) iteration.see_shifted_resonances();
     reduced = iteration.result(bounds_others);
     reduced.iterations = iterations;
   };

@@ -30,6 +30,7 @@ struct ReducedSystem {
   FourierSeries alpha, beta;  // m*m components, column-major
   // m x m, of max_tau |error| of each entry: what is left of truncation and iteration, estimated, and rounding.
   Eigen::MatrixXd alpha_error, beta_error;
+  double iteration_share = 0;  // of these, what is left of the iteration
   // Upper bound on Re s of all the other 2(I - m) exponents (they belong to what is left when A, C are split off), by
   // the logarithmic norm in adiabatic coordinates averaged over the turn; infinite if no bound was found.
   double others_below = HUGE_VAL;
@@ -60,8 +61,9 @@ class SampledStiffness {
 // Keeps the modes listed in `slow` (indices of x). With all modes kept it returns K and G themselves. Not converged:
 // the iteration diverges (a mode left out is in resonance with one that is kept) or is too slow. Iterates until alpha
 // changes by less than `tolerance` relative to its largest value, or to rounding. `bounds_others`: others_below is
-// looked for. `start` decides how many corrections that takes; unless it is rough, a change of 1e-13, or four times
-// what the neighbours came to, is then enough.
+// looked for, and resonances that modulation shifts, (E29); else the caller has to see these, (E28). `start` decides
+// how many corrections that takes; unless it is rough, a change of 1e-13, or four times what the neighbours came to, is
+// then enough.
 [[nodiscard]] ReducedSystem slave_to(SampledStiffness& stiffness, std::span<const Eigen::Index> slow, double tolerance,
                                      bool bounds_others, const SlavingStart& start = {});
 [[nodiscard]] ReducedSystem slave_to(const ScaledSystem& system, std::span<const Eigen::Index> slow,

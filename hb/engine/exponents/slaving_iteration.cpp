@@ -95,14 +95,14 @@ Iteration::Iteration(const ScaledSystem& system, const SampledStiffness::Samples
       changed_(x_.size()),
       inverse_(last_f_.data() + x_.size(), 8 * n_ * m_, H_ + 1),
       inverse_size_(inverse_.data() + inverse_.size(), 2 * n_ * m_, H_ + 1),
-      pairs_(2 * n_ * m_, 7),
-      weight_(&pairs_(0, 0), pairs_.rows()),
-      scale_(&pairs_(0, 1), pairs_.rows()),
-      gain_(&pairs_(0, 2), pairs_.rows()),
-      rate_(&pairs_(0, 3), pairs_.rows()),
-      residual_(&pairs_(0, 4), pairs_.rows()),
-      effect_(&pairs_(0, 5), pairs_.rows()),
-      damping_(&pairs_(0, 6), pairs_.rows()) {
+      columns_(2 * n_ * m_, 7),
+      weight_(&columns_(0, 0), columns_.rows()),
+      scale_(&columns_(0, 1), columns_.rows()),
+      gain_(&columns_(0, 2), columns_.rows()),
+      rate_(&columns_(0, 3), columns_.rows()),
+      residual_(&columns_(0, 4), columns_.rows()),
+      effect_(&columns_(0, 5), columns_.rows()),
+      damping_(&columns_(0, 6), columns_.rows()) {
   assert(N_ == 2 * (H_ + 1));
   if (!diagonal_damping_) {  // what alpha and beta, which depend on P and R, are found from first
     alpha_.setZero();
@@ -302,14 +302,12 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
     earlier = best;
     last_x_ = x_;
     last_f_ = f_;
-    // Worth it where more than a few steps would be to come.
-    if (!pairs && iteration < most_iterations && (iteration == 1 ? change > 1e3 * goal : rho > 0.1))
-      pairs = modulated();
-    if (iteration >= 3 && rho > 0.2) mixing = true;
-    if (pairs) {
-      push_through(*pairs);
-      step_.tail(step_.size() - changed_).setZero();
-    }
+    // Worth it where more than a few steps would be to come (choices by experience).
+    constexpr double far = 1e3, slow = 0.1, slower = 0.2;
+    if (!pairs && iteration < most_iterations && (iteration == 1 ? change > far * goal : rho > slow))
+      pairs = inverse_of(own_equations());
+    if (iteration >= 3 && rho > slower) mixing = true;
+    if (pairs) push_through(*pairs);
     const Column& step = pairs ? step_ : f_;
     if (mixing)
       x_ = anderson.step(x_, step);
@@ -320,8 +318,8 @@ bool Iteration::run(double tolerance, int& iterations, int most_iterations) {
   return false;
 }
 
-PairInverse Iteration::modulated() const {
-  constexpr Index band = PairInverse::band, count = band + 1;
+PairInverse::Equations Iteration::own_equations() const {
+  constexpr Index count = PairInverse::band + 1;
   const Index nm = n_ * m_;
   PairInverse::Equations of{MatrixXd::Zero(nm, 2 * count), MatrixXd(nm, 2 * count), damping_.head(nm), VectorXd(nm)};
   fourier::RealTransform& transform = fourier::thread_transform(N_, m_);
@@ -339,8 +337,12 @@ PairInverse Iteration::modulated() const {
       of.slow_damping(q) = damping;
     }
   }
-  PairInverse pairs(nm, H_);
-  pairs.factorise(of);
+  return of;
+}
+
+PairInverse Iteration::inverse_of(const PairInverse::Equations& own) const {
+  PairInverse pairs(n_ * m_, H_);
+  pairs.factorise(own);
   return pairs;
 }
 
@@ -348,6 +350,57 @@ void Iteration::push_through(const PairInverse& pairs) {
   const auto re = forward_.re(), im = forward_.im();
   const Index first = 2 * n_ * m_;
   pairs.solve({&re(first, 0), &im(first, 0), re.rows()}, weight_.data(), step_.data());
+  step_.tail(step_.size() - changed_).setZero();
+}
+
+// t of (E29), T = |M_k U_m| on (A, weight C).
+double Iteration::resonance_shift(const PairInverse::Equations& own) const {
+  constexpr Index band = PairInverse::band;
+  const Index nm = n_ * m_;
+  double largest = 0;
+  in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
+    using V = Numbers<width>;
+    const V per_weight = at<width>(&weight_(q)).inverse();
+    std::array<V, band> between, slow;
+    for (Index m = 1; m <= band; ++m) {
+      const auto part = [&](const MatrixXd& of, Index column) { return at<width>(&of(q, column)); };
+      const V re = part(own.slow, m), im = part(own.slow, band + 1 + m);
+      between[std::size_t(m - 1)] =
+          ((part(own.fast, m) - re).square() + (part(own.fast, band + 1 + m) - im).square()).sqrt();
+      slow[std::size_t(m - 1)] = (re.square() + im.square()).sqrt() * per_weight;
+    }
+    const V damping = (at<width>(&own.fast_damping(q)) - at<width>(&own.slow_damping(q))).abs();
+    const auto T = [&](Index k, Index m) -> V {
+      const double* const size = inverse_size_.col(k).data() + q;
+      const V& mu = between[std::size_t(m - 1)];
+      const V across = slow[std::size_t(m - 1)] * (damping + double(2 * k + m));
+      return at<width>(size) * mu.max(across) + at<width>(size + nm) * mu * per_weight;
+    };
+    V most = V::Zero();
+    for (Index k = 0; k <= H_; ++k) {
+      V sum = V::Zero();
+      for (Index m = 1; m <= band; ++m) {
+        V beside = T(std::abs(k - m), m);
+        if (k + m <= H_) beside += T(k + m, m);
+        sum += T(k, m) * beside;
+      }
+      most = most.max(sum);
+    }
+    largest = std::max(largest, most.maxCoeff());
+  });
+  return largest;
+}
+
+void Iteration::see_shifted_resonances() {
+  constexpr double small = 0.5;
+  const PairInverse::Equations own = own_equations();
+  if (const double t = resonance_shift(own); t <= small) {
+    amplification_ = std::max(amplification_, 1 / (1 - t));
+    return;
+  }
+  push_through(inverse_of(own));
+  const double through_constant_part = length(f_);
+  if (through_constant_part > 0) amplification_ = std::max(amplification_, length(step_) / through_constant_part);
 }
 
 ReducedSystem Iteration::result(bool bounds_others) {
@@ -374,6 +427,8 @@ ReducedSystem Iteration::result(bool bounds_others) {
       reduced.alpha_error(s, l) += given_rounding * rounding_(S_[s], S_[l]);
       reduced.beta_error(s, l) += G_error_(S_[s], S_[l]);
     }
+  reduced.iteration_share = std::max((iteration / reduced.alpha_error.array()).maxCoeff(),
+                                     (iteration / weight_max() / reduced.beta_error.array()).maxCoeff());
   reduced.alpha = without_tail(harmonics, reduced.alpha_error);
   transform.samples() = beta_;
   transform.forward();
@@ -424,21 +479,29 @@ MatrixXd Iteration::start() const {
   return states;
 }
 
-double Iteration::distance(const Column& x, const Column& y) const {
+template <class Part>
+double Iteration::largest_pair(const Part& part) const {
   const Index nm = n_ * m_;
   double largest = 0;
-  in_groups(nm, [&]<int width>(std::integral_constant<int, width>, Index q) {
+  in_groups(nm, [&]<int width>(std::integral_constant<int, width> together, Index q) {
     Numbers<width> sum = Numbers<width>::Zero();
     for (Index k = 0; k <= H_; ++k)
       for (Index half = 0; half < 2; ++half) {
         const Index real = nm * (4 * k + half) + q, imaginary = real + 2 * nm;
-        sum += ((at<width>(&x(real)) - at<width>(&y(real))).square() +
-                (at<width>(&x(imaginary)) - at<width>(&y(imaginary))).square())
-                   .sqrt();
+        sum += (part(together, real).square() + part(together, imaginary).square()).sqrt();
       }
     largest = std::max(largest, 2 * sum.maxCoeff());
   });
   return largest;
+}
+
+double Iteration::length(const Column& x) const {
+  return largest_pair([&]<int width>(std::integral_constant<int, width>, Index i) { return at<width>(&x(i)); });
+}
+
+double Iteration::distance(const Column& x, const Column& y) const {
+  return largest_pair(
+      [&]<int width>(std::integral_constant<int, width>, Index i) { return at<width>(&x(i)) - at<width>(&y(i)); });
 }
 
 }  // namespace hb::slaving

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,6 +52,9 @@ class Iteration {
   // alpha's error but for that of too few samples.
   bool run(double tolerance, int& iterations, int most_iterations = 80);
 
+  // Amplifies what is left where pairs with their modulation answer it with more than the constant part does, (E29).
+  void see_shifted_resonances();
+
   ReducedSystem result(bool bounds_others);
 
   SlavingStart solved() const { return {x_.head(changed_), amplification_, change_}; }
@@ -79,8 +83,11 @@ class Iteration {
   double others_below() const;
   Eigen::MatrixXd start() const;
 
-  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k, of x - y.
+  // max over (j, l) of sum_k |a_k| + weight |c_k|, both signs of k, of x and of x - y.
+  double length(const Column& x) const;
   double distance(const Column& x, const Column& y) const;
+  template <class Part>
+  double largest_pair(const Part& part) const;
 
   // Residual of the two invariance equations, pushed through the inverse of their constant part:
   //   x_S'' = -alpha x_S - beta x_S',     alpha = K_SS + K_SF A + G_SF P,   beta = G_SS + K_SF C + G_SF R
@@ -99,10 +106,13 @@ class Iteration {
   // The residuals over the turn, but for what is linear in P and R of the same mode: push_through adds that.
   void sample_residual();
   void push_through();
-  // What each pair feels of itself with alpha and beta as they are now.
-  PairInverse modulated() const;
-  // The residuals through that: step_.
+  // What each pair feels of itself with alpha and beta as they are now, and the inverse of that.
+  PairInverse::Equations own_equations() const;
+  PairInverse inverse_of(const PairInverse::Equations& own) const;
+  // The residuals through that: step_, of the harmonics that are solved for.
   void push_through(const PairInverse& pairs);
+  // By how much of itself modulation changes the resonant harmonic's part of the equations, to second order.
+  double resonance_shift(const PairInverse::Equations& own) const;
   void invert_constant_part();
 
   const std::vector<Eigen::Index>& S_;
@@ -128,7 +138,7 @@ class Iteration {
   Columns inverse_;  // 8 n*m x (H+1)
   Columns inverse_size_;  // |M_1c| + weight |M_2c|, c = 1, then c = 2; 2 n*m x (H+1)
   // Of what follows, each 2 n*m: of A or the first invariance equation, then of C or the second.
-  Eigen::MatrixXd pairs_;
+  Eigen::MatrixXd columns_;
   Column weight_;  // of the slow mode
   Column scale_;  // 1 of A, 1/weight of C
   Column gain_, rate_;  // largest inverse_size_, and so of the rate of change
