@@ -37,7 +37,8 @@ struct Case {
 
 // How many times its error a bar may be at the median.
 [[nodiscard]] constexpr double allowed_median(Family family) {
-  const bool ill_conditioned = family == Family::defective || family == Family::non_normal || family == Family::tongue;
+  const bool ill_conditioned = family == Family::defective || family == Family::non_normal ||
+                               family == Family::tongue || family == Family::shifted;
   return ill_conditioned ? 1000 : 30;
 }
 
