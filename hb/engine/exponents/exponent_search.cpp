@@ -11,6 +11,7 @@
 #include "hb/engine/exponents/constant_coefficients.hpp"
 #include "hb/engine/exponents/hill_determinant.hpp"
 #include "hb/engine/exponents/hill_exponents.hpp"
+#include "hb/engine/exponents/shifted_resonances.hpp"
 #include "hb/engine/exponents/slaving.hpp"
 #include "lib/constants.hpp"
 #include "lib/dense.hpp"
@@ -74,58 +75,6 @@ bool spans(const ScaledSystem& system, MatrixXd states, double least) {
   for (Index i = 0; i < I; ++i) states.row(i) *= std::max(1.0, std::sqrt(std::abs(w2(i))));
   states.colwise().normalize();
   return dense::Lu<double>(states).rcond() > least;
-}
-
-// Of the exponents of modes that others are slaved to.
-struct Slaved {
-  double iteration_share = 0, amplification = 1;  // ReducedSystem, SlavingStart
-  Index harmonics = 0;
-
-  Slaved() = default;
-  Slaved(const ReducedSystem& reduced, Index num_pairs)
-      : iteration_share(reduced.iteration_share),
-        amplification(reduced.solved.amplification),
-        harmonics(reduced.solved.solution.size() / (4 * num_pairs) - 1) {}
-};
-
-using Roots = std::array<cplx, 2>;
-// Of s^2 + b s + w^2 of each mode's mean.
-std::vector<Roots> mean_roots(const VectorXd& w2, const VectorXd& b) {
-  std::vector<Roots> roots;
-  for (Index i = 0; i < w2.size(); ++i) {
-    const cplx root = std::sqrt(cplx(b(i) * b(i) / 4 - w2(i), 0));
-    roots.push_back({-b(i) / 2 + root, -b(i) / 2 - root});
-  }
-  return roots;
-}
-
-// min |s - t - ik| over |k| <= most, squared.
-double detuning2(cplx s, cplx t, double most) {
-  const double turned = s.imag() - t.imag(), k = std::clamp(std::round(turned), -most, most);
-  return std::pow(s.real() - t.real(), 2) + std::pow(turned - k, 2);
-}
-
-// hb/engine/README.md (E28): what is left of the iteration counts for as much more as the exponents of a mode that is
-// slaved, which are among `others`, lie nearer than those of its mean.
-void see_shifted_resonances(const std::vector<Roots>& means, const Slaved& slaved,
-                            std::span<const Exponents* const> others, Exponents& found) {
-  const auto is_kept = [&](Index mode) { return std::ranges::find(found.mode, mode) != found.mode.end(); };
-  for (std::size_t i = 0; i < found.s.size(); ++i) {
-    double nearer2 = 1;
-    for (const Exponents* list : others)
-      for (std::size_t k = 0; k < list->s.size(); ++k) {
-        if (list == &found || is_kept(list->mode[k])) continue;
-        double of_means2 = HUGE_VAL;
-        for (const cplx s : means[std::size_t(found.mode[i])])
-          for (const cplx t : means[std::size_t(list->mode[k])])
-            of_means2 = std::min(of_means2, detuning2(s, t, double(slaved.harmonics)));
-        nearer2 = std::max(nearer2, of_means2 / std::max(detuning2(found.s[i], list->s[k], HUGE_VAL), 1e-300));
-      }
-    const double more = std::sqrt(nearer2) / slaved.amplification - 1;
-    if (!(more > 0)) continue;
-    found.error[i] *= 1 + more * slaved.iteration_share;
-    found.imaginary_error[i] *= 1 + more * slaved.iteration_share;
-  }
 }
 
 // Relative error of alpha that moves no kept mode's exponents -b/2 +- sqrt(b^2/4 - w^2) by more than a thousandth of
@@ -308,10 +257,8 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
       diverged = solved[std::size_t(g)].diverges = !reduced.converged;
     }
   }
-  const std::vector<Roots> means = mean_roots(w2, b);
-  const auto see_resonances_of = [&](Index g) {
-    see_shifted_resonances(means, slaved[std::size_t(g)], lists, alone[std::size_t(g)]);
-  };
+  const ShiftedResonances resonances(w2, b);
+  const auto widen = [&](Index g) { resonances.widen(slaved[std::size_t(g)], lists, alone[std::size_t(g)]); };
   search.method = StabilityMethod::slaving;
   if (!together.empty()) {
     if (const auto reduced = slave_to_resonant(stiffness, together, tolerance, false, diverged && together.size() == 1,
@@ -322,10 +269,10 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
       solved.back() = reduced->solved;
       solved.back().modes = together;
       if (const Index kept = Index(together.size()); kept < I)
-        see_shifted_resonances(means, Slaved(*reduced, kept * (I - kept)), lists, search.exponents);
+        resonances.widen(Slaved(*reduced, kept * (I - kept)), lists, search.exponents);
     } else {
       search = search_by_propagation(system, tolerance);
-      for (Index g = 0; g < I; ++g) see_resonances_of(g);
+      for (Index g = 0; g < I; ++g) widen(g);
       for (const Exponents& pair : alone) sharpen(search.exponents, pair);
       search.solved = std::move(solved);
       return search;
@@ -339,7 +286,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
                                   "the phase function, Hill's determinant or one turn's propagation");
     search.exponents.converged = true;
   }
-  for (Index g = 0; g < I; ++g) see_resonances_of(g);
+  for (Index g = 0; g < I; ++g) widen(g);
   search.exponents.reserve(std::size_t(2 * I));
   MatrixXd states(2 * I, 2 * I);
   states.leftCols(start_together.cols()) = start_together;

@@ -1,0 +1,39 @@
+// Modes meet at the exponents that they have with what modulates them, not at those of their means, by which slaving
+// judges its errors: what that adds to the errors of exponents; hb/engine/README.md (E28).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "hb/engine/exponents/reduced_exponents.hpp"
+
+namespace hb {
+
+// Of a reduction to some modes.
+struct Slaved {
+  double iteration_share = 0, amplification = 1;  // ReducedSystem, SlavingStart
+  Eigen::Index harmonics = 0;  // of A and C
+
+  Slaved() = default;
+  // `num_pairs` of a mode that is kept and one that is slaved.
+  Slaved(const ReducedSystem& reduced, Eigen::Index num_pairs);
+};
+
+class ShiftedResonances {
+ public:
+  // Of all modes the squared frequency and the damping of their means.
+  ShiftedResonances(const Eigen::VectorXd& w2, const Eigen::VectorXd& b);
+
+  // What is left of the iteration in the errors of `found`, exponents of the modes that were kept, counts for as much
+  // more as those of the others, of any modes and `found` itself among them, lie nearer than those of the means.
+  void widen(const Slaved& slaved, std::span<const Exponents* const> others, Exponents& found) const;
+
+ private:
+  using Roots = std::array<std::complex<double>, 2>;
+  std::vector<Roots> means_;
+};
+
+}  // namespace hb
