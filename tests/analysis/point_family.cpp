@@ -104,7 +104,7 @@ TEST(SweepPoint, AtTheEndOfABandTheRodThatEndsItHasOneMethod) {
     return analyse_point(scene, end, scene.settings().only, {.at_boundary = std::move(rods)}).rods;
   };
   const auto second = [](const RodPoint& rod) {
-    return rod.stability->stability.evidence.find("(second method") != std::string::npos;
+    return rod.stability->stability.evidence.find("(second") != std::string::npos;
   };
   const std::vector<RodPoint> pursued = at({}), ended = at({true, false});
   EXPECT_TRUE(second(pursued[0]));

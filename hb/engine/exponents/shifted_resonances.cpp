@@ -16,6 +16,11 @@ double detuning2(cplx s, cplx t, double most) {
   return std::pow(s.real() - t.real(), 2) + std::pow(turned - k, 2);
 }
 
+// With the whole frequency: an exponent is known modulo i.
+std::array<cplx, 2> conjugates(const Exponents& list, std::size_t i) {
+  return {cplx(list.s[i].real(), list.frequency[i]), cplx(list.s[i].real(), -list.frequency[i])};
+}
+
 }  // namespace
 
 Slaved::Slaved(const ReducedSystem& reduced, Index num_pairs)
@@ -41,7 +46,11 @@ void ShiftedResonances::widen(const Slaved& slaved, std::span<const Exponents* c
         for (const cplx s : means_[std::size_t(found.mode[i])])
           for (const cplx t : means_[std::size_t(list->mode[k])])
             of_means2 = std::min(of_means2, detuning2(s, t, double(slaved.harmonics)));
-        nearer2 = std::max(nearer2, of_means2 / std::max(detuning2(found.s[i], list->s[k], HUGE_VAL), 1e-300));
+        double of_exponents2 = HUGE_VAL;
+        for (const cplx s : conjugates(found, i))
+          for (const cplx t : conjugates(*list, k))
+            of_exponents2 = std::min(of_exponents2, detuning2(s, t, double(slaved.harmonics)));
+        nearer2 = std::max(nearer2, of_means2 / std::max(of_exponents2, 1e-300));
       }
     const double more = std::sqrt(nearer2) / slaved.amplification - 1;
     if (!(more > 0)) continue;

@@ -125,6 +125,7 @@ Stability of_group(const ScaledSystem& system, const StabilityOptions& options) 
     const ExponentSearch again = slaved_sharper(system, tolerance, propagated, std::move(search.solved));
     Stability closer = finished(system, again, tolerance);
     if (again.complete && again.method == StabilityMethod::slaving && closer.growth_error < result.growth_error) {
+      closer.evidence += " (second reductions, sharper, after first ones undecided or less accurate than asked)";
       closer.solved = std::move(result.solved);
       result = std::move(closer);
     }
