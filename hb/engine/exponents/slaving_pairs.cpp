@@ -49,13 +49,13 @@ template <class V>
 }
 
 template <int width>
-[[gnu::always_inline]] inline Complex<Numbers<width>> load(const double* p, Index apart) {
-  return {at<width>(p), at<width>(p + apart)};
+[[gnu::always_inline]] inline Complex<Numbers<width>> load(const double* p, Index to_im) {
+  return {at<width>(p), at<width>(p + to_im)};
 }
 template <int width>
-[[gnu::always_inline]] inline void store(const Complex<Numbers<width>>& z, double* p, Index apart) {
+[[gnu::always_inline]] inline void store(const Complex<Numbers<width>>& z, double* p, Index to_im) {
   at<width>(p) = z.re;
-  at<width>(p + apart) = z.im;
+  at<width>(p + to_im) = z.im;
 }
 template <int width>
 [[gnu::always_inline]] inline Complex<Numbers<width>> entry(const double* block, Index of_four) {
@@ -127,9 +127,9 @@ PairInverse::PairInverse(Index num_pairs, Index H)
   blocks_ = kept.matrix(entries * (2 * band + 1) * (H + 1), num_pairs).data();
 }
 
-// How harmonic k + apart stands in the equations of harmonic k.
-double* PairInverse::block(Index first, Index width, Index k, Index apart) const {
-  return blocks_ + entries * ((2 * band + 1) * ((H_ + 1) * first + width * k) + width * (band + apart));
+// How harmonic k + away stands in the equations of harmonic k.
+double* PairInverse::block(Index first, Index width, Index k, Index away) const {
+  return blocks_ + entries * ((2 * band + 1) * ((H_ + 1) * first + width * k) + width * (band + away));
 }
 
 void PairInverse::factorise(const Equations& of) {
@@ -141,33 +141,39 @@ void PairInverse::solve(const Residuals& of, const double* weight, double* step)
             [&]<int width>(std::integral_constant<int, width>, Index first) { solve<width>(of, weight, step, first); });
 }
 
+// (E27): with mu_m = K_jj,m - alpha_m and the dampings g of the fast mode, b of the slow one, harmonic k - m of (A, C)
+// stands in the equations of harmonic k with
+//     [ mu_m   -alpha_m (g - b + i (2k - m)) ]
+//     [   0                mu_m              ],  m <> 0,
+//     [ mu_0 - k^2 + ikg           -alpha_0 (g - b + 2ik)          ]
+//     [   g - b + 2ik    mu_0 - k^2 - b (g - b) + ik (g - 2b) ],  m = 0.
 // With z_-k = conj z_k what stands at harmonics k >= band is eliminated from the highest on, what stands at -k as its
 // mirror image; harmonics 0 .. band - 1 are left.
 template <int width>
 void PairInverse::factorise(const Equations& of, Index first) {
   using V = Numbers<width>;
   using Z = Complex<V>;
-  const V g = at<width>(&of.fast_damping(first)), b = at<width>(&of.slow_damping(first)), apart = g - b;
+  const V g = at<width>(&of.fast_damping(first)), b = at<width>(&of.slow_damping(first)), g_b = g - b;
   const auto harmonic = [first](const Eigen::MatrixXd& f, Index m) {
     return Z{at<width>(&f(first, m)), at<width>(&f(first, band + 1 + m))};
   };
   std::array<Z, 2 * band + 1> alpha, mu;  // of harmonic m at band + m
   for (Index m = 0; m <= band; ++m) {
-    const Z slow = harmonic(of.slow, m), fast = harmonic(of.fast, m), between{fast.re - slow.re, fast.im - slow.im};
+    const Z slow = harmonic(of.slow, m), fast = harmonic(of.fast, m), difference{fast.re - slow.re, fast.im - slow.im};
     alpha[std::size_t(band + m)] = slow, alpha[std::size_t(band - m)] = {slow.re, -slow.im};
-    mu[std::size_t(band + m)] = between, mu[std::size_t(band - m)] = {between.re, -between.im};
+    mu[std::size_t(band + m)] = difference, mu[std::size_t(band - m)] = {difference.re, -difference.im};
   }
   const Z none{V::Zero(), V::Zero()};
   for (Index k = 0; k <= H_; ++k) {
     const double n = double(k);
     for (Index m = -band; m <= band; ++m) {  // of z_(k - m)
-      const Z slow = alpha[std::size_t(band + m)], between = mu[std::size_t(band + m)];
-      const Z across = product(slow, Z{-apart, V::Constant(double(m) - 2 * n)});
-      Block<V> B{between, across, none, between};
+      const Z &alpha_m = alpha[std::size_t(band + m)], &mu_m = mu[std::size_t(band + m)];
+      const Z upper_right = product(alpha_m, Z{-g_b, V::Constant(double(m) - 2 * n)});
+      Block<V> B{mu_m, upper_right, none, mu_m};
       if (m == 0) {
-        B[0] = {between.re - n * n, n * g};
-        B[2] = {apart, V::Constant(2 * n)};
-        B[3] = {between.re - n * n - b * apart, n * (g - 2 * b)};
+        B[0] = {mu_m.re - n * n, n * g};
+        B[2] = {g_b, V::Constant(2 * n)};
+        B[3] = {mu_m.re - n * n - b * g_b, n * (g - 2 * b)};
       }
       for (Index e = 0; e < 4; ++e) store<width>(B[std::size_t(e)], block(first, width, k, -m) + 2 * width * e, width);
     }
@@ -230,7 +236,7 @@ void PairInverse::solve(const Residuals& of, const double* weight, double* step,
   const auto at_harmonic = [z](Index k) { return z + 4 * width * k; };
   V a_0 = V::Zero(), c_0 = a_0;
   for (Index k = H_; k >= 0; --k) {
-    const double *re = of.re + of.apart * k + first, *im = of.im + of.apart * k + first;
+    const double *re = of.re + of.stride * k + first, *im = of.im + of.stride * k + first;
     Z a{at<width>(re), at<width>(im)}, c{at<width>(re + pairs_), at<width>(im + pairs_)};
     if (k == 0) a_0 = a.re, c_0 = c.re;
     for (Index i = std::max<Index>(1, band - k); i <= std::min(band, H_ - k); ++i)

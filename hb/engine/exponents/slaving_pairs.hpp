@@ -23,10 +23,10 @@ class PairInverse {
   };
   void factorise(const Equations& of);
 
-  // Of harmonic k of pair q r1 at apart k + q, r2 at apart k + pairs + q.
+  // Of harmonic k of pair q r1 at stride k + q, r2 at stride k + pairs + q.
   struct Residuals {
     const double *re, *im;
-    Eigen::Index apart;
+    Eigen::Index stride;
   };
   // What takes the residuals away: of harmonic k real parts of A, of weight C, then imaginary parts, a number per pair
   // each.
@@ -35,7 +35,7 @@ class PairInverse {
  private:
   static constexpr Eigen::Index central = 4 * band - 2;  // real unknowns of harmonics 0 .. band - 1
 
-  double* block(Eigen::Index first, Eigen::Index width, Eigen::Index k, Eigen::Index apart) const;
+  double* block(Eigen::Index first, Eigen::Index width, Eigen::Index k, Eigen::Index away) const;
   template <int width>
   void factorise(const Equations& of, Eigen::Index first);
   template <int width>
