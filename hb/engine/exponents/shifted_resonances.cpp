@@ -38,24 +38,23 @@ ShiftedResonances::ShiftedResonances(const Eigen::VectorXd& w2, const Eigen::Vec
 void ShiftedResonances::widen(const Slaved& slaved, std::span<const Exponents* const> others, Exponents& found) const {
   const auto is_kept = [&](Index mode) { return std::ranges::find(found.mode, mode) != found.mode.end(); };
   for (std::size_t i = 0; i < found.s.size(); ++i) {
-    double nearer2 = 1;
+    const double told = slaved.iteration_share * found.error[i];
+    double largest = told;
     for (const Exponents* list : others)
       for (std::size_t k = 0; k < list->s.size(); ++k) {
         if (list == &found || is_kept(list->mode[k])) continue;
-        double of_means2 = HUGE_VAL;
+        double of_means2 = HUGE_VAL, of_exponents2 = HUGE_VAL;
         for (const cplx s : means_[std::size_t(found.mode[i])])
           for (const cplx t : means_[std::size_t(list->mode[k])])
             of_means2 = std::min(of_means2, detuning2(s, t, double(slaved.harmonics)));
-        double of_exponents2 = HUGE_VAL;
         for (const cplx s : conjugates(found, i))
           for (const cplx t : conjugates(*list, k))
             of_exponents2 = std::min(of_exponents2, detuning2(s, t, double(slaved.harmonics)));
-        nearer2 = std::max(nearer2, of_means2 / std::max(of_exponents2, 1e-300));
+        const double p = told / slaved.amplification * std::sqrt(of_means2);
+        largest = std::max(largest, std::min(p / std::sqrt(of_exponents2), std::sqrt(p)));
       }
-    const double more = std::sqrt(nearer2) / slaved.amplification - 1;
-    if (!(more > 0)) continue;
-    found.error[i] *= 1 + more * slaved.iteration_share;
-    found.imaginary_error[i] *= 1 + more * slaved.iteration_share;
+    found.error[i] += largest - told;
+    found.imaginary_error[i] += largest - told;
   }
 }
 

@@ -27,8 +27,8 @@ class ShiftedResonances {
   // Of all modes the squared frequency and the damping of their means.
   ShiftedResonances(const Eigen::VectorXd& w2, const Eigen::VectorXd& b);
 
-  // What is left of the iteration in the errors of `found`, exponents of the modes that were kept, counts for as much
-  // more as those of the others, of any modes and `found` itself among them, lie nearer than those of the means.
+  // What is left of the iteration in the errors of `found`, exponents of the modes that were kept, counts for more
+  // where those of the others, of any modes and `found` itself among them, lie nearer than those of the means.
   void widen(const Slaved& slaved, std::span<const Exponents* const> others, Exponents& found) const;
 
  private:
