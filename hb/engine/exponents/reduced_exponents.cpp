@@ -164,7 +164,7 @@ double unresolved(cplx s, double change) {
 }
 
 // hb/engine/README.md (E17), (E18).
-TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
+TruncatedErrors errors_from(const Cells& coarse, Cells& fine, Index num_states) {
   constexpr double asymptotic = 1e-3;  // larger changes do not tell how errors fall
   const std::size_t n = fine.turn.s.size();
   const std::vector<std::size_t> nearest = compare(coarse, fine);
@@ -182,9 +182,14 @@ TruncatedErrors errors_from(const Cells& coarse, Cells& fine) {
     // nor, with real multipliers, for others of that sign.
     const double angle = fine.turn.s[i].imag();
     const bool real = angle == 0 || angle == 0.5;
+    bool beside = false;
     for (std::size_t k = 0; k < n && real; ++k)
-      if (fine.turn.s[k].imag() == angle && fine.change[k] < asymptotic)
+      if (fine.turn.s[k].imag() == angle && fine.change[k] < asymptotic) {
         least = std::max(least, 2 * of_order * fine.change[k]);
+        beside = beside || k != i;
+      }
+    // One that was lost may have changed by as much as any.
+    if (real && !beside && Index(n) < num_states) least = std::max(least, 2 * of_order * largest);
     const bool falls = change < asymptotic;
     errors.left.push_back(
         std::max(falls ? std::min(change, (real ? slowest : slower) * largest) : unresolved(fine.turn.s[i], change),
@@ -232,7 +237,7 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     given.bottomLeftCorner(m, m) = h * reduced.alpha_error * W.cwiseInverse().asDiagonal();
     given.bottomRightCorner(m, m) = h * reduced.beta_error;
     Cells fine{cells, turn_exponents(maps, given, leading_only, coarse->turn.subspaces), {}, {}};
-    TruncatedErrors errors = errors_from(*coarse, fine);
+    TruncatedErrors errors = errors_from(*coarse, fine, 2 * m);
     // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
     const double least = m == 1 ? oscillator_error(fastest, double(cells)) : 0;
     // The cells' length and the method's tables are rounded alike in all of them.
