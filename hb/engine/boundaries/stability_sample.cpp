@@ -6,7 +6,10 @@
 namespace hb {
 
 StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options) {
-  return {x, system.speed, with_finite_growth(system, options), mean_exponents(system), growth_bound(system)};
+  StabilitySample sample{x, system.speed, with_finite_growth(system, options), {}, growth_bound(system)};
+  // Searches seldom look farther where the bound proves decay.
+  if (!(sample.growth_bound < 0)) sample.mean = mean_exponents(system);
+  return sample;
 }
 
 std::optional<StabilitySample> stability_sample(const SystemAt& at, double x, const StabilityOptions& options) {
