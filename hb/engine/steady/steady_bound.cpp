@@ -132,9 +132,9 @@ double response(Operator& A, Inverse& inverse, const Eigen::MatrixXd& T) {
   double largest = 1;
   for (int step = 0; step < 2; ++step) {
     const double size = weigh(wiener(moduli(rhs).cwiseQuotient(A.magnitude())), T);
-    // A random load holds the direction nearest to resonance by about 1/sqrt(unknowns): solved well below that. The
+    // A random load holds the direction nearest to resonance by about 1/sqrt(unknowns): solved to a fifth of that. The
     // second holds it fully.
-    inverse.solve(rhs, step == 0 ? 1e-3 : 1e-2, z);
+    inverse.solve(rhs, step == 0 ? 0.2 / std::sqrt(static_cast<double>(I * (2 * H + 1))) : 0.05, z);
     const double gained = size_in_q(z, T) / size;
     if (!std::isfinite(gained)) return std::nan("");
     largest = std::max(largest, gained);

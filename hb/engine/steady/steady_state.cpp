@@ -230,7 +230,7 @@ class Solver {
         return;
       }
     }
-    const double enough = 0.1 * options_.tolerance * largest, hidden = std::min(enough, 0.25 * rounding),
+    const double enough = 0.1 * options_.tolerance * largest, hidden = std::min(enough, rounding),
                  negligible = std::max(std::min(enough, 1e-3 * options_.tolerance * largest), hidden);
     const steady::Correction correction = steady::correction(A, inverse, r, response, T_, enough, negligible, hidden);
     if (correction.window.allFinite() && std::isfinite(correction.rest)) {
