@@ -6,10 +6,7 @@
 namespace hb {
 
 StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options) {
-  StabilitySample sample{x, system.speed, with_finite_growth(system, options), {}, growth_bound(system)};
-  // Searches seldom look farther where the bound proves decay.
-  if (!(sample.growth_bound < 0)) sample.mean = mean_exponents(system);
-  return sample;
+  return {x, system.speed, with_finite_growth(system, options), mean_exponents(system), growth_bound(system)};
 }
 
 std::optional<StabilitySample> stability_sample(const SystemAt& at, double x, const StabilityOptions& options) {
