@@ -248,7 +248,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
     if (reduced.converged) alone[std::size_t(g)] = reduced_exponents(reduced, tolerance);
     hb::name_modes(alone[std::size_t(g)], w2, b, {g});
     if (reduced.converged && !alone[std::size_t(g)].s.empty()) {
-      slaved[std::size_t(g)] = Slaved(reduced, I - 1);
+      slaved[std::size_t(g)] = {reduced.iteration_share, reduced.solved.amplification};
       lists.push_back(&alone[std::size_t(g)]);
       subspaces[std::size_t(g)] = std::move(reduced.start);
       solved[std::size_t(g)] = std::move(reduced.solved);
@@ -269,7 +269,7 @@ ExponentSearch search_by_slaving(const ScaledSystem& system, double tolerance, c
       solved.back() = reduced->solved;
       solved.back().modes = together;
       if (const Index kept = Index(together.size()); kept < I)
-        resonances.widen(Slaved(*reduced, kept * (I - kept)), lists, search.exponents);
+        resonances.widen({reduced->iteration_share, reduced->solved.amplification}, lists, search.exponents);
     } else {
       search = search_by_propagation(system, tolerance);
       for (Index g = 0; g < I; ++g) widen(g);

@@ -14,12 +14,8 @@ namespace hb {
 
 // Of a reduction to some modes.
 struct Slaved {
-  double iteration_share = 0, amplification = 1;  // ReducedSystem, SlavingStart
-  Eigen::Index harmonics = 0;  // of A and C
-
-  Slaved() = default;
-  // `num_pairs` of a mode that is kept and one that is slaved.
-  Slaved(const ReducedSystem& reduced, Eigen::Index num_pairs);
+  // Of the errors, what is left of the iteration; by how much repeated corrections showed that to grow.
+  double iteration_share = 0, amplification = 1;
 };
 
 class ShiftedResonances {
