@@ -185,6 +185,51 @@ TEST(Slaving, ResonancesThatModulationShiftsAreSeenWithoutAStep) {
   }
 }
 
+// Frequencies 23 apart, more than the harmonics that the slaved modes' motion has.
+TEST(Slaving, ShiftedResonancesOfHighOrderAreSeen) {
+  HillSystem system = two_modes(0, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero());
+  system.damping(0, 0) = 7.8053108520875879e-11;
+  system.damping(1, 1) = 1.2207097479854549e-10;
+  Eigen::MatrixXcd c(4, 3);
+  c << 80.403665242637871, cplx(-9.9196574035869336, 3.4993474251964054),
+      cplx(2.6639007211336527, -0.41395444560765043), -5.9496858265652565e-4,
+      cplx(-7.5901115813978366e-5, -4.0197420800098057e-4), cplx(-1.4671184551259762e-4, -2.2989313522105091e-4),
+      4.5301397546825114e-4, cplx(-3.7100095650527989e-4, -1.9884098558339583e-4),
+      cplx(6.6544621172316809e-5, 2.7261270912455422e-4), 1048.2472945006787,
+      cplx(-12.427334124963958, 226.37443151370704), cplx(48.678249251016098, -13.788457058846769);
+  system.stiffness[0] = FourierSeries(c);
+  const auto exact = reference::floquet_exponents(system, 1);
+  ASSERT_GT(double(exact.front().value.real()), 1.3e-10);
+  const Stability result = analyse_stability(system, 1);
+  EXPECT_NE(result.verdict, Verdict::stable) << result.growth_rate << " +- " << result.growth_error;
+  EXPECT_NEAR(result.growth_rate, double(exact.front().value.real()),
+              result.growth_error + double(exact.front().error));
+}
+
+// Three modes, each coupled to the next one alone and all resonant with each other: what is left of one equation comes
+// back through two of them.
+TEST(Slaving, ThreeModesThatMeetAreSeenTogether) {
+  HillSystem system;
+  system.mass = Eigen::Matrix3d::Identity();
+  system.damping = Eigen::Vector3d(1.8081567699279399e-6, 2.1344596633437064e-6, 2.7270222510024918e-6).asDiagonal();
+  Eigen::MatrixXcd c = Eigen::MatrixXcd::Zero(9, 2);
+  c.row(0) << 441.22163187401526, cplx(-42.390370770302155, -66.250923454055339);
+  c.row(2) << -5.0629207070003587e-4, cplx(7.3652369360048011e-4, 2.0697426880825526e-3);
+  c.row(3) << 7.3932786773412895e-5, cplx(-8.8005577544073989e-5, 2.3718920192025217e-5);
+  c.row(4) << 629.34822695506114, cplx(41.610121227620304, -116.97982143847877);
+  c.row(7) << -9.1902739066367339e-5, cplx(1.2906786542298609e-5, 5.034612435190194e-5);
+  c.row(8) << 617.14967723229074, cplx(-10.830752543415004, -21.495348401913414);
+  system.stiffness[0] = FourierSeries(c);
+  const auto exact = reference::floquet_exponents(system, 1);
+  ASSERT_GT(double(exact.front().value.real()), 6.8e-8);
+  for (const StabilityMethod method : {StabilityMethod::automatic, StabilityMethod::slaving}) {
+    const Stability result = analyse_stability(system, 1, {.tolerance = 1e-7, .method = method});
+    EXPECT_NE(result.verdict, Verdict::stable) << result.growth_rate << " +- " << result.growth_error;
+    EXPECT_NEAR(result.growth_rate, double(exact.front().value.real()),
+                result.growth_error + double(exact.front().error));
+  }
+}
+
 TEST(Slaving, StatesOfTheReductionAreMappedOntoThemselvesByATurn) {
   const HillSystem system = two_modes(0.05, (Eigen::Matrix2d() << 1.3, 0.2, 0.2, 20).finished(),
                                       (Eigen::Matrix2d() << 0.3, 0.4, 0.4, 2).finished());
