@@ -64,7 +64,7 @@ int run_map(const MapCommandFlags& flags) {
 
   const MapDocument document = document_of(*map);
   Delivery delivery;
-  const LongText text = [&](const TextSink& sink) { write_map(document, sink); };
+  const LongText text = [&](const TextSink& sink) { write_map(document, sink, out.threads); };
   if (out.json)
     delivery.document = text;
   else

@@ -22,18 +22,20 @@ inline bool missing(const MapPoint& point) { return point.source == MapSource::m
 template <class Value>
 void write_grid(const std::vector<MapPoint>& points, std::size_t nx, const Value& value, TextPieces& pieces) {
   const ValueText none(std::nan(""));
-  RepeatedText<decltype(value(points[0]))> texts;
-  for (std::size_t row = 0; row < points.size(); row += nx) {
-    pieces.add(row > 0 ? "," : "[");
-    pieces.add(nx * (1 + ValueText::longest), [&](char* at) {
-      for (std::size_t p = row; p < row + nx; ++p) {
-        *at++ = p > row ? ',' : '[';
-        at = (missing(points[p]) ? none : texts.of(value(points[p]))).copy(at);
-      }
-      return at;
-    });
-    pieces.add("]");
-  }
+  pieces.add("[");
+  pieces.add_rows(points.size() / nx, nx * (1 + ValueText::longest) + 2,
+                  [&](std::size_t first, std::size_t last, char* at) {
+                    RepeatedText<decltype(value(points[0]))> texts;
+                    for (std::size_t row = first; row < last; ++row) {
+                      if (row > 0) *at++ = ',';
+                      for (std::size_t p = row * nx; p < (row + 1) * nx; ++p) {
+                        *at++ = p > row * nx ? ',' : '[';
+                        at = (missing(points[p]) ? none : texts.of(value(points[p]))).copy(at);
+                      }
+                      *at++ = ']';
+                    }
+                    return at;
+                  });
   pieces.add("]");
 }
 
@@ -58,7 +60,7 @@ class Members {
     members_.push_back({key, {}, [nx = map.x.size(), &points, value, &kept](TextPieces& pieces) {
                           if (kept.empty()) {
                             const TextSink keep = [&](std::string_view piece) { kept += piece; };
-                            TextPieces own(keep);
+                            TextPieces own(keep, pieces.num_threads());
                             write_grid(points, nx, value, own);
                             own.hand_on();
                           }

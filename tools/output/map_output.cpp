@@ -169,7 +169,7 @@ MapDocument document_of(const Map& map) {
   return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries, map.complete, map.warnings};
 }
 
-void write_map(const MapDocument& document, const TextSink& sink) {
+void write_map(const MapDocument& document, const TextSink& sink, int num_threads) {
   const MapResult& r = document.result;
   const StabilityMap& first = r.maps.front();
   const NodeCounts n = counts(r.worst());
@@ -233,7 +233,7 @@ void write_map(const MapDocument& document, const TextSink& sink) {
     none.push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
   json.add("missing", std::move(none));
   json.add("units", units_json(document.scene.units));
-  TextPieces pieces(sink);
+  TextPieces pieces(sink, num_threads);
   json.write(pieces);
   pieces.add("\n");
   pieces.hand_on();

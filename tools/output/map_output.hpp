@@ -28,8 +28,8 @@ struct MapDocument {
 
 // "UNSTABLE at 19 % of the points because of AB", "stable at all points".
 [[nodiscard]] std::string map_verdict(const MapDocument& document);
-// The document in pieces, as text, and as values.
-void write_map(const MapDocument& document, const TextSink& sink);
+// The document in pieces, as text, and as values. Grids are written by all threads; the text is the same.
+void write_map(const MapDocument& document, const TextSink& sink, int num_threads = 1);
 [[nodiscard]] std::string map_text(const MapDocument& document);
 [[nodiscard]] nlohmann::ordered_json map_json(const MapDocument& document);
 
