@@ -24,7 +24,8 @@ class TextPieces {
   TextPieces& operator=(const TextPieces&) = delete;
 
   void add(std::string_view text) {
-    if (text.size() > room_) {
+    constexpr std::size_t large = std::size_t{1} << 16;
+    if (text.size() >= large) {
       hand_on();
       return sink_(text);
     }

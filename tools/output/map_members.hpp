@@ -53,18 +53,18 @@ class Members {
     members_.push_back(
         {key, {}, [nx = map.x.size(), &points, value](TextPieces& pieces) { write_grid(points, nx, value, pieces); }});
   }
-  // One that is said again: `kept` has its text from the first time on.
+  // One that is said again: `kept` has the pieces of its text from the first time on.
   template <class Value>
   void add_grid(const std::string& key, const StabilityMap& map, const std::vector<MapPoint>& points, Value value,
-                std::string& kept) {
+                std::vector<std::string>& kept) {
     members_.push_back({key, {}, [nx = map.x.size(), &points, value, &kept](TextPieces& pieces) {
                           if (kept.empty()) {
-                            const TextSink keep = [&](std::string_view piece) { kept += piece; };
+                            const TextSink keep = [&](std::string_view piece) { kept.emplace_back(piece); };
                             TextPieces own(keep, pieces.num_threads());
                             write_grid(points, nx, value, own);
                             own.hand_on();
                           }
-                          pieces.add(kept);
+                          for (const std::string& piece : kept) pieces.add(piece);
                         }});
   }
   void write(TextPieces& pieces) const {

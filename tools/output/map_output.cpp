@@ -9,6 +9,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "lib/constants.hpp"
 #include "lib/scene/scene_keys.hpp"
@@ -27,7 +29,7 @@ namespace hb::tools {
 namespace {
 
 // Texts of the grids, where one rod is all there are.
-using KeptGrids = std::map<std::string, std::string>;
+using KeptGrids = std::map<std::string, std::vector<std::string>>;
 constexpr std::size_t most_points_kept = 1'000'000;  // some 80 bytes each
 
 void add_grids(Members& json, const StabilityMap& map, const std::vector<MapPoint>& points, KeptGrids* kept) {
