@@ -295,6 +295,20 @@ TEST_F(Map, SameBitsWhateverTheNumberOfThreads) {
   EXPECT_EQ(one.out, two.out);
 }
 
+// More rows than one thread writes at a time, the last of them alone.
+TEST_F(Map, LargeGridsAreTheSameTextWhateverTheNumberOfThreads) {
+  const std::string arguments =
+      "map " + scene("mathieu") + " --x omega=0.5:3:200 --y hill.stiffness.1.cos.0.0=0.05:1:3000 --json --threads ";
+  const CommandResult one = hb(arguments + "1");
+  ASSERT_EQ(one.status, 0) << one.err;
+  for (const char* threads : {"2", "3"}) EXPECT_TRUE(one.out == hb(arguments + threads).out) << threads;
+  const Json map = Json::parse(one.out);
+  for (const Json& grid : {map["growth_rate"], map["verdict"], map["rods"]["system"]["growth_rate"]}) {
+    EXPECT_EQ(grid.size(), 3000);
+    for (const Json& row : grid) ASSERT_EQ(row.size(), 200);
+  }
+}
+
 TEST_F(Map, GoesOnWhereItWasStoppedAndRefusesAChangedScene) {
   const std::string arguments =
       "map " + scene("two_oscillators") + " --x omega=2.5:3.5:30 --y hill.damping.0.0=0.05:0.1:20 --no-plots --out ";

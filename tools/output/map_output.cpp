@@ -361,9 +361,8 @@ std::string alone(const MapDocument& document) {
   return fmt::format("{} alone: ", fmt::join(rods, ", "));
 }
 
-std::string verdict_of_points(const MapDocument& document) {
+std::string verdict_of_points(const MapDocument& document, const NodeCounts& n) {
   const MapResult& r = document.result;
-  const NodeCounts n = counts(r.worst());
   const double all = static_cast<double>(r.worst().size() - n.missing);
   if (all == 0) return document.complete ? "no system at any point" : "no answer yet at any point";
   std::vector<std::string> because;
@@ -416,7 +415,9 @@ std::string boundary_rows(const MapDocument& document) {
 
 }  // namespace
 
-std::string map_verdict(const MapDocument& document) { return alone(document) + verdict_of_points(document); }
+std::string map_verdict(const MapDocument& document) {
+  return alone(document) + verdict_of_points(document, counts(document.result.worst()));
+}
 
 std::string map_summary(const MapDocument& document) {
   const MapResult& r = document.result;
@@ -424,7 +425,8 @@ std::string map_summary(const MapDocument& document) {
   const Units& units = document.scene.units;
   const double all = static_cast<double>(r.worst().size());
   const bool linkage = std::holds_alternative<Linkage>(document.scene.model);
-  std::string text = fmt::format("{}: {}\n", scene_name(document.scene), map_verdict(document));
+  std::string text =
+      fmt::format("{}: {}\n", scene_name(document.scene), alone(document) + verdict_of_points(document, n));
   const auto axis = [&](const PlaneAxis& of, const std::vector<double>& values) {
     return fmt::format("{} = {:.10g} ... {:.10g}{}, {} values", of.path, values.front(), values.back(),
                        unit_behind(of, units), values.size());
