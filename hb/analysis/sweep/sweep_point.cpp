@@ -135,7 +135,7 @@ RodPoint analyse_rod(const SceneModel& model, std::size_t r, double x, double sp
     exponents.keeps_solved = options.solution != nullptr;
     exponents.one_method = is_told(options.at_boundary, r);
     if (only.all_exponents() && settings.search) {
-      point.stability = stability_sample(scaled, x, exponents);
+      point.stability = grid_sample(scaled, x, exponents);
     } else {
       point.stability.emplace();
       point.stability->x = x;

@@ -30,10 +30,11 @@ double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Str
 }  // namespace
 
 Place place_of(const StabilitySample& sample, const SystemAt& at) {
-  Place made{.sample = sample, .mean = sample.mean};
-  if (made.mean.empty()) {
-    if (const std::optional<ScaledSystem> system = at(sample.x)) made.mean = mean_exponents(*system);
+  Place made{.sample = sample};
+  if (sample.mean.empty()) {
+    if (const std::optional<ScaledSystem> system = at(sample.x)) made.sample.mean = mean_exponents(*system);
   }
+  made.mean = made.sample.mean;
   made.pair = leading_pair(sample);
   made.unstable = is_unstable(sample);
   return made;
