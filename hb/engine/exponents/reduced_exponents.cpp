@@ -1,6 +1,7 @@
 #include "hb/engine/exponents/reduced_exponents.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 
 #include "hb/engine/exponents/mathieu_determinant.hpp"
@@ -129,7 +130,7 @@ Index first_cells(const ReducedSystem& reduced, double fastest, double tolerance
 
 // Exponents with so many cells, and how much each differs from those with fewer.
 struct Cells {
-  Index count = 0;
+  TurnMaps maps;
   TurnExponents turn;
   std::vector<double> change, turned;  // the second one of the imaginary part; empty: nothing to compare with
 };
@@ -158,41 +159,60 @@ std::vector<std::size_t> compare(const Cells& coarse, Cells& fine) {
   return nearest;
 }
 
+// log of what a vector that has gone around once grows by in each of so many equal parts of the next turn.
+VectorXd growth_by_parts(const TurnMaps& maps, Index parts) {
+  const Index n = maps.num_states(), N = maps.num_cells;
+  VectorXd v = VectorXd::Ones(n), growth = VectorXd::Zero(parts);
+  for (Index i = 0; i < 2 * N; ++i) {
+    v = (maps.cells.middleCols(n * (i % N), n) * v).eval();
+    const double size = v.norm();
+    v /= size;
+    if (i >= N) growth((i - N) * parts / N) += std::log(size);
+  }
+  return growth;
+}
+
+// hb/engine/README.md (E30).
+double uncancelled_change(const TurnMaps& coarse, const TurnMaps& fine) {
+  const Index parts = std::gcd(coarse.num_cells, fine.num_cells);
+  return (growth_by_parts(fine, parts) - growth_by_parts(coarse, parts)).lpNorm<1>() / two_pi;
+}
+
 // What may be left of an exponent that still changes by so much.
 double unresolved(cplx s, double change) {
   return std::max(2 * change, std::min(4 * change, 0.5 * std::abs(s.real())));
 }
 
 // hb/engine/README.md (E17), (E18).
-TruncatedErrors errors_from(const Cells& coarse, Cells& fine, Index num_states) {
+TruncatedErrors errors_from(const Cells& coarse, Cells& fine, bool leading_only) {
   constexpr double asymptotic = 1e-3;  // larger changes do not tell how errors fall
   const std::size_t n = fine.turn.s.size();
   const std::vector<std::size_t> nearest = compare(coarse, fine);
-  const double ratio = double(coarse.count) / double(fine.count);
-  const double of_order = std::pow(ratio, 15), slower = std::pow(ratio, n > 2 ? 9 : 7.5),
-               slowest = std::pow(ratio, n > 2 ? 6 : 7.5);  // of real multipliers
+  const double ratio = double(coarse.maps.num_cells) / double(fine.maps.num_cells);
+  const double of_order = std::pow(ratio, 15), slower = std::pow(ratio, n > 2 ? 9 : 7.5);
+  const double slowest = std::pow(ratio, 6);  // of real multipliers
+  const auto real = [&](std::size_t i) { return fine.turn.s[i].imag() == 0 || fine.turn.s[i].imag() == 0.5; };
   double largest = 0;
   for (const double change : fine.change) largest = change < asymptotic ? std::max(largest, change) : largest;
+  // One mode has no others to compare with, and of leading ones alone those that would tell may be lost.
+  const bool one_mode = fine.maps.num_states() == 2;
+  const double in_parts = n > 0 && real(0) && (one_mode || leading_only)
+                              ? std::pow(ratio, 3.75) * uncancelled_change(coarse.maps, fine.maps)
+                              : 0;
   TruncatedErrors errors;
   for (std::size_t i = 0; i < n; ++i) {
     const double change = fine.change[i], rounding = fine.turn.error[i];
     // Two that agree by chance do not make up for the step before,
     double least = coarse.change.empty() ? 0 : coarse.change[nearest[i]] * of_order;
     errors.changed.push_back(std::max(change, least) + rounding);
-    // nor, with real multipliers, for others of that sign.
-    const double angle = fine.turn.s[i].imag();
-    const bool real = angle == 0 || angle == 0.5;
-    bool beside = false;
-    for (std::size_t k = 0; k < n && real; ++k)
-      if (fine.turn.s[k].imag() == angle && fine.change[k] < asymptotic) {
+    // nor, with real multipliers, for others of that sign and for parts of the turn.
+    for (std::size_t k = 0; k < n && real(i); ++k)
+      if (fine.turn.s[k].imag() == fine.turn.s[i].imag() && fine.change[k] < asymptotic)
         least = std::max(least, 2 * of_order * fine.change[k]);
-        beside = beside || k != i;
-      }
-    // One that was lost may have changed by as much as any.
-    if (real && !beside && Index(n) < num_states) least = std::max(least, 2 * of_order * largest);
+    if (i == 0 || one_mode) least = std::max(least, in_parts);
     const bool falls = change < asymptotic;
     errors.left.push_back(
-        std::max(falls ? std::min(change, (real ? slowest : slower) * largest) : unresolved(fine.turn.s[i], change),
+        std::max(falls ? std::min(change, (real(i) ? slowest : slower) * largest) : unresolved(fine.turn.s[i], change),
                  least) +
         rounding);
     errors.imaginary.push_back(
@@ -226,9 +246,10 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
   // Effect on the real part of the mean damping, which the discriminant takes as given.
   const double damping_error = m == 1 ? reduced.beta_error(0) / 2 : 0;
   for (Index cells = least; cells <= most && work(reduced, double(cells)) < most_work; cells = radau_cells(cells + 1)) {
-    const TurnMaps maps = radau_turn(reduced.alpha, reduced.beta, m, cells);
+    TurnMaps maps = radau_turn(reduced.alpha, reduced.beta, m, cells);
     if (!coarse) {
-      coarse = Cells{cells, turn_values(maps, leading_only), {}, {}};
+      TurnExponents values = turn_values(maps, leading_only);
+      coarse = Cells{std::move(maps), std::move(values), {}, {}};
       continue;
     }
     // Errors of the coefficients over a cell: h d alpha W^-1, h d beta.
@@ -236,8 +257,9 @@ Exponents propagated_exponents(const ReducedSystem& reduced, double tolerance, b
     const double h = two_pi / double(cells);
     given.bottomLeftCorner(m, m) = h * reduced.alpha_error * W.cwiseInverse().asDiagonal();
     given.bottomRightCorner(m, m) = h * reduced.beta_error;
-    Cells fine{cells, turn_exponents(maps, given, leading_only, coarse->turn.subspaces), {}, {}};
-    TruncatedErrors errors = errors_from(*coarse, fine, 2 * m);
+    TurnExponents turn = turn_exponents(maps, given, leading_only, coarse->turn.subspaces);
+    Cells fine{std::move(maps), std::move(turn), {}, {}};
+    TruncatedErrors errors = errors_from(*coarse, fine, leading_only);
     // Two that agree by chance do not make up for what one mode's cells leave at its fastest either.
     const double least = m == 1 ? oscillator_error(fastest, double(cells)) : 0;
     // The cells' length and the method's tables are rounded alike in all of them.
