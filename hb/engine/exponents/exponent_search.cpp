@@ -26,7 +26,7 @@ using Eigen::VectorXd;
 using cplx = std::complex<double>;
 
 // Above, slaving each mode on its own is tried before all are propagated.
-constexpr Index most_modes_propagated = 10;
+constexpr Index most_modes_propagated = 6;
 
 std::vector<Index> all_modes(const ScaledSystem& system) {
   std::vector<Index> all(std::size_t(system.num_modes()));
