@@ -229,6 +229,27 @@ TEST_F(Map, BoundaryPointsAreAsGoodAsAsked) {
           }
   EXPECT_GT(compared, 4u);
   refused(asked + " --boundary-tol 0.5", "--boundary-tol");
+  // Finer than its points come out: how many stay behind is counted, and the command says so.
+  const CommandResult finest = hb("map " + scene("two_oscillators") +
+                                  " --x omega=2.5:3.5:6 --y hill.damping.0.0=0.05:0.1:3 --json --boundary-tol 1e-14");
+  EXPECT_EQ(finest.status, 3);
+  const Json map = Json::parse(finest.out);
+  std::size_t behind = 0;
+  for (const Json& curve : map["boundaries"])
+    if (curve["error"] > 1e-13 * 3.5) ++behind;
+  EXPECT_GT(behind, 0u);
+  EXPECT_GT(map["boundary_points_not_reached"], 0);
+}
+
+TEST_F(Map, StatsSayWhatWasComputedAndWhatWasNot) {
+  const std::string asked = scene("two_oscillators") + " --x omega=2.5:3.5:4 --y hill.damping.0.0=0.05:0.1:3";
+  const Json whole = document(asked + " --stats"), alone = document(asked + " --stats --no-boundaries");
+  ASSERT_EQ(whole["stats"].size(), 1u);
+  EXPECT_GT(whole["stats"][0]["seconds"], 0);
+  EXPECT_EQ(whole["accuracy"]["boundaries"], whole["boundary_tolerance"]);
+  ASSERT_EQ(alone["stats"].size(), 2u);
+  EXPECT_EQ(alone["stats"][1]["skipped"], "not asked for");
+  EXPECT_FALSE(document(asked).contains("stats"));
 }
 
 TEST_F(Map, GrowthRatesAreThoseOfTheSteadyCommand) {

@@ -223,6 +223,25 @@ TEST(StabilityMap, QuadtreeHasNoWrongCellForCoupledOscillators) {
   expect_no_wrong_cell(coupled_map(0.1), spaced(1.5, 4, 97), spaced(0, 0.5, 65));
 }
 
+TEST(StabilityMap, GridsOfSeveralModesAloneAreComputedAtEveryPoint) {
+  MapOptions options;
+  options.evaluate_all = 20;
+  options.evaluate_all_alone = 2000;
+  const std::vector<double> x = spaced(1.5, 4, 49), y = spaced(0, 0.5, 33);
+  const StabilityMap with_curves = stability_map(coupled_map(0.1), x, y, options);
+  options.boundaries = false;
+  const StabilityMap alone = stability_map(coupled_map(0.1), x, y, options);
+  const auto interpolated = [](const StabilityMap& map) {
+    return std::ranges::count_if(map.points, [](const MapPoint& p) { return p.source == MapSource::interpolated; });
+  };
+  EXPECT_GT(interpolated(with_curves), 0);
+  EXPECT_EQ(interpolated(alone), 0);
+  for (std::size_t p = 0; p < alone.points.size(); ++p)
+    ASSERT_EQ(alone.points[p].verdict, with_curves.points[p].verdict) << p;
+  options.evaluate_all_alone = 1000;
+  EXPECT_GT(interpolated(stability_map(coupled_map(0.1), x, y, options)), 0);
+}
+
 // Places where a scan of one row sees the verdict change.
 std::vector<double> changes_by_scan(const MapSystemAt& at, double from, double to, double y, int n) {
   std::vector<double> places;

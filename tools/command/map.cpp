@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "lib/stopwatch.hpp"
 #include "tools/command/asked.hpp"
 #include "tools/command/command.hpp"
 #include "tools/command/delivery.hpp"
@@ -45,6 +46,13 @@ MapColour colour_flag(const std::string& text) {
   throw UsageError(fmt::format("--colour: found \"{}\", allowed: growth, turn, tenfold", text));
 }
 
+// What the map took, and what of it was not asked for.
+std::vector<Stage> stages_of(const Map& map, double seconds) {
+  std::vector<Stage> stages = {{"stability over the plane", seconds, map.evidence}};
+  if (!map.settings.boundaries) stages.push_back({"boundaries", 0, "not asked for", true});
+  return stages;
+}
+
 int run_map(const MapCommandFlags& flags) {
   const MapColour colour = colour_flag(flags.colour);
   require_linear(flags.theory, "stability without linearisation goes along one number: hb sweep --theory nonlinear");
@@ -59,10 +67,16 @@ int run_map(const MapCommandFlags& flags) {
   if (out.folder && ranks().first()) folder.emplace(*out.folder, "map", origin);
 
   std::optional<Map> map;
+  const Stopwatch watch;
   KeptRun run("map", out.folder, earlier, map_key(task), out.threads);
   if (!run.run([&](SharedWork& work) { map = task.compute(work); })) return stopped_status(out.json);
 
-  const MapDocument document = document_of(*map);
+  MapDocument document = document_of(*map);
+  const std::vector<Stage> stages = stages_of(*map, watch.seconds());
+  if (out.stats) {
+    document.settings = &task.settings();
+    document.stages = stages;
+  }
   Delivery delivery;
   const LongText text = [&](const TextSink& sink) { write_map(document, sink, out.threads); };
   if (out.json)
@@ -84,9 +98,7 @@ int run_map(const MapCommandFlags& flags) {
   const bool reached = flags.map.boundary_tolerance.empty() || boundary_points_not_reached(*map) == 0;
   const int status = deliver(folder ? &*folder : nullptr, out.pictures,
                              ended_status(document.complete && reached ? exit_ok : exit_not_reached), delivery);
-  if (out.stats && !out.json)
-    fmt::print(stderr, "\n  {}{}\n{}", map->evidence,
-               flags.map.no_boundaries ? "; boundaries skipped: not asked for" : "", accuracy_table(task.settings()));
+  if (out.stats && !out.json) fmt::print(stderr, "\n{}{}", stages_table(stages), accuracy_table(task.settings()));
   return status;
 }
 

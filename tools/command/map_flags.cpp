@@ -122,7 +122,8 @@ MapRequest asked_map(const CommonFlags& flags, const MapFlags& map, const SceneI
   require_different(flags, input.source, request.x, request.y);
   const Scene scene = readable_scene(input.source, set, request.x, request.y);
   static_cast<Request&>(request) = asked_request(flags, scene);
-  if (!request.only.stability) throw UsageError(fmt::format("--only: found \"{}\", allowed: stability", flags.only));
+  if (!request.only.stability)
+    throw UsageError(fmt::format("--only: found \"{}\", allowed: with stability, growth or verdict", flags.only));
   if (!is_speed(request.x.path) && !is_speed(request.y.path)) set_speed(request, first_speed(flags, scene));
   request.boundaries = !map.no_boundaries;
   request.stress = map.stress;

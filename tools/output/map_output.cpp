@@ -77,7 +77,7 @@ std::string comment_line(const MapDocument& document, const std::string& what) {
 }
 
 struct NodeCounts {
-  std::size_t stable = 0, bounded = 0, undecided = 0, unstable = 0, missing = 0, interpolated = 0;
+  std::size_t stable = 0, bounded = 0, undecided = 0, unstable = 0, missing = 0, interpolated = 0, without_error = 0;
 
   std::size_t& of(Verdict verdict) {
     switch (verdict) {
@@ -103,17 +103,18 @@ NodeCounts counts(const std::vector<MapPoint>& points) {
     }
     ++n.of(p.verdict);
     n.interpolated += p.source == MapSource::interpolated;
+    n.without_error += p.source == MapSource::interpolated && std::isnan(p.growth_error);
   }
   return n;
 }
 
 // What is not all that a map can be.
-std::vector<std::string> map_notes(const MapDocument& document) {
+std::vector<std::string> map_notes(const MapDocument& document, const NodeCounts& n) {
   std::vector<std::string> notes;
   if (!document.complete)
-    notes.push_back(
-        "ended before the answer was complete: points without an answer were not computed, and boundaries may "
-        "be missing");
+    notes.push_back(std::string("ended before the answer was complete: ") +
+                    (n.missing > 0 ? "points without an answer were not computed, and " : "") +
+                    "boundaries may be missing");
   const MapResult& r = document.result;
   std::size_t pieces = 0;
   for (const StabilityMap& map : r.maps) pieces += map.not_excluded.size();
@@ -122,6 +123,10 @@ std::vector<std::string> map_notes(const MapDocument& document) {
         "narrow bands or gaps are not excluded on {} of the lines between neighbouring points (not_excluded "
         "in the JSON)",
         pieces));
+  if (n.without_error > 0)
+    notes.push_back(
+        fmt::format("growth at {} points is bilinear between computed ones of the same verdict, without an error",
+                    n.without_error));
   const std::size_t missed = boundary_points_not_reached(r);
   if (missed == 0) return notes;
   double worst = 0;
@@ -178,7 +183,7 @@ void write_map(const MapDocument& document, const TextSink& sink, int num_thread
   Members json;
   json.add("title", document.scene.title);
   json.add("status", document.complete ? "reached" : "tolerance not reached");
-  if (const std::vector<std::string> notes = map_notes(document); !notes.empty()) json.add("notes", notes);
+  if (const std::vector<std::string> notes = map_notes(document, n); !notes.empty()) json.add("notes", notes);
   if (const std::vector<std::string> warnings = map_warnings(document); !warnings.empty())
     json.add("warnings", warnings);
   json.add("x", axis_json(r.x_axis, r.x()));
@@ -235,6 +240,11 @@ void write_map(const MapDocument& document, const TextSink& sink, int num_thread
     none.push_back({{"count", m.count}, {"x", m.x}, {"y", m.y}, {"reason", m.message}});
   json.add("missing", std::move(none));
   json.add("units", units_json(document.scene.units));
+  if (document.settings) {
+    Json stats = Json::object();
+    add_stats(stats, document.stages, *document.settings);
+    for (auto& [key, value] : stats.items()) json.add(key, std::move(value));
+  }
   TextPieces pieces(sink, num_threads);
   json.write(pieces);
   pieces.add("\n");
@@ -460,7 +470,7 @@ std::string map_summary(const MapDocument& document) {
                         place_words(document, m.x, m.y), m.message);
   }
   text += map_theory_rows(document) + loads_rows(document);
-  for (const std::string& note : map_notes(document))
+  for (const std::string& note : map_notes(document, n))
     text += fmt::format("  {}: {}\n", document.complete ? "NOTE" : "NOT REACHED", note);
   text += boundary_rows(document);
   for (const std::string& warning : map_warnings(document))

@@ -19,6 +19,8 @@ struct MapDocument {
   bool boundaries = true;  // they were asked for
   bool complete = true;  // false: ended early
   std::vector<std::string> warnings = {};
+  const Settings* settings = nullptr;  // with them what was computed, and how long that took
+  std::vector<Stage> stages = {};
 };
 // "rpm = 3000, AB.J = 40 mm^4"
 [[nodiscard]] std::string place_words(const MapDocument& document, double x, double y);

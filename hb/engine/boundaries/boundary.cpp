@@ -13,9 +13,6 @@ namespace hb {
 
 namespace {
 
-// What is promised of a boundary, relative; the bracket goes below it.
-constexpr double boundary_tolerance = 1e-10;
-
 // Of both lists; null if there is none.
 const Exponent* leading_exponent(const Stability& stability) {
   const Exponent* leading = nullptr;
@@ -74,9 +71,9 @@ class Location {
     whole_ = b.x - a.x;
     const double size = std::max(std::abs(low_), std::abs(high_));
     wanted_ = options.tolerance * size;
-    promised_ = std::max(boundary_tolerance, options.tolerance) * size;
+    promised_ = std::max(promised_of_boundaries, options.tolerance) * size;
     // The boundary is no better known than the growth rate; where its sign decides its verdict may stay open.
-    sharp_.tolerance = std::min(sharp_.tolerance, 0.1 * boundary_tolerance);
+    sharp_.tolerance = std::min(sharp_.tolerance, 0.1 * promised_of_boundaries);
     sharp_.growth_suffices = by_sign_;
     constexpr double rough = 1e-9;
     rough_.tolerance = std::max(rough_.tolerance, rough);
@@ -306,7 +303,8 @@ class Location {
     const bool known = slope() > 0;
     if (by_sign_ && known) found_.boundary.error += std::min(growth_error_ / slope(), certain_high_ - certain_low_);
     if (!by_sign_) found_.boundary.error += std::isnan(settled_) ? whole_ : beyond_growth();
-    found_.boundary.converged = found_.boundary.error <= boundary_tolerance * std::max(std::abs(low_), std::abs(high_));
+    found_.boundary.converged =
+        found_.boundary.error <= promised_of_boundaries * std::max(std::abs(low_), std::abs(high_));
   }
 
   const SystemAt& at_;

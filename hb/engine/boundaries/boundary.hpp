@@ -20,12 +20,15 @@ enum class BoundaryKind { plus_one, minus_one, complex };
 [[nodiscard]] BoundaryKind boundary_kind(const Stability& stability, double speed);
 [[nodiscard]] const char* to_string(BoundaryKind kind);  // "+1", "-1", "complex"
 
+// Relative error that a boundary is located to where no other is asked for; the bracket goes below it.
+constexpr double promised_of_boundaries = 1e-10;
+
 struct StabilityBoundary {
   double x = 0;
   double error = 0;  // half of the bracket that is left, and what the growth rate's error bound moves
   BoundaryKind kind = BoundaryKind::complex;
   bool unstable_above = false;
-  bool converged = false;  // error within 1e-10 of x
+  bool converged = false;  // error within promised_of_boundaries of x
 };
 
 // Where the verdict changes between a and b, one of which is unstable: ITP bracketing on the growth rate.

@@ -135,10 +135,11 @@ class MapSearch {
     return static_cast<double>(keys.size());
   }
 
-  // Error within ten times what was asked, or within what searches promise.
+  // Error within ten times what was asked, or, where that is no less, within what searches promise.
   bool reached(const CurvePoint& point) const {
-    return point.converged || point.place.error <= 10 * options_.search.tolerance *
-                                                       std::abs(point.place.along_x ? point.place.x : point.place.y);
+    const double within = 10 * options_.search.tolerance,
+                 size = std::abs(point.place.along_x ? point.place.x : point.place.y);
+    return point.place.error <= within * size || (point.converged && within >= 0.9 * promised_of_boundaries);
   }
 
   // --- One mode: the surface of its discriminant ---
@@ -519,9 +520,26 @@ class MapSearch {
 
 }  // namespace
 
+namespace {
+
+// Between points of one mode the discriminant tells; of several, looking there costs as much as some 100 000 points.
+bool evaluates_all(const MapSystemAt& system, const std::vector<double>& x, const std::vector<double>& y,
+                   const MapOptions& options) {
+  const std::size_t count = x.size() * y.size();
+  if (options.curves_only || count > std::max(options.evaluate_all, options.evaluate_all_alone)) return false;
+  if (count <= options.evaluate_all) return true;
+  if (options.boundaries) return false;
+  for (const double u : {x.front(), x.back()})
+    for (const double v : {y.front(), y.back()})
+      if (const std::optional<ScaledSystem> corner = system(u, v)) return corner->num_modes() > 1;
+  return false;
+}
+
+}  // namespace
+
 StabilityMapSearch stability_map_search(const MapSystemAt& system, std::vector<double> x, std::vector<double> y,
                                         const MapOptions& options) {
-  const bool every_value = !options.curves_only && x.size() * y.size() <= options.evaluate_all;
+  const bool every_value = evaluates_all(system, x, y, options);
   MapAxis along_x = make_map_axis(std::move(x), every_value, "x"),
           along_y = make_map_axis(std::move(y), every_value, "y");
   // Nothing between the places that were given where every one is evaluated and no curve is asked for.

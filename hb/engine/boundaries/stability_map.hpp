@@ -20,6 +20,7 @@ namespace hb {
 struct MapOptions {
   SweepOptions search;  // of the boundary along an edge; its stability options hold at the nodes too
   std::size_t evaluate_all = 40000;  // grids of at most so many points have exponents computed at every point
+  std::size_t evaluate_all_alone = 160000;  // of several modes, where no curve is asked for
   double sag = 5e-4;  // of a boundary's chord, relative to the map's width and height
   bool boundaries = true;  // false: the grid alone
   bool verdict_only = false;  // of a grid without boundaries: growth where no bound proves stability

@@ -162,7 +162,6 @@ std::optional<std::vector<SurfaceZero>> surface_zeros(const DiscriminantSurface&
 
 std::optional<StabilityBoundary> boundary_at(const DiscriminantSurface& surface, const SystemAt& along,
                                              const MapLine& line, const SurfaceZero& zero, double tolerance) {
-  constexpr double promised = 1e-10;
   constexpr int most_tries = 8;
   const double size = std::max(std::abs(line.low), std::abs(line.high)), wanted = tolerance * size;
   double place = zero.place, slope = zero.slope, half = wanted;
@@ -187,7 +186,7 @@ std::optional<StabilityBoundary> boundary_at(const DiscriminantSurface& surface,
       boundary.error = std::max(right - boundary.x, boundary.x - left);
       boundary.kind = surface.kind(zero.positive);
       boundary.unstable_above = slope > 0;
-      boundary.converged = boundary.error <= promised * size;
+      boundary.converged = boundary.error <= promised_of_boundaries * size;
       return boundary;
     }
     if (b->h != a->h) {
