@@ -362,6 +362,22 @@ TEST_F(Sweep, WritesTablesAndPictures) {
   EXPECT_EQ(num_entries(folder_), 1u);
 }
 
+TEST_F(Sweep, OfWhatWasNotLookedForThereAreNoFiles) {
+  const std::string sweep = "sweep " + scene("slider_crank") + " --rpm 2000:6000:1000 --modes 2 --no-plots ";
+  ASSERT_EQ(hb(sweep + "--only verdict --out verdict").status, 0);
+  ASSERT_EQ(hb(sweep + "--only stability --out bands").status, 0);
+  for (const char* name : {"unstable_bands.csv", "not_excluded.csv"}) {
+    EXPECT_FALSE(fs::exists(folder_ / "verdict" / name)) << name;
+    EXPECT_TRUE(fs::exists(folder_ / "bands" / name)) << name;
+  }
+  const std::string bound = "a closed-form bound";
+  EXPECT_NE(read(folder_ / "verdict/sweep_rod.csv").find(bound), std::string::npos);
+  EXPECT_EQ(read(folder_ / "bands/sweep_rod.csv").find(bound), std::string::npos);
+  const std::string map = "map " + scene("mathieu") + " --x omega=1.5:3:4 --y hill.damping.0.0=0.1:0.2:3 --no-plots ";
+  ASSERT_EQ(hb(map + "--no-boundaries --out grid").status, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "grid/map_boundaries.csv"));
+}
+
 // Beside the end of a band the linear response was 1e14 mm, and the axis began at 100 mm: nothing else was in the
 // picture.
 TEST_F(Sweep, PicturesShowResponsesThatCanBe) {

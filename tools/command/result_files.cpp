@@ -25,10 +25,12 @@ std::vector<Figure> sweep_files(const SweepScene& scene, const SweepResult& resu
   const CsvFile critical = critical_csv(scene, result);
   if (only.steady) folder.write(critical.name, csv_text(critical));
   if (only.stability) {
-    const CsvFile bands = bands_csv(scene, result);
-    folder.write(bands.name, csv_text(bands));
-    const CsvFile not_excluded = not_excluded_csv(scene, result);
-    folder.write(not_excluded.name, csv_text(not_excluded));
+    if (result.searched_bands) {
+      const CsvFile bands = bands_csv(scene, result);
+      folder.write(bands.name, csv_text(bands));
+      const CsvFile not_excluded = not_excluded_csv(scene, result);
+      folder.write(not_excluded.name, csv_text(not_excluded));
+    }
     const CsvFile verdicts = sweep_verdict_csv(scene, result);
     folder.write(verdicts.name, csv_text(verdicts));
     figures.push_back(sweep_verdict_figure(scene, result, verdicts));
@@ -86,9 +88,10 @@ std::vector<Figure> map_files(const MapDocument& document, MapColour colour, Out
   MapFiles files;
   files.grid = "map_grid.csv";
   folder.write_long(files.grid, [&](const TextSink& sink) { write_map_grid(document, sink); });
-  files.boundaries = write(
-      map_boundary_csv(document, result.boundaries, "map_boundaries.csv", "boundaries of stability of the worst rod"));
-  for (std::size_t r = 0; r < result.rods.size() && result.rods.size() > 1; ++r) {
+  if (document.boundaries)
+    files.boundaries = write(map_boundary_csv(document, result.boundaries, "map_boundaries.csv",
+                                              "boundaries of stability of the worst rod"));
+  for (std::size_t r = 0; r < result.rods.size() && result.rods.size() > 1 && document.boundaries; ++r) {
     std::vector<RodCurve> own;
     for (const BoundaryCurve& curve : result.maps[r].boundaries) own.push_back({r, curve});
     write(map_boundary_csv(document, own, file_name("map_boundaries_" + result.rods[r]) + ".csv",

@@ -173,7 +173,14 @@ double tenfold_time(const MapPoint& point) {
 }
 
 MapDocument document_of(const Map& map) {
-  return {map, map.scene, map.num_modes, map.boundary_tolerance, map.settings.boundaries, map.complete, map.warnings};
+  return {map,
+          map.scene,
+          map.num_modes,
+          map.boundary_tolerance,
+          map.settings.boundaries,
+          map.complete,
+          map.warnings,
+          map.settings.only.verdict};
 }
 
 void write_map(const MapDocument& document, const TextSink& sink, int num_threads) {
@@ -269,6 +276,7 @@ CsvFile map_grid_file(const MapDocument& document) {
   file.name = "map_grid.csv";
   file.comment = {comment_line(document, "growth rate, largest over the rods"),
                   std::string(verdict_numbers) + "; interpolated 1: inside a cell of one verdict; nan: no system"};
+  if (document.bounds) file.comment.push_back(bounds_among_growth);
   file.columns = {
       r.x_axis.path, r.y_axis.path, "growth [1/" + time + "]", "growth per turn", "tenfold time [" + time + "]",
       "verdict",     "interpolated"};

@@ -19,6 +19,7 @@ struct MapDocument {
   bool boundaries = true;  // they were asked for
   bool complete = true;  // false: ended early
   std::vector<std::string> warnings = {};
+  bool bounds = false;  // growth rates are upper bounds where these prove stability
   const Settings* settings = nullptr;  // with them what was computed, and how long that took
   std::vector<Stage> stages = {};
 };

@@ -90,7 +90,9 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   CsvFile file;
   file.name = file_name("sweep_" + rod.name) + ".csv";
   file.comment = {about(scene, rod.name + " along " + scene.axis().path),
-                  "points asked for and, between them, resonance peaks with their flanks and stability boundaries"};
+                  result.searched_bands || result.searched_peaks
+                      ? "points asked for and, between them, resonance peaks with their flanks and stability boundaries"
+                      : "points asked for"};
   file.columns = {axis_label(scene), "asked for"};
   if (only.steady) {
     for (int i = 1; i <= I; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));
@@ -114,6 +116,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
     file.columns.insert(file.columns.end(),
                         {"growth rate" + bracketed(units.rate), "growth error" + bracketed(units.rate), "verdict"});
     file.comment.push_back(std::string(verdict_numbers) + "; per mode frequency (unfolded) and growth rate");
+    if (only.verdict) file.comment.push_back(bounds_among_growth);
     for (int i = 1; i <= I; ++i) {
       file.columns.push_back(fmt::format("frequency of mode {} [{}]", i, frequency.name));
       file.columns.push_back(fmt::format("growth of mode {}{}", i, bracketed(units.rate)));

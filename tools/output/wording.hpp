@@ -19,6 +19,8 @@ namespace hb::tools {
 // In tables of numbers: 1 unstable, 0 undecided, -1 stable, -2 bounded.
 [[nodiscard]] int verdict_number(Verdict verdict);
 inline constexpr const char* verdict_numbers = "verdict: 1 unstable, 0 undecided, -1 stable, -2 bounded";
+inline constexpr const char* bounds_among_growth =
+    "growth: where a closed-form bound proves stability that bound, its error the width of what it leaves";
 // The growth rate with its error, both halves apart where they differ much: "115.02 +4.9e+03 -3.1e-01"; of
 // closed-form bounds "between -16.4 and -11.2".
 [[nodiscard]] std::string growth_text(const Stability& stability, const std::string& unit);

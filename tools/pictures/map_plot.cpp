@@ -69,9 +69,10 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   }
   ColourScale result;
   result.value = per_turn ? "$4" : "$3";
-  result.label = per_turn                            ? "growth exponent per turn"
-                 : colour == MapColour::tenfold_time ? "time to grow (above 0) or to fall tenfold [" + time + "]"
-                                                     : "growth rate [1/" + time + "]";
+  result.label = per_turn ? "growth exponent per turn"
+                 : colour == MapColour::tenfold_time
+                     ? "time to grow (above 0) or to fall tenfold [" + time + "]"
+                     : (document.bounds ? "growth rate, or a bound above it [1/" : "growth rate [1/") + time + "]";
   if (sizes.empty()) return result;
   std::sort(sizes.begin(), sizes.end());
   result.largest = sizes.back() > 0 ? sizes.back() : 1;

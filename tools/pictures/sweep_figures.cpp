@@ -292,7 +292,9 @@ Figure growth_figure(const SweepScene& scene, const SweepResult& result, std::si
   figure.name = figure_name("growth", rod.name);
   std::string& text = figure.commands;
   text += frame_title(scene, result, r,
-                      "growth rate of disturbances: below zero they die out" + frame_shaded_note(result, r) +
+                      std::string(result.computed.verdict ? "growth rate of disturbances, or a bound above it"
+                                                          : "growth rate of disturbances") +
+                          ": below zero they die out" + frame_shaded_note(result, r) +
                           measured.note({"growth rate " + rod.name}) + frame_beyond_note(csv, columns)) +
           frame_axis(scene) + frame_shaded(result, r);
   // Around the leading rate: modes that decay far faster would hide it.
