@@ -87,6 +87,14 @@ class SweepRun {
         [&](std::size_t k) { return work_.ends_early() ? left_out(values_[k]) : family.at(k); },
         [](auto& visit, SweepPoint& point) { visit_point(visit, point); }, "point", searching(), family.block_size());
     result_.stages.push_back({"points", watch.seconds(), fmt::format("{} points", values_.size())});
+    const bool linkage = std::holds_alternative<Linkage>(scene_.scene().model);
+    for (const auto& [what, asked] : {std::pair("steady states", only_.response()),
+                                      {"shapes", only_.shape || !linkage},
+                                      {"joint forces", only_.reactions || !linkage},
+                                      {"stability", only_.stability},
+                                      {"further exponents", only_.all_exponents() || !only_.stability},
+                                      {"theory errors", only_.response() || !linkage}})
+      if (!asked) result_.stages.push_back({what, 0, "not asked for", true});
   }
 
   // What will follow the points, in times that a point takes: a tenth of that was measured where points are dear, twice
@@ -232,7 +240,7 @@ class SweepRun {
     std::ranges::stable_sort(result_.critical, [](const CriticalPoint& a, const CriticalPoint& b) {
       return a.rod != b.rod ? a.rod < b.rod : a.peak.x < b.peak.x;
     });
-    if (only_.steady && !result_.searched_peaks)
+    if (!(only_.steady && result_.searched_peaks))
       result_.stages.push_back({"resonance peaks", 0, "not asked for", true});
     else
       result_.stages.push_back(

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 
 #include "hb/engine/exponents/stability.hpp"
 #include "lib/rod/rod.hpp"
@@ -360,6 +361,21 @@ TEST_F(Sweep, WritesTablesAndPictures) {
     EXPECT_TRUE(fs::is_regular_file(folder_ / "out" / name)) << name;
   }
   EXPECT_EQ(num_entries(folder_), 1u);
+}
+
+TEST_F(Sweep, StatsSayWhatWasNotAskedFor) {
+  const auto skipped = [&](const std::string& only) {
+    std::set<std::string> stages;
+    const Json found = document(scene("slider_crank") + " --rpm 2000:3000:500 --modes 2 --stats " + only);
+    for (const Json& stage : found["stats"])
+      if (stage.contains("skipped")) stages.insert(stage["stage"].get<std::string>());
+    return stages;
+  };
+  EXPECT_TRUE(skipped("").empty());
+  EXPECT_EQ(skipped("--only growth"),
+            (std::set<std::string>{"steady states", "shapes", "joint forces", "further exponents", "theory errors",
+                                   "narrow bands and peaks", "resonance peaks"}));
+  EXPECT_EQ(skipped("--only steady"), (std::set<std::string>{"shapes", "joint forces", "stability"}));
 }
 
 TEST_F(Sweep, OfWhatWasNotLookedForThereAreNoFiles) {
