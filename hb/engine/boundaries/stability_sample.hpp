@@ -28,7 +28,8 @@ using SystemAt = std::function<std::optional<ScaledSystem>(double x)>;
 [[nodiscard]] StabilitySample stability_sample(const ScaledSystem& system, double x, const StabilityOptions& options);
 [[nodiscard]] std::optional<StabilitySample> stability_sample(const SystemAt& at, double x,
                                                               const StabilityOptions& options);
-// With mean exponents only where the bound proves no decay: elsewhere a search of the intervals beside seldom goes so far.
+// With mean exponents only where the bound proves no decay: elsewhere a search of the intervals beside seldom goes so
+// far.
 [[nodiscard]] StabilitySample grid_sample(const ScaledSystem& system, double x, const StabilityOptions& options);
 
 [[nodiscard]] inline bool is_unstable(const StabilitySample& sample) {
