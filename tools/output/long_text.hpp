@@ -45,7 +45,7 @@ class TextPieces {
   // place it is given and returns their end. All threads write, some rows each.
   template <class Write>
   void add_rows(std::size_t count, std::size_t most, const Write& write) {
-    constexpr std::size_t characters = std::size_t{1} << 20, per_thread = 8;
+    constexpr std::size_t characters = std::size_t{1} << 20, most_blocks = 8;  // of each thread
     const std::size_t rows = std::max<std::size_t>(1, characters / most);
     if (num_threads_ <= 1 || count <= rows) {
       for (std::size_t first = 0; first < count; first += rows) {
@@ -58,6 +58,7 @@ class TextPieces {
       std::unique_ptr<char[]> text;
       std::size_t size = 0;
     };
+    const std::size_t per_thread = std::clamp<std::size_t>(most_blocks * characters / (rows * most), 1, most_blocks);
     std::vector<Block> blocks(per_thread * static_cast<std::size_t>(num_threads_));
     for (std::size_t done = 0; done < count; done += rows * blocks.size()) {
       const std::size_t ready = std::min(blocks.size(), (count - done + rows - 1) / rows);
