@@ -15,7 +15,7 @@ SIX, MATHIEU = "results/six_link/scene.toml", "results/mathieu/scene.toml"
 SWEEP = f"sweep {SIX} --json --no-plots"
 PLANE = f"map {MATHIEU} --x omega=0.5:3:{{0}} --y hill.stiffness.1.cos.0.0=0.05:1:{{0}} --json"
 ONE_MODE = f"map {SIX} --x rpm=300:3000:{{0}} --y *.J=30:100:{{0}} --modes 1 --json"
-FIVE_MODES = f"map {SIX} --x rpm=200:3000:{{0}} --y AB.J=20:90:{{0}} --json"
+PLANE_OF_RODS = f"map {SIX} --x rpm=200:3000:{{0}} --y AB.J=20:90:{{0}} --json"
 
 POINTS_ALONE = "--only steady,stability --no-search"
 
@@ -27,16 +27,20 @@ ONE_THREAD = (
     *(("speeds, growth rate alone", n, n, f"{SWEEP} --rpm 200:1500:x{n} --only growth") for n in (10, 100, 1000, 10000)),
     *(("speeds, Mathieu", n, n, f"sweep {MATHIEU} --omega 0.5:3:x{n} --json {POINTS_ALONE}") for n in (100, 1000, 10000, 100000)),
     *(("points, Mathieu", n * n, n * n, PLANE.format(n)) for n in (32, 100, 316, 1000, 2000)),
-    *(("points, one mode", n * n, n * n, ONE_MODE.format(n)) for n in (32, 100, 316)),
-    *(("points, five modes, without boundaries", n * n, n * n, FIVE_MODES.format(n) + " --no-boundaries") for n in (10, 20, 40, 80)),
+    *(("points, one mode", n * n, n * n, ONE_MODE.format(n)) for n in (32, 100, 316, 1000)),
+    *(("points, five modes, without boundaries", n * n, n * n, PLANE_OF_RODS.format(n) + " --no-boundaries") for n in (10, 20, 40, 80)),
+    *(("points, ten modes, without boundaries", n * n, n * n, PLANE_OF_RODS.format(n) + " --modes 10 --no-boundaries") for n in (10, 20, 40)),
 )
 # By the clock.
 TOGETHER = (
     ("sweep", 131, f"{SWEEP} --rpm 200:1500:10"),
     ("sweep, growth rate alone", 2000, f"{SWEEP} --rpm 200:1500:x2000 --only growth"),
     ("map, Mathieu", 160000, PLANE.format(400)),
+    ("map, Mathieu, large", 1000000, PLANE.format(1000)),
     ("map, one mode", 10000, ONE_MODE.format(100)),
-    ("map, five modes, without boundaries", 1600, FIVE_MODES.format(40) + " --no-boundaries"),
+    ("map, one mode, large", 1000000, ONE_MODE.format(1000)),
+    ("map, five modes, without boundaries", 1600, PLANE_OF_RODS.format(40) + " --no-boundaries"),
+    ("map, five modes", 400, PLANE_OF_RODS.format(20)),
 )
 FIRST = ["chrt", "--rr", "1"]
 
