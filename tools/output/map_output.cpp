@@ -111,10 +111,13 @@ NodeCounts counts(const std::vector<MapPoint>& points) {
 // What is not all that a map can be.
 std::vector<std::string> map_notes(const MapDocument& document, const NodeCounts& n) {
   std::vector<std::string> notes;
-  if (!document.complete)
-    notes.push_back(std::string("ended before the answer was complete: ") +
-                    (n.missing > 0 ? "points without an answer were not computed, and " : "") +
-                    "boundaries may be missing");
+  if (!document.complete) {
+    std::vector<const char*> lacking;
+    if (n.missing > 0) lacking.push_back("points without an answer were not computed");
+    if (document.boundaries) lacking.push_back("boundaries may be missing");
+    notes.push_back(fmt::format("ended before the answer was complete{}{}", lacking.empty() ? "" : ": ",
+                                fmt::join(lacking, ", and ")));
+  }
   const MapResult& r = document.result;
   std::size_t pieces = 0;
   for (const StabilityMap& map : r.maps) pieces += map.not_excluded.size();

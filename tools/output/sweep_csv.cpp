@@ -55,6 +55,15 @@ void fill_rod_point(Eigen::MatrixXd::RowXpr row, const SweepScene& scene, const 
   }
 }
 
+// Which points a table has, as it was asked.
+std::string points_words(const SweepResult& result) {
+  const bool peaks = result.computed.steady && result.searched_peaks,
+             boundaries = result.computed.stability && result.searched_bands;
+  return std::string("points asked for") + (peaks || boundaries ? " and, between them, " : "") +
+         (peaks ? "resonance peaks with their flanks" : "") + (peaks && boundaries ? " and " : "") +
+         (boundaries ? "stability boundaries" : "");
+}
+
 }  // namespace
 
 SweepColumns sweep_columns(const SweepScene& scene, const SweepResult& result, std::size_t rod) {
@@ -89,10 +98,7 @@ CsvFile sweep_rod_csv(const SweepScene& scene, const SweepResult& result, std::s
   const std::vector<const SweepPoint*> points = all_points(result);
   CsvFile file;
   file.name = file_name("sweep_" + rod.name) + ".csv";
-  file.comment = {about(scene, rod.name + " along " + scene.axis().path),
-                  result.searched_bands || result.searched_peaks
-                      ? "points asked for and, between them, resonance peaks with their flanks and stability boundaries"
-                      : "points asked for"};
+  file.comment = {about(scene, rod.name + " along " + scene.axis().path), points_words(result)};
   file.columns = {axis_label(scene), "asked for"};
   if (only.steady) {
     for (int i = 1; i <= I; ++i) file.columns.push_back(fmt::format("max |q_{}|{}", i, bracketed(units.response)));

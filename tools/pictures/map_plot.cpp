@@ -69,10 +69,9 @@ ColourScale colour_scale(const MapDocument& document, MapColour colour) {
   }
   ColourScale result;
   result.value = per_turn ? "$4" : "$3";
-  result.label = per_turn ? "growth exponent per turn"
-                 : colour == MapColour::tenfold_time
-                     ? "time to grow (above 0) or to fall tenfold [" + time + "]"
-                     : (document.bounds ? "growth rate, or a bound above it [1/" : "growth rate [1/") + time + "]";
+  result.label = per_turn                            ? "growth exponent per turn"
+                 : colour == MapColour::tenfold_time ? "time to grow (above 0) or to fall tenfold [" + time + "]"
+                                                     : "growth rate [1/" + time + "]";
   if (sizes.empty()) return result;
   std::sort(sizes.begin(), sizes.end());
   result.largest = sizes.back() > 0 ? sizes.back() : 1;
@@ -245,7 +244,8 @@ Figure map_figure(const MapDocument& document, const MapFiles& files, MapColour 
       "{}set key at screen 0.5, screen 0.015 center bottom vertical maxrows 3 Left reverse "
       "samplen 3 width -4 font ',12'\n"
       "set style textbox opaque noborder fillcolor '#f7f7f7' margins 0.4,0.3\n{}",
-      literal(short_name(document.scene) + ", " + map_verdict(document)), quoted(map_theory_caption(document, rods)),
+      literal(short_name(document.scene) + ", " + map_verdict(document)),
+      quoted(map_theory_caption(document, rods) + (document.bounds ? "; growth, or a bound above it" : "")),
       map_axes(document), quoted(c.label), bar.settings, map_frame, line_labels(r));
   if (some_missing) {
     figure.commands +=

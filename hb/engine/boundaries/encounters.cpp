@@ -17,13 +17,13 @@ struct MeanGrowth {
 };
 
 std::vector<MeanGrowth> growth_at(const Place& place) {
-  std::vector<MeanGrowth> growth(place.mean.size());
+  std::vector<MeanGrowth> growth(place.mean().size());
   for (std::size_t k = 0; k < place.strands().all.size(); ++k) {
     const Strand& strand = place.strands().all[k];
     const double s = strand.s.real(), alone = growth_by_itself(place.strands(), k);
     for (const std::size_t n : strand.mean) {
       MeanGrowth& of = growth[n];
-      const bool drifts = place.mean[n].drift > 0;
+      const bool drifts = place.mean()[n].drift > 0;
       if (n != strand.mean.front() && !drifts) continue;
       of.high = std::max(of.high, s);
       of.low = !drifts ? of.high : std::isinf(of.low) ? alone : std::min(of.low, alone);
@@ -41,7 +41,7 @@ std::vector<double> highest_by_mean(const Place& p, const std::vector<MeanGrowth
   for (std::size_t k = 0; k < growth.size(); ++k) {
     growth[k] = std::max(at_p[k].high, at_q[k].high);
     if (std::isinf(growth[k]) && !p.unstable)
-      growth[k] = std::max(p.mean[k].value.real() + p.mean[k].drift, q.mean[k].value.real() + q.mean[k].drift);
+      growth[k] = std::max(p.mean()[k].value.real() + p.mean()[k].drift, q.mean()[k].value.real() + q.mean()[k].drift);
   }
   return growth;
 }
@@ -89,32 +89,32 @@ std::optional<Approach> approach(const Strands& p, const Strands& q, const std::
 }  // namespace
 
 bool Encounters::resolved(const Place& p, const Place& q, double most) const {
-  if (p.mean.size() != q.mean.size()) return true;
-  const std::size_t n = p.mean.size();
+  if (p.mean().size() != q.mean().size()) return true;
+  const std::size_t n = p.mean().size();
   const std::vector<MeanGrowth> growth_p = growth_at(p), growth_q = growth_at(q);
   const std::vector<double> growth = highest_by_mean(p, growth_p, q, growth_q);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = i + 1; j < n; ++j) {
-      const double at_p = p.mean[j].value.imag() - p.mean[i].value.imag();
-      const double at_q = q.mean[j].value.imag() - q.mean[i].value.imag();
+      const double at_p = p.mean()[j].value.imag() - p.mean()[i].value.imag();
+      const double at_q = q.mean()[j].value.imag() - q.mean()[i].value.imag();
       if (!(std::abs(at_p - at_q) > most)) continue;
       const double larger = std::max(growth[i], growth[j]), smaller = std::min(growth[i], growth[j]);
       if (p.unstable && (larger < coupling_.least_growth() ||
                          grow_together(growth_p[i].low + growth_p[j].low, growth_q[i].low + growth_q[j].low)))
         continue;
-      const bool drifts = std::max(p.mean[i].drift, p.mean[j].drift) > 0;
+      const bool drifts = std::max(p.mean()[i].drift, p.mean()[j].drift) > 0;
       const double needed = !p.unstable ? coupling_.needed(larger, smaller)
                                         : std::min(quenching_coupling(growth_p, i, j, larger, smaller, drifts),
                                                    quenching_coupling(growth_q, i, j, larger, smaller, drifts));
-      if (std::max(std::min(p.mean[i].coupling, p.mean[j].coupling), std::min(q.mean[i].coupling, q.mean[j].coupling)) <
-          needed)
+      if (std::max(std::min(p.mean()[i].coupling, p.mean()[j].coupling),
+                   std::min(q.mean()[i].coupling, q.mean()[j].coupling)) < needed)
         continue;
       const ParametricCoupling *of_p = coupling_.of(p), *of_q = coupling_.of(q);
       if (of_p == nullptr || of_q == nullptr) return false;
-      const double shift =
-          0.5 + std::max(most_shift(p.mean[i]) + most_shift(p.mean[j]), most_shift(q.mean[i]) + most_shift(q.mean[j]));
-      const double low = std::min(order(p.mean[i], p.mean[j]), order(q.mean[i], q.mean[j])) - shift,
-                   high = std::max(order(p.mean[i], p.mean[j]), order(q.mean[i], q.mean[j])) + shift;
+      const double shift = 0.5 + std::max(most_shift(p.mean()[i]) + most_shift(p.mean()[j]),
+                                          most_shift(q.mean()[i]) + most_shift(q.mean()[j]));
+      const double low = std::min(order(p.mean()[i], p.mean()[j]), order(q.mean()[i], q.mean()[j])) - shift,
+                   high = std::max(order(p.mean()[i], p.mean()[j]), order(q.mean()[i], q.mean()[j])) + shift;
       const int first = std::max(1, static_cast<int>(std::ceil(low)));
       const int last = static_cast<int>(std::floor(std::min(high, static_cast<double>(coupling_.max_order()))));
       const auto strength = [&](const ParametricCoupling& of, int k) {

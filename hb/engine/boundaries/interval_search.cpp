@@ -178,7 +178,7 @@ class Search {
     if (!system || sample.stability.verdict == Verdict::undecided) return;
     sample.mean = mean_exponents(*system);
     const Place place = place_of(sample, at_);
-    if (is_partial(sample) ? suffices_ && suffices(place) : place.strands().all.size() == place.mean.size())
+    if (is_partial(sample) ? suffices_ && suffices(place) : place.strands().all.size() == place.mean().size())
       places_.emplace(sample.x, place);
   }
 

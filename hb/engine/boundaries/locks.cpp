@@ -29,7 +29,7 @@ bool locked(const Place& p, std::size_t k) { return p.strands().all[k].partner !
 
 // Modulation may make it grow off any resonance.
 bool may_drift(const Place& p, std::size_t k) {
-  return std::ranges::any_of(p.strands().all[k].mean, [&](std::size_t n) { return p.mean[n].drift > 0; });
+  return std::ranges::any_of(p.strands().all[k].mean, [&](std::size_t n) { return p.mean()[n].drift > 0; });
 }
 
 // Without what it is locked to.
@@ -43,7 +43,7 @@ std::optional<std::array<std::size_t, 2>> own_lock(const Place& p, std::size_t a
   std::array<std::size_t, 2> names = {locked.mean[0], locked.mean[1]};
   std::ranges::sort(names);
   const Strand& partner = p.strands().all[locked.partner];
-  if (!are_conjugate(p.mean[names[0]].value, p.mean[names[1]].value) ||
+  if (!are_conjugate(p.mean()[names[0]].value, p.mean()[names[1]].value) ||
       !std::ranges::is_permutation(partner.mean, names))
     return std::nullopt;
   return names;

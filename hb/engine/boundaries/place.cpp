@@ -12,18 +12,18 @@ namespace {
 // it.
 double grown_shift(const Place& p, const Strand& at_p, const Place& q, const Strand& at_q) {
   const std::size_t nearest = at_p.mean.front();
-  const bool up = p.mean[nearest].modulation <= q.mean[nearest].modulation;
+  const bool up = p.mean()[nearest].modulation <= q.mean()[nearest].modulation;
   const Place &weak = up ? p : q, &strong = up ? q : p;
   const Strand& weaker = up ? at_p : at_q;
   double grown = 0;
   const auto count = [&](std::size_t n, double most) {
-    const double E_weak = weak.mean[n].modulation, E_strong = strong.mean[n].modulation;
+    const double E_weak = weak.mean()[n].modulation, E_strong = strong.mean()[n].modulation;
     if (E_weak == 0) return;
-    const double shift = std::abs(folded(weaker.s - weak.mean[n].value).imag()) - weaker.error;
+    const double shift = std::abs(folded(weaker.s - weak.mean()[n].value).imag()) - weaker.error;
     grown = std::max(grown, std::min(shift, most) * (std::pow(E_strong / E_weak, 2) - 1));
   };
   count(nearest, HUGE_VAL);
-  for (const std::size_t n : weaker.mean) count(n, shift_by_modulation(weak.mean[n]));
+  for (const std::size_t n : weaker.mean) count(n, shift_by_modulation(weak.mean()[n]));
   return std::min(0.5, grown);
 }
 
@@ -34,7 +34,6 @@ Place place_of(const StabilitySample& sample, const SystemAt& at) {
   if (sample.mean.empty()) {
     if (const std::optional<ScaledSystem> system = at(sample.x)) made.sample.mean = mean_exponents(*system);
   }
-  made.mean = made.sample.mean;
   made.pair = leading_pair(sample);
   made.unstable = is_unstable(sample);
   return made;
@@ -56,11 +55,11 @@ std::vector<double> unpredicted_motions(const Place& p, const Place& q) {
   std::vector<double> unpredicted(at_q.size(), 0);
   for (std::size_t k = 0; k < at_q.size(); ++k) {
     const Strand& strand = p.strands().all[k];
-    if (at_q[k] == no_strand || strand.mean.empty() || p.mean.size() != q.mean.size()) continue;
+    if (at_q[k] == no_strand || strand.mean.empty() || p.mean().size() != q.mean().size()) continue;
     const double moved = (q.strands().all[at_q[k]].s - strand.s).imag();
     double least = HUGE_VAL;
     for (const std::size_t n : strand.mean) {
-      const double apart = moved - (q.mean[n].value - p.mean[n].value).imag();
+      const double apart = moved - (q.mean()[n].value - p.mean()[n].value).imag();
       least = std::min(least, std::abs(apart - std::round(apart)));
     }
     unpredicted[k] = std::max(least, grown_shift(p, strand, q, q.strands().all[at_q[k]]));

@@ -17,7 +17,6 @@ namespace hb {
 // A sample and its exponents.
 struct Place {
   StabilitySample sample;
-  std::vector<MeanExponent> mean;
   mutable std::shared_ptr<const ParametricCoupling> coupling;  // computed when it is asked for
   std::optional<LeadingPair> pair;
   bool unstable = false;
@@ -26,7 +25,7 @@ struct Place {
 
   // Computed when they are asked for.
   const Strands& strands() const {
-    if (!known_strands) known_strands = strands_of(sample, mean);
+    if (!known_strands) known_strands = strands_of(sample, mean());
     return *known_strands;
   }
   mutable std::optional<Strands> known_strands;
@@ -37,6 +36,7 @@ struct Place {
   mutable std::optional<std::optional<LeadingPair>> known_alone;
 
   double x() const { return sample.x; }
+  const std::vector<MeanExponent>& mean() const { return sample.mean; }  // of all modes
   double growth() const { return sample.stability.growth_rate / sample.speed; }
   double growth_error() const { return sample.stability.growth_error / sample.speed; }
 };

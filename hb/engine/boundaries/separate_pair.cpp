@@ -52,9 +52,9 @@ PairModel model_of(const std::vector<const Place*>& places, Apart what) {
   const Place& first = *places[0];
   const auto turned = [&](const Place& place) {
     if (what == Apart::alone || &place == &first) return 0.0;
-    if (place.mean.size() != first.mean.size()) return HUGE_VAL;
-    const auto [a, b] = slowest(first.mean);
-    return std::copysign(std::max(moved(first.mean[a], place.mean[a]), moved(first.mean[b], place.mean[b])),
+    if (place.mean().size() != first.mean().size()) return HUGE_VAL;
+    const auto [a, b] = slowest(first.mean());
+    return std::copysign(std::max(moved(first.mean()[a], place.mean()[a]), moved(first.mean()[b], place.mean()[b])),
                          place.x() - first.x());
   };
   std::vector<PairNode> nodes;
@@ -66,21 +66,21 @@ PairModel model_of(const std::vector<const Place*>& places, Apart what) {
 // most, and no other exponent moves against it by more than it decays faster, wherever modulation may shift them.
 enum class Motion { unknown, too_far, followed };
 Motion motion_between(const Place& p, const Place& q) {
-  if (p.mean.size() != q.mean.size() || p.mean.size() < 2) return Motion::unknown;
-  const std::array<std::size_t, 2> slow = slowest(p.mean);
-  if (slow[0] == slow[1] || slow != slowest(q.mean)) return Motion::unknown;
+  if (p.mean().size() != q.mean().size() || p.mean().size() < 2) return Motion::unknown;
+  const std::array<std::size_t, 2> slow = slowest(p.mean());
+  if (slow[0] == slow[1] || slow != slowest(q.mean())) return Motion::unknown;
   double pair = 0, growth = HUGE_VAL;
   for (const std::size_t n : slow) {
-    pair = std::max(pair, moved(p.mean[n], q.mean[n]));
-    for (const MeanExponent* mean : {&p.mean[n], &q.mean[n]})
+    pair = std::max(pair, moved(p.mean()[n], q.mean()[n]));
+    for (const MeanExponent* mean : {&p.mean()[n], &q.mean()[n]})
       growth = std::min(growth, mean->value.real() - mean->drift);
   }
   bool followed = pair <= most_turns;
-  for (std::size_t n = 0; n < p.mean.size(); ++n) {
+  for (std::size_t n = 0; n < p.mean().size(); ++n) {
     if (n == slow[0] || n == slow[1]) continue;
-    const MeanExponent &a = p.mean[n], &b = q.mean[n];
+    const MeanExponent &a = p.mean()[n], &b = q.mean()[n];
     const double faster = growth - std::max(a.value.real() + a.drift, b.value.real() + b.drift),
-                 against = moved(p.mean[n], q.mean[n]) + pair;
+                 against = moved(p.mean()[n], q.mean()[n]) + pair;
     if (against <= faster) continue;
     followed = false;
     if (!(against <= (faster >= much_faster ? most_too_far_of_those : most_too_far) * faster)) return Motion::unknown;

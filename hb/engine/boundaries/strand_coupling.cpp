@@ -57,14 +57,17 @@ double StrandCoupling::needed(double growth, double other) const {
 double StrandCoupling::motion_towards(const Place& p, const Place& q, std::size_t a, std::size_t b, double needed,
                                       Effect effect) const {
   const Strand &s = p.strands().all[a], &t = p.strands().all[b];
-  const bool comparable = p.mean.size() == q.mean.size();
+  const bool comparable = p.mean().size() == q.mean().size();
   double motion = s.mean.empty() || t.mean.empty() ? HUGE_VAL : -1;
   for (const std::size_t n : s.mean) {
     for (const std::size_t r : t.mean) {
-      const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
+      const double in = p.mean()[n].value.imag(), ir = p.mean()[r].value.imag();
       const double moved =
-          !comparable ? HUGE_VAL : 2 * (std::abs(q.mean[n].value.imag() - in) + std::abs(q.mean[r].value.imag() - ir));
-      const auto weaker = [&](const Place& place) { return std::min(place.mean[n].coupling, place.mean[r].coupling); };
+          !comparable ? HUGE_VAL
+                      : 2 * (std::abs(q.mean()[n].value.imag() - in) + std::abs(q.mean()[r].value.imag() - ir));
+      const auto weaker = [&](const Place& place) {
+        return std::min(place.mean()[n].coupling, place.mean()[r].coupling);
+      };
       if (n == r || moved <= motion || std::max(weaker(p), comparable ? weaker(q) : 0) < needed) continue;
       const ParametricCoupling *of_p = of(p), *of_q = comparable ? of(q) : of_p;
       if (of_p == nullptr || of_q == nullptr) return HUGE_VAL;
@@ -74,7 +77,7 @@ double StrandCoupling::motion_towards(const Place& p, const Place& q, std::size_
         };
         return std::max(of(*of_p), of(*of_q));
       };
-      const bool acts = any_order(s, p.mean[n], t, p.mean[r], [&](int k) {
+      const bool acts = any_order(s, p.mean()[n], t, p.mean()[r], [&](int k) {
         return k == 0 ? !(of_p->symmetric() && in * ir > 0)
                       : !((k > 0 ? coupled(n, r, k) : coupled(r, n, -k)) < needed);
       });
@@ -96,8 +99,8 @@ double StrandCoupling::largest(const Place& p, std::size_t a, std::size_t b, Eff
   for (const std::size_t n : s.mean) {
     for (const std::size_t r : t.mean) {
       if (n == r) continue;
-      const double in = p.mean[n].value.imag(), ir = p.mean[r].value.imag();
-      (void)any_order(s, p.mean[n], t, p.mean[r], [&](int k) {
+      const double in = p.mean()[n].value.imag(), ir = p.mean()[r].value.imag();
+      (void)any_order(s, p.mean()[n], t, p.mean()[r], [&](int k) {
         if (k == 0)
           largest = strength->symmetric() && in * ir > 0 ? largest : HUGE_VAL;
         else

@@ -19,8 +19,8 @@ constexpr double slack = 1e-12;  // of a turn, beside a multiplier +1 or -1
 
 // The stiffness is symmetric at all angles and nothing damps: exponents are s, -s in pairs.
 bool is_undamped(const Place& place) {
-  return place.strands().all.size() == place.mean.size() &&
-         std::ranges::none_of(place.mean, [](const MeanExponent& m) { return m.value.real() != 0 || m.drift != 0; });
+  return place.strands().all.size() == place.mean().size() &&
+         std::ranges::none_of(place.mean(), [](const MeanExponent& m) { return m.value.real() != 0 || m.drift != 0; });
 }
 
 // Half traces cosh 2 pi s beyond 1, of multipliers of one sign, descending.
@@ -42,9 +42,9 @@ std::vector<LeadingPair> locks_of(const Place& place, double sign) {
 
 // How far any of the mean exponents turns, with its shift by modulation.
 double most_turned(const Place& p, const Place& q) {
-  if (p.mean.size() != q.mean.size()) return HUGE_VAL;
+  if (p.mean().size() != q.mean().size()) return HUGE_VAL;
   double most = 0;
-  for (std::size_t n = 0; n < p.mean.size(); ++n) most = std::max(most, moved(p.mean[n], q.mean[n]));
+  for (std::size_t n = 0; n < p.mean().size(); ++n) most = std::max(most, moved(p.mean()[n], q.mean()[n]));
   return most;
 }
 
